@@ -242,7 +242,7 @@ fn long_work_shows_progress_and_leaves_the_terminal_as_it_was() {
         ("-t sim:?baud=9600 toyo backup saved", "0/"),
         // A peer that answers at once.
         ("-t sim:?state=big.toml yerc file get BIG.DAT", "BIG.DAT"),
-        ("-t sim:?state=big.toml yerc file backup copies", "BIG.DAT"),
+        ("-t sim:?state=big.toml yerc backup copies", "BIG.DAT"),
     ] {
         let mut terminal = Terminal::new(80);
         let mut command = armctl(line, folder.path());

@@ -63,7 +63,7 @@ fn words_and_names_that_the_robot_holds_are_completed() {
     let desk = Desk::new();
     let mut repl = desk.repl("toyo repl --sim");
     repl.press("param get soft-limit-p\t\r");
-    repl.says("P01  soft-limit-plus");
+    repl.says("soft-limit-plus  P01");
     repl.press("robots l\t\r");
     repl.says("no robots");
     repl.says("> ");

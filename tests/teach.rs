@@ -186,6 +186,60 @@ fn a_step_is_stopped_when_the_program_is_killed() {
     assert!(desk.x() < start + 1.0 + 1e-6, "{start} {}", desk.x());
 }
 
+/// The process of the panel, ended like this while the robot goes where a key sent it: it stands before it is there.
+#[test]
+fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
+    for signal in ["KILL", "STOP"] {
+        // Half a metre at a tenth of the speed.
+        let desk = Desk::powered("toyo");
+        desk.data("toyo home --yes");
+        desk.data("toyo param set M10 P --yes");
+        desk.data("toyo override set 10 --yes");
+        desk.data("toyo point set 5 x=500 y=0 z=0 r=0 --yes");
+        let mut teach = desk.panel(&[]);
+        // Before that, a terminal in its usual mode may take Enter for something else.
+        teach.shows("step 0.1 mm");
+        teach.press("g5\r");
+        teach.shows("y goes to point 5");
+        teach.press("y");
+        teach.shows("MOVING");
+        let x = || desk.data("toyo position")["positions"][0]["x_mm"].as_f64().expect("a number");
+        assert!((0..LOOKS).any(|_| x() > 0.0), "nothing moves");
+        end(teach, signal);
+        assert!((0..LOOKS).any(|_| desk.data("toyo status")["running"] == false), "it does not stop");
+        assert!(x() < 500.0, "{signal}: {}", x());
+
+        // Ten millimetres at a hundredth. Until the adapter misses its master, it takes no other.
+        let desk = Desk::new("yrcx");
+        let x = || {
+            let outputs = (0..LOOKS).map(|_| desk.run(&["yrcx", "position", "--yes", "--json"]));
+            let reached = outputs.filter(|output| output.status.success()).map(|output| output.stdout);
+            let envelopes = reached.map(|bytes| serde_json::from_slice::<Value>(&bytes).expect("an envelope"));
+            let found = envelopes.map(|envelope| envelope["data"]["positions"][0]["x_mm"].as_f64()).next();
+            found.flatten().expect("it is told where the robot is")
+        };
+        let mut teach = desk.panel(&[]);
+        teach.press("<<<+++");
+        teach.shows("step 10 mm");
+        teach.press("\x1b[C");
+        teach.shows("MOVING");
+        end(teach, signal);
+        // Without its master the adapter stops the robot, and raises an alarm.
+        let stands = || {
+            let (before, after) = (x(), x());
+            (before - after).abs() < 1e-9
+        };
+        assert!((0..LOOKS).any(|_| stands()), "it does not stop");
+        assert!(x() < 10.0, "{signal}: {}", x());
+    }
+}
+
+/// Ends the panel; one that is frozen is ended by its guardian.
+fn end(mut teach: Terminal, signal: &str) {
+    teach.signal(signal);
+    teach.child.wait().expect("it is our child");
+}
+
 #[test]
 fn a_stop_gets_through_while_a_step_is_under_way() {
     let desk = Desk::powered("yerc");

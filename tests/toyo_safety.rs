@@ -11,6 +11,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use crate::support::simulator::Simulator;
+
 /// What is done with a block beside what it says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Peculiar {
@@ -438,4 +440,25 @@ fn a_watch_goes_on_when_the_line_is_back() {
     let mut until = toyo(&url, state.path(), "status --watch=50ms");
     let until = until.args(["--until", ".data.servo_on and false", "--count", "4"]).output().unwrap();
     assert_eq!(until.status.code(), Some(8), "{}", errors(&until));
+}
+
+/// A serial port has one host: who has it is named, with how to end it.
+#[test]
+fn who_uses_a_serial_port_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let simulator = Simulator::start_with("toyo", &["--pty"]);
+    let mut home = toyo(&simulator.url, folder.path(), "home --no-session -vv").spawn().unwrap();
+    let mut said = BufReader::new(home.stderr.take().unwrap()).lines().map_while(Result::ok);
+    assert!(said.any(|line| line.contains("-> @HOME")), "it never moved");
+    let stop = toyo(&simulator.url, folder.path(), "stop --no-session").output().unwrap();
+    let pid = home.id();
+    assert_eq!(stop.status.code(), Some(4), "{}", errors(&stop));
+    for part in [format!("another armctl, process {pid}, uses "), format!("hint: `kill {pid}` ends it")] {
+        assert!(errors(&stop).contains(&part), "{part}: {}", errors(&stop));
+    }
+    // The advice is good: it stops what it moves, and frees the port.
+    signal(&home, "TERM");
+    assert_eq!(home.wait().unwrap().code(), Some(130));
+    let looked = toyo(&simulator.url, folder.path(), "status --json --jq .data.running --no-session").output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&looked.stdout).trim(), "false", "{}", errors(&looked));
 }

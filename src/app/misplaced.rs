@@ -54,8 +54,13 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
 
 /// Alternative for something that a family does not have.
 fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
-    let (path, word) = (typed.path.join(" "), typed.rest.first()?);
-    let (.., instead) = synonyms::ABSENT.iter().find(|(of, words, _)| *of == path && words.contains(word))?;
+    let path = typed.path.join(" ");
+    let invalid = match error.get(ContextKind::InvalidArg) {
+        Some(ContextValue::String(word)) => Some(word.as_str()),
+        _ => None,
+    };
+    let is_meant = |word: &&str| Some(*word) == invalid || Some(word) == typed.rest.first();
+    let (.., instead) = synonyms::ABSENT.iter().find(|(of, words, _)| *of == path && words.iter().any(is_meant))?;
     error.remove(ContextKind::SuggestedSubcommand);
     Some((*instead).to_owned())
 }
@@ -93,9 +98,14 @@ fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) ->
         return None;
     }
     let takes_value = |argument: &&Arg| argument.get_action().takes_values() && !argument.is_global_set();
+    // Where one of several flags is needed, the value belongs to one of them.
+    let needed: Vec<_> = command.get_groups().filter(|group| group.is_required_set()).collect();
+    let is_needed = |argument: &&Arg| {
+        needed.is_empty() || needed.iter().any(|group| group.get_args().any(|id| id == argument.get_id()))
+    };
     let flags: Vec<String> = command
         .get_arguments()
-        .filter(takes_value)
+        .filter(|argument| takes_value(argument) && is_needed(argument))
         .filter_map(|argument| Some(format!("--{}", argument.get_long()?)))
         .collect();
     (!flags.is_empty()).then(|| format!("type the value after its flag: {}", flags.join(", ")))
@@ -167,9 +177,8 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
         return None;
     }
     // A range is not part of a text.
-    if let Some(range) = values.iter().find(|value| value.contains("..")) {
-        let has_flag = command.get_arguments().any(|argument| argument.get_long() == Some("ranges"));
-        return has_flag.then(|| format!("type the range after its flag: --ranges {range}"));
+    if values.iter().any(|value| value.contains("..")) {
+        return None;
     }
     let takes_numbers =
         is_of_flag || command.get_positionals().last().is_some_and(|last| last.get_value_delimiter().is_some());
@@ -227,6 +236,9 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
     let argument = command.get_arguments().find(is_missing);
+    if typed.path == ["robots", "discover"] {
+        return Some("robots discover ends by itself: remove --for".to_owned());
+    }
     if missing.iter().any(|argument| argument.starts_with("--until")) {
         return Some("add a condition such as --until idle; --for limits its time".to_owned());
     }
@@ -500,8 +512,13 @@ mod tests {
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
-            ("armctl yerc var dump points.csv P0..P9", "type the range after its flag: --ranges P0..P9"),
             ("armctl yerc job start --name WELD", "type NAME without --name"),
+            ("armctl yrcx move 19", "type the value after its flag: --point, --to, --to-pulse"),
+            ("armctl robots discover --for 3s", "robots discover ends by itself: remove --for"),
+            (
+                "armctl toyo run point 1 --speed 10",
+                "the speed override scales all speeds: see `armctl toyo override -h`",
+            ),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
             ("armctl explain 12.600", "add the family of the code: `armctl explain yrcx 12.600`"),
         ] {

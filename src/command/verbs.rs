@@ -17,6 +17,7 @@ pub const SHARED: &[&str] = &[
     "var get",
     "var set",
     "var watch",
+    "var list",
     "counter get",
     "counter set",
     "counter watch",

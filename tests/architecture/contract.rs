@@ -25,8 +25,6 @@ const YERC: &[&str] = &[
     "file put",
     "file delete",
     "file diff",
-    "file backup",
-    "file restore",
     "file cmos",
     "position",
     "axes",

@@ -3,6 +3,7 @@
 //! rewrites `man/` and `docs/schemas/`.
 
 mod circles;
+mod concepts;
 mod contract;
 mod generated;
 mod loopback;

@@ -237,9 +237,10 @@ fn interrupted_during_a_move_that_is_left_alone() {
 fn interrupted_while_points_are_stored() {
     let desk = Desk::new();
     let rows: String = (1..=999).map(|point| format!("{point},{point},0,0,0\n")).collect();
-    std::fs::write(desk.path().join("many.csv"), format!("point,x_mm,y_mm,z_mm,r_mm\n{rows}")).expect("a file");
+    std::fs::write(desk.path().join("many.csv"), format!("name,x_mm,y_mm,z_mm,r_mm\n{rows}")).expect("a file");
     // At this rate it takes half a minute.
-    let line = ["-t", "sim:?baud=115200", "-vv", "toyo", "point", "set", "--from", "many.csv", "--task", "2"];
+    let line = ["-t", "sim:?baud=115200", "-vv", "toyo", "point", "restore", "many.csv", "--task", "2"];
+    let line = [&line[..], &["--jq", "[.data.items[] | select(.written)] | length"]].concat();
     let mut child = spawn(desk.armctl(&line));
     let mut stderr = BufReader::new(child.stderr.take().expect("stderr is a pipe")).lines().map_while(Result::ok);
     assert!(stderr.any(|line| line.contains("@WPAR T1 PT=003")));
@@ -250,15 +251,10 @@ fn interrupted_while_points_are_stored() {
     // Questions before orders see to it that the line is at peace.
     let orders: Vec<&str> = orders.filter(|order| !order.starts_with("@STAS")).take(2).collect();
     assert_eq!(orders, ["@HSOF", "@CTSK TASK=01"], "what was changed for a while is put back");
-    let told = rest.iter().find(|line| line.starts_with("interrupted: ")).expect("it is told");
-    let hint = rest.iter().find_map(|line| line.strip_prefix("hint: --resume=")).expect("a hint");
-    let next = hint.strip_suffix(" goes on there").expect("a point");
-    let last = next.parse::<i32>().expect("a number") - 1;
-    // Between two points nothing is in doubt.
-    if let Some(in_doubt) = told.split("written or not: point ").nth(1) {
-        assert!(in_doubt.split(';').next() == Some(next), "{told}");
-    }
-    assert!(told.contains(&format!("done: points 1 to {last} ({last} written, 0 unchanged)")), "{told}");
+    let mut written = String::new();
+    child.stdout.take().expect("stdout is a pipe").read_to_string(&mut written).expect("it is read");
+    let written: i64 = written.trim().parse().expect("a number");
+    assert!((2..900).contains(&written), "{written} points are said to be written");
 }
 
 #[test]

@@ -62,17 +62,15 @@ fn files_are_overwritten_and_deleted_only_after_a_yes() {
 fn a_restore_asks_for_what_differs_alone() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
-    assert_eq!(desk.run("-r cell yerc file backup saved").exit, Some(0));
+    assert_eq!(desk.run("-r cell yerc backup saved").exit, Some(0));
     for restore in ["-r cell restore saved", "-r cell restore saved --machine"] {
         assert_eq!(desk.run(restore).exit, Some(0), "{restore}: nothing differs, so nothing is overwritten");
     }
     assert_eq!(desk.run("-r cell yerc file put HOME.JBI --replace --yes").exit, Some(0));
-    for restore in
-        ["-r cell restore saved", "-r cell restore saved --machine", "-r cell yerc file restore saved --differing"]
-    {
+    for restore in ["-r cell restore saved", "-r cell restore saved --machine", "-r cell yerc restore saved"] {
         desk.fails(restore, 7, "would overwrite 1 file on the controller (HOME.JBI, by ");
     }
-    desk.fails("-r cell yerc file restore saved --type prm", 7, "would overwrite ");
+    desk.fails("-r cell yerc restore saved --machine", 7, "would overwrite ");
     assert_eq!(desk.run("-r cell restore saved --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell restore saved").exit, Some(0), "it is as it was");
 }
@@ -82,11 +80,9 @@ fn a_restore_asks_for_what_differs_alone() {
 fn parameters_of_another_controller_are_refused_by_both_commands() {
     let [one, other] = [Simulator::start("yerc"), Simulator::start("yerc")];
     let desk = desk(&one);
-    assert_eq!(desk.run("-r cell yerc file backup saved").exit, Some(0));
+    assert_eq!(desk.run("-r cell yerc backup saved").exit, Some(0));
     let url = &other.url;
-    for restore in
-        ["restore saved --machine", "yerc file restore saved --type prm", "yerc file restore saved --type sys"]
-    {
+    for restore in ["restore saved --machine", "yerc restore saved --machine"] {
         desk.fails(&format!("-t {url} {restore} --yes"), 7, "the backup is of ");
     }
 }
@@ -160,7 +156,7 @@ fn a_job_is_started_by_its_name() {
     desk.fails("-r cell yerc job start", 7, "would start the selected job");
     assert_eq!(desk.run("-r cell yerc servo on --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell yerc job select TESTJOB").exit, Some(0));
-    assert_eq!(desk.data("-r cell yerc job start --yes")["job"], "TESTJOB");
+    assert_eq!(desk.data("-r cell yerc job start --yes")["program"], "TESTJOB");
     assert_eq!(frames(&desk, "job start"), [("7300 0100 01".to_owned(), false), ("8600 0100 10".to_owned(), false)]);
 }
 

@@ -20,7 +20,10 @@ impl Simulator {
     /// The same with further arguments.
     pub fn start_with(family: &str, arguments: &[&str]) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
-        command.args(["sim", family, "--bind", "127.0.0.1:0", "-q"]).args(arguments);
+        command.args(["sim", family, "-q"]).args(arguments);
+        if !arguments.contains(&"--bind") && !arguments.contains(&"--pty") {
+            command.args(["--bind", "127.0.0.1:0"]);
+        }
         command.stdin(Stdio::null()).stdout(Stdio::piped());
         let mut process = command.spawn().expect("the simulator starts");
         let mut line = String::new();

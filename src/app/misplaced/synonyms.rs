@@ -71,7 +71,7 @@ pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc names", &["list"], "the command is `armctl names list -r ROBOT`"),
     ("yrcx info", &["position"], "the command is `armctl yrcx position`"),
     ("toyo run point", &["--speed"],
-        "a point has its own speed (`armctl toyo point get`). `armctl toyo override` scales all speeds"),
+        "the speed override scales all speeds: see `armctl toyo override -h`"),
 ];
 
 /// Synonyms of verbs, with the verbs that a noun can have.

@@ -55,9 +55,9 @@ impl Client {
         self.watcher.event(Event::TakesHost(true));
         let answer = match self.transact(&order, false).await {
             // The host status shows whether the order was carried out.
-            Err(error @ Error::OutcomeUnknown(_)) => match self.status_of(&[HOST_PAGE]).await {
-                Ok(status) if status.host_on() => Answer::Done,
-                Ok(_) => {
+            Err(error @ Error::OutcomeUnknown(_)) => match self.is_host_on().await {
+                Ok(true) => Answer::Done,
+                Ok(false) => {
                     self.watcher.event(Event::TakesHost(false));
                     return Err(Error::NotSent(Box::new(error)));
                 }
@@ -154,9 +154,22 @@ impl Client {
         }
         self.host = Host::Unknown;
         let fenced = self.fence_at_end().await;
-        undone(self.transact(&Request::bare(Command::Hsof), false).await).map_err(Error::HostKept)?;
+        let answer = match self.transact(&Request::bare(Command::Hsof), false).await {
+            // The status tells what became of it.
+            Err(Error::OutcomeUnknown(_)) if matches!(self.is_host_on().await, Ok(false)) => Ok(Answer::Done),
+            answer => answer,
+        };
+        undone(answer).map_err(Error::HostKept)?;
         self.watcher.event(Event::TakesHost(false));
         fenced
+    }
+
+    /// Whether the host is ON after an order of this client to switch it. The watcher is not told of another host.
+    async fn is_host_on(&mut self) -> Result<bool, Error> {
+        let before = std::mem::replace(&mut self.host, Host::Taken);
+        let status = self.status_of(&[HOST_PAGE]).await;
+        self.host = before;
+        Ok(status?.host_on())
     }
 
     /// Fence at the end of a client. Returns only a late refusal of an order that seemed confirmed: later requests

@@ -1,7 +1,9 @@
 //! `armctl schema ID`: the JSON Schema of a report.
 
+use std::collections::BTreeMap;
+
 use clap::Args;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
 use crate::command::ValueKind;
 use crate::command::backup::check::Checked;
@@ -88,4 +90,78 @@ pub fn all() -> Vec<SchemaEntry> {
     others.sort_unstable_by_key(|entry| entry.id);
     all.extend(others);
     all
+}
+
+/// Name of the file that holds each definition that several schemas have.
+pub const SHARED: &str = "shared.json";
+
+/// The schemas as files: what several of them define stands once, in [`SHARED`], and they refer to it.
+pub fn files() -> BTreeMap<String, Value> {
+    let mut files: BTreeMap<String, Value> =
+        all().into_iter().map(|entry| (format!("{}.json", entry.id), (entry.schema)().to_value())).collect();
+    let mut found: BTreeMap<String, Vec<Value>> = BTreeMap::new();
+    for definitions in files.values().filter_map(|schema| schema["$defs"].as_object()) {
+        for (name, definition) in definitions {
+            found.entry(name.clone()).or_default().push(definition.clone());
+        }
+    }
+    // A name that means different things stays where it is, and so does what refers to it.
+    found.retain(|_, definitions| definitions.len() > 1 && definitions.iter().all(|other| *other == definitions[0]));
+    loop {
+        let names: Vec<String> = found.keys().cloned().collect();
+        found.retain(|_, definitions| references(&definitions[0]).iter().all(|name| names.contains(name)));
+        if found.len() == names.len() {
+            break;
+        }
+    }
+    for schema in files.values_mut() {
+        if let Some(definitions) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
+            definitions.retain(|name, _| !found.contains_key(name));
+            if definitions.is_empty() {
+                schema.as_object_mut().and_then(|schema| schema.remove("$defs"));
+            }
+        }
+        refer(schema, &|name| found.contains_key(name));
+    }
+    let definitions: Map<String, Value> =
+        found.into_iter().map(|(name, mut same)| (name, same.swap_remove(0))).collect();
+    let shared = json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Shared",
+        "description": "What several reports have in common.",
+        "$defs": definitions,
+    });
+    files.insert(SHARED.to_owned(), shared);
+    files
+}
+
+/// Names of the definitions that a schema refers to.
+fn references(schema: &Value) -> Vec<String> {
+    match schema {
+        Value::Object(fields) => {
+            let own = fields.get("$ref").and_then(Value::as_str).and_then(|path| path.strip_prefix(LOCAL));
+            own.map(ToOwned::to_owned).into_iter().chain(fields.values().flat_map(references)).collect()
+        }
+        Value::Array(items) => items.iter().flat_map(references).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// How a schema refers to a definition of its own.
+const LOCAL: &str = "#/$defs/";
+
+/// Refers to the file of shared definitions, for those that are in it.
+fn refer(schema: &mut Value, is_shared: &impl Fn(&str) -> bool) {
+    match schema {
+        Value::Object(fields) => {
+            if let Some(Value::String(path)) = fields.get_mut("$ref")
+                && path.strip_prefix(LOCAL).is_some_and(is_shared)
+            {
+                path.insert_str(0, SHARED);
+            }
+            fields.values_mut().for_each(|value| refer(value, is_shared));
+        }
+        Value::Array(items) => items.iter_mut().for_each(|value| refer(value, is_shared)),
+        _ => {}
+    }
 }

@@ -30,6 +30,7 @@ struct Backup {
     /// Whether nothing was missing when it was made.
     complete: bool,
     /// How many files it has.
+    #[serde(rename = "file_count")]
     files: usize,
     /// Which of them are not what was saved.
     damaged: Vec<Failure>,

@@ -44,7 +44,7 @@ pub trait Backups: Family {
 #[command(
     after_help = "Files of a yerc, points and data of a yrcx, parameters, points and programs of a toyo controller; several \
                   robots each in a folder of their name. manifest.json lists what is there with sizes and hashes, and \
-                  what is missing and why. More choice have `yerc file backup`, `yrcx backup` and `toyo backup`.\n\nTo save \
+                  what is missing and why. `yrcx backup` and `toyo backup` have more options.\n\nTo save \
                   every task of a toyo controller, each is made the current one for a while. That is a change: of a \
                   read-only robot the current task alone is saved."
 )]
@@ -86,8 +86,8 @@ impl<F: Backups> Command for Backup<F> {
     after_help = "All files are checked against their hashes first, and what differs from the controller is written. So \
                   after a restore that was cut off the same command goes on where it ended. What the controller has \
                   beyond the backup stays.\n\nWhat makes it another machine is left out unless --machine is given: \
-                  parameters and system data (yerc), parameters and settings (yrcx), machine parameters (toyo). More \
-                  choice have `yerc file restore` and `toyo restore`."
+                  parameters and system data (yerc), parameters and settings (yrcx), machine parameters (toyo). \
+                  `toyo restore` has more options."
 )]
 pub struct Restore<F: Backups> {
     #[command(flatten)]
@@ -173,6 +173,10 @@ impl<F: Backups> Command for Diff<F> {
 
     fn risk_on(&self, robot: &Robot) -> Risk {
         F::backup_risk(robot)
+    }
+
+    fn uses_files(&self) -> bool {
+        true
     }
 
     fn takes_robot(&self) -> bool {

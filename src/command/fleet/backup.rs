@@ -144,6 +144,6 @@ fn opened(context: Context<'_, Fleet>) -> Result<(&'static dyn Face, AnyContext<
         Link::Open(face, connection) => {
             Ok((*face, AnyContext { robot, connection: &mut **connection, screen, several: false, authority }))
         }
-        Link::Absent(failure) => Err(failure.clone()),
+        Link::Absent(absent) => Err(absent.failure.clone()),
     }
 }

@@ -8,6 +8,7 @@ use crate::command::families;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Plan;
 use crate::command::frame::script_line::Line;
+use crate::command::frame::share::{is_to_share, shared};
 use crate::command::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -23,7 +24,43 @@ pub enum Link {
     /// An open connection with the face of its family.
     Open(&'static dyn Face, Box<dyn Connection>),
     /// No connection, with the reason.
-    Absent(Failure),
+    Absent(Box<Absent>),
+}
+
+/// A robot that could not be reached, and how to try again.
+pub struct Absent {
+    /// The reason.
+    pub failure: Failure,
+    robot: Robot,
+    access: Access,
+    /// Whether the reason was reported: the next command then tries again.
+    is_asked: bool,
+}
+
+impl Link {
+    /// Tries again to connect to a robot that did not answer the last command.
+    pub async fn reach(&mut self, screen: &Screen) -> Result<(), Failure> {
+        let Self::Absent(absent) = self else { return Ok(()) };
+        if !std::mem::replace(&mut absent.is_asked, true) {
+            return Ok(());
+        }
+        let (robot, access) = (absent.robot.clone(), absent.access.clone());
+        match Fleet::connect(&robot, access.clone(), screen).await? {
+            Self::Absent(again) => absent.failure = again.failure,
+            Self::Open(face, connection) => {
+                let driver = face.driver();
+                if !is_to_share(driver, &robot) {
+                    *self = Self::Open(face, connection);
+                    return Ok(());
+                }
+                // Other commands share its link, as they do from the start of a watch.
+                connection.close(screen).await?;
+                let robot = shared(driver, &robot).await?;
+                *self = Fleet::connect(&robot, access, screen).await?;
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Family for Fleet {
@@ -33,10 +70,12 @@ impl Family for Fleet {
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let face = families::of(robot.family);
-        match face.driver().connect(robot, access, screen).await {
+        match face.driver().connect(robot, access.clone(), screen).await {
             Ok(connection) => Ok(Link::Open(face, connection)),
             // A robot that does not answer gets a line in the table as well.
-            Err(failure) if failure.kind == Kind::NoAnswer => Ok(Link::Absent(failure)),
+            Err(failure) if failure.kind == Kind::NoAnswer => {
+                Ok(Link::Absent(Box::new(Absent { failure, robot: robot.clone(), access, is_asked: false })))
+            }
             Err(failure) => Err(failure),
         }
     }
@@ -57,6 +96,10 @@ impl Family for Fleet {
 
     fn entry(robot: &Robot, mode: ConnectMode) -> Entry {
         families::of(robot.family).driver().entry(robot, mode)
+    }
+
+    fn takes_one_client(robot: &Robot) -> bool {
+        families::of(robot.family).driver().takes_one_client(robot)
     }
 
     fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
@@ -82,9 +125,12 @@ impl Command for Overview {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
-        let found = match context.link {
-            Link::Open(face, connection) => face.overview(&mut **connection).await,
-            Link::Absent(failure) => Err(failure.clone()),
+        let found = match context.link.reach(context.screen).await {
+            Ok(()) => match context.link {
+                Link::Open(face, connection) => face.overview(&mut **connection).await,
+                Link::Absent(absent) => Err(absent.failure.clone()),
+            },
+            Err(failure) => Err(failure),
         };
         let report = match found {
             Err(failure) if failure.kind == Kind::NoAnswer => {

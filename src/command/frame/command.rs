@@ -108,6 +108,11 @@ pub trait Command {
         false
     }
 
+    /// Whether it reads or writes files of this machine, also where none is named.
+    fn uses_files(&self) -> bool {
+        false
+    }
+
     /// Whether it takes a robot, where that depends on its arguments.
     fn takes_robot(&self) -> bool {
         true
@@ -153,6 +158,10 @@ pub trait AnyCommand {
     }
     /// See [`Command::is_endless`].
     fn is_endless(&self) -> bool {
+        false
+    }
+    /// See [`Command::uses_files`].
+    fn uses_files(&self) -> bool {
         false
     }
     /// What opens connections for it, unless it takes no robot.
@@ -218,6 +227,10 @@ impl<C: Command> AnyCommand for C {
 
     fn is_endless(&self) -> bool {
         Command::is_endless(self)
+    }
+
+    fn uses_files(&self) -> bool {
+        Command::uses_files(self)
     }
 
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {

@@ -78,16 +78,20 @@ impl Runs {
     /// What a report says of them.
     pub fn cycle(self) -> Cycle {
         let Self { repeat, times_ms } = self;
-        let cycle = if repeat.repeat.is_some() { CycleTimes::new(&times_ms) } else { None };
-        Cycle { cycle, with_stats: repeat.stats }
+        if repeat.repeat.is_none() {
+            return Cycle::default();
+        }
+        Cycle { cycle_times: CycleTimes::new(&times_ms), cycles: times_ms, with_stats: repeat.stats }
     }
 }
 
-/// The part of a report that tells of repeated runs.
+/// The part of a report about repeated runs.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Cycle {
-    /// What the runs took; null unless there were several.
-    cycle: Option<CycleTimes>,
+    /// Time of each of several runs in ms; empty unless the command repeats.
+    cycles: Vec<u64>,
+    /// Statistics of these times; null unless there are several.
+    cycle_times: Option<CycleTimes>,
     #[serde(skip)]
     with_stats: bool,
 }
@@ -95,11 +99,11 @@ pub struct Cycle {
 impl Cycle {
     /// Its rows, if they are wanted.
     pub fn rows(&self) -> Vec<(&'static str, Cell)> {
-        self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows).collect()
+        self.cycle_times.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows).collect()
     }
 }
 
-/// What the runs took.
+/// Statistics of the times of runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct CycleTimes {
     /// Runs that ended.
@@ -110,8 +114,6 @@ struct CycleTimes {
     /// 95 of 100 took no longer.
     p95_ms: u64,
     max_ms: u64,
-    /// Each of them.
-    times_ms: Vec<u64>,
 }
 
 impl CycleTimes {
@@ -127,7 +129,6 @@ impl CycleTimes {
             median_ms: share(50)?,
             p95_ms: share(95)?,
             max_ms: *sorted.last()?,
-            times_ms: times_ms.to_vec(),
         })
     }
 

@@ -110,7 +110,10 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
     }
     let kinds = || errors.iter().map(|error| error.failure.kind);
     let (kind, how_many) = if errors.len() < total {
-        (Kind::Mixed, format!("{} of {total} failed", errors.len()))
+        // Whoever ended it is told so, whatever was done before.
+        let is_interrupted = kinds().any(|kind| kind == Kind::Interrupted);
+        let kind = if is_interrupted { Kind::Interrupted } else { Kind::Mixed };
+        (kind, format!("{} of {total} failed", errors.len()))
     } else {
         // Of equally grave ones, the first.
         (kinds().rev().max_by_key(|kind| gravity(*kind))?, format!("all {total} failed"))

@@ -2,6 +2,7 @@
 
 mod print;
 mod rounds;
+mod several;
 mod silences;
 
 use std::path::{Path, PathBuf};
@@ -14,7 +15,7 @@ use serde::Serialize;
 use tokio::time::timeout_at;
 
 pub use self::print::as_value;
-use self::print::{ReportPosition, enveloped_all, named, timed};
+use self::print::{ReportPosition, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
 use self::silences::Silences;
@@ -337,27 +338,6 @@ impl Run {
         }
     }
 
-    /// Watches several robots side by side, each over its own connection, until all watches have ended.
-    async fn watch_each(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
-        let watches = robots.iter().map(|robot| async move {
-            let watched = self.watch(command, robot, Some(ReportPosition::LineOf(robot))).await;
-            let Err(stopped) = watched else { return Ok(()) };
-            if stopped.failure.kind != Kind::Interrupted && !stopped.told {
-                if self.is_for_people() {
-                    self.screen.failure(&named(robot, stopped.failure.clone()));
-                } else {
-                    self.emit(timed(Envelope::of(robot, command.id(), Err(stopped.failure.clone()))))?;
-                }
-            }
-            Err(stopped.failure)
-        });
-        let failures: Vec<Failure> = at_a_time(watches).await.into_iter().filter_map(Result::err).collect();
-        if let Some(interrupted) = failures.iter().find(|failure| failure.kind == Kind::Interrupted) {
-            return Err(interrupted.clone().into());
-        }
-        self.failed(&failures, robots.len())
-    }
-
     /// A failure that ends a watch: in a stream for programs it stands in its place on stdout.
     fn broken_off(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
         if self.is_for_people() || failure.kind == Kind::Interrupted {
@@ -365,83 +345,6 @@ impl Run {
         }
         self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
         Ok(RunError { failure, envelope: None, told: true })
-    }
-
-    /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
-    async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
-        if command.is_endless() && !self.gate.dry_run {
-            return self.watch_each(command, robots).await;
-        }
-        if self.gate.dry_run || !self.repeat.is_wanted() {
-            let outcomes = self.gather(command, robots).await;
-            let printed = self.print_many(command, robots, &outcomes, ReportPosition::First);
-            let printed = printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
-            self.verdict(&outcomes)?;
-            return Ok(self.check(&printed)?);
-        }
-        let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;
-        let verdict = self.many_over(command, robots, &mut links).await;
-        let mut closed = Ok(());
-        for (link, _) in links.into_iter().flatten() {
-            closed = closed.and(link.close(&self.screen).await);
-        }
-        verdict?;
-        Ok(closed?)
-    }
-
-    async fn many_over(
-        &self,
-        command: &dyn AnyCommand,
-        robots: &[Robot],
-        links: &mut [Result<Granted, Failure>],
-    ) -> Result<(), RunError> {
-        let mut rounds = Rounds::new(&self.repeat, EVERY);
-        loop {
-            let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
-                match link {
-                    Ok((link, grant)) => self.attempt(command, robot, &mut **link, grant).await,
-                    Err(failure) => Err(failure.clone()),
-                }
-            });
-            let outcomes = at_a_time(attempts).await;
-            let place = self.round(rounds.is_first(), false);
-            let is_met = if self.repeat.is_quiet {
-                rounds.is_met(&enveloped_all(robots, command.id(), &outcomes)?, &self.screen)?
-            } else {
-                rounds.is_met(&self.print_many(command, robots, &outcomes, place)?, &self.screen)?
-            };
-            let goes_on = !is_met && rounds.next().await?;
-            if self.repeat.is_quiet && !goes_on {
-                self.print_many(command, robots, &outcomes, ReportPosition::First)?;
-            }
-            if is_met {
-                return Ok(());
-            }
-            if !goes_on {
-                self.verdict(&outcomes)?;
-                return rounds.end().map_err(RunError::from);
-            }
-        }
-    }
-
-    /// What the outcomes of several robots come to.
-    fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
-        let failures: Vec<Failure> = outcomes
-            .iter()
-            .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |r| r.failure()))
-            .collect();
-        self.failed(&failures, outcomes.len())
-    }
-
-    /// What these failures, told already, come to among so many robots.
-    fn failed(&self, failures: &[Failure], robots: usize) -> Result<(), RunError> {
-        let Some(first) = failures.first() else { return Ok(()) };
-        let failure = if failures.len() == robots && failures.iter().all(|failure| failure.kind == first.kind) {
-            Failure::new(first.kind, "all robots failed")
-        } else {
-            Failure::new(Kind::Mixed, format!("{} of {robots} robots failed", failures.len()))
-        };
-        Err(RunError { failure, envelope: None, told: !self.is_for_people() })
     }
 
     /// One connection, one run.
@@ -467,7 +370,11 @@ impl Run {
         };
         let goes_on = self.repeat.is_wanted() || command.is_endless();
         let robot = &match command.driver().filter(|_| goes_on) {
-            Some(driver) => shared(driver, robot).await?,
+            Some(driver) => match shared(driver, robot).await {
+                // Without a family in common, a robot that is not there has a line as well.
+                Err(failure) if failure.kind == Kind::NoAnswer && driver.family().is_none() => robot.clone(),
+                robot => robot?,
+            },
             None => robot.clone(),
         };
         let link = interruptible(command.connect(robot, access, &self.screen)).await??;

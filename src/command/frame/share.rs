@@ -12,13 +12,18 @@ use crate::settings::{Origin, Robot, Sessions, duration};
 /// How long such a session goes on once nobody uses it.
 const IDLE: Duration = Duration::from_secs(5);
 
+/// Whether the link of a robot takes one client, and others may share it.
+pub fn is_to_share(driver: &dyn Driver, robot: &Robot) -> bool {
+    robot.sessions == Sessions::Shared && driver.takes_one_client(robot)
+}
+
 /// Has a session hold the link of a robot which takes one client: that of somebody else, or a new one in the background.
 /// The robot as it is to be reached then.
 ///
 /// # Errors
 /// Why the link cannot be opened.
 pub async fn shared(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure> {
-    if robot.sessions != Sessions::Shared || !driver.takes_one_client(robot) {
+    if !is_to_share(driver, robot) {
         return Ok(robot.clone());
     }
     if !is_held(robot) {

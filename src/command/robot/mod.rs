@@ -5,4 +5,5 @@ pub mod io;
 pub mod item;
 pub mod motion;
 pub mod position;
+pub mod program;
 pub mod state;

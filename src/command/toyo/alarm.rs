@@ -85,6 +85,7 @@ pub(super) async fn now(link: &mut Link) -> Result<Vec<Told>, Failure> {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Axis {
     /// The axis it is about.
+    #[serde(rename = "axis_number")]
     axis: Option<u8>,
     /// In the history: power went off here, and there is no error and no time.
     power_off: bool,
@@ -276,7 +277,7 @@ mod tests {
         let (mut bench, _) = Bench::with_faults("error = \"28\"\n", |_, _| Fault::None);
         let data = bench.data(&["error", "show"]);
         let error = &data["alarms"][0];
-        assert_eq!((&error["code"], &error["axis"]), (&"28".into(), &1.into()));
+        assert_eq!((&error["code"], &error["axis_number"]), (&"28".into(), &1.into()));
         assert!(error["remedy"].as_str().unwrap().contains("toyo param get"));
         assert_eq!(bench.data(&["alarm", "reset"])["alarms"], serde_json::json!([]));
         assert_eq!(bench.data(&["alarm", "list"]), serde_json::json!({ "alarms": [] }));

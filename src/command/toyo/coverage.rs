@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::testing::all_blocks;
-use crate::controller::toyo::table::commands::ROWS;
+use super::testing::{Bench, Fault, all_blocks};
+use crate::controller::toyo::table::commands::{ROWS, Row};
 
 /// A command line, and commands that it sends, in the order of its dry run.
 #[rustfmt::skip]
@@ -80,4 +80,23 @@ fn every_command_has_a_command_line() {
     }
     let missing: Vec<&str> = ROWS.iter().map(|row| row.word).filter(|word| !reached.contains(word)).collect();
     assert!(missing.is_empty(), "no command line sends {missing:?}");
+}
+
+/// What the manual does not mark "host ON" is sent while the teach pendant is ON, and the controller decides.
+#[test]
+fn the_pendant_keeps_from_being_sent_only_what_needs_the_host() {
+    let needs_host = |command: &&str| Row::named(command).is_none_or(|row| row.needs_host);
+    for (line, commands) in LINES {
+        let words: Vec<&str> = line.split(' ').collect();
+        let (mut bench, heard) = Bench::with_faults("pendant = true\n", |_, _| Fault::None);
+        let outcome = bench.run(&words);
+        let heard = heard.borrow();
+        let sent: BTreeSet<&str> = heard.iter().filter_map(|block| block.get(1..5)).collect();
+        for command in *commands {
+            let is_sent = sent.contains(command);
+            // What is there already is not written.
+            let may_be = if needs_host(&command) { !is_sent } else { is_sent || outcome.is_ok() };
+            assert!(may_be, "{line}: {command}: {outcome:?}");
+        }
+    }
 }

@@ -100,6 +100,7 @@ impl face::Explain for Explain {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Axis {
     /// Null where it is about none.
+    #[serde(rename = "axis_number")]
     axis: Option<u8>,
 }
 

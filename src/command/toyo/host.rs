@@ -72,6 +72,11 @@ mod tests {
         bench.close().unwrap();
         assert_eq!(heard.borrow().iter().filter(|block| *block == "@HSON").count(), 1);
         assert_eq!(heard.borrow().last().unwrap(), "@HSOF", "it was taken, and is given back");
+        let lost_end = |block: &str, _| if block == "@HSOF" { Fault::Unanswered } else { Fault::None };
+        let (mut bench, heard) = Bench::with_faults("origin = true\n", lost_end);
+        bench.data(&["counter", "set", "1", "5"]);
+        bench.close().unwrap();
+        assert_eq!(heard.borrow()[heard.borrow().len() - 2..], ["@HSOF", "@STAS SNO=2"]);
         // It was not, and nothing else was sent.
         let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Lost));
         let failure = bench.run(&["home"]).unwrap_err();

@@ -71,7 +71,7 @@ pub struct About {
     /// The current task; null if the controller refused to tell.
     task: Option<u8>,
     /// Null if the controller refused to tell.
-    override_percent: Option<u8>,
+    speed_override_percent: Option<u8>,
     /// Requests that the controller refused (`@NG`).
     refused: Vec<String>,
 }
@@ -94,7 +94,7 @@ impl About {
             tail: system.text("tail").unwrap_or_default().to_owned(),
             stations: Vec::new(),
             task: None,
-            override_percent: None,
+            speed_override_percent: None,
             refused: Vec::new(),
         }
     }
@@ -105,7 +105,7 @@ impl About {
                 self.stations.push(Station { station: small(answer, "station"), version: meaning(answer, "version") });
             }
             table::Command::Mtsk => self.task = Some(small(answer, "task")),
-            _ => self.override_percent = Some(small(answer, "override")),
+            _ => self.speed_override_percent = Some(small(answer, "override")),
         }
     }
 }
@@ -132,7 +132,10 @@ impl Report for About {
             ("axes", self.axes.join(" ").into()),
             ("stations", if stations.is_empty() { "-".into() } else { stations.join(", ").into() }),
             ("task", self.task.map_or_else(|| "-".into(), |task| task.to_string().into())),
-            ("override", self.override_percent.map_or_else(|| "-".into(), |percent| format!("{percent} %").into())),
+            (
+                "override",
+                self.speed_override_percent.map_or_else(|| "-".into(), |percent| format!("{percent} %").into()),
+            ),
         ];
         if !self.refused.is_empty() {
             fields.push(("refused", self.refused.join(", ").into()));

@@ -59,7 +59,7 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Percent, Failure> {
         let answer = context.link.ask(&Request::bare(table::Command::Rovr)).await?;
-        Ok(Percent { override_percent: small(&answer, field().name) })
+        Ok(Percent { speed_override_percent: small(&answer, field().name) })
     }
 }
 
@@ -81,14 +81,14 @@ impl Command for Set {
         let found = context.link.store(context.screen, &cell, &mut cells).await?;
         let old = Old::read(found.and_then(|record| record.number(field().name)));
         let new = New::of("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
-        Ok(Written { done: new.with("override_percent", self.percent).replaces(old), cells })
+        Ok(Written { done: new.with("speed_override_percent", self.percent).replaces(old), cells })
     }
 }
 
 /// The override.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Percent {
-    override_percent: u8,
+    speed_override_percent: u8,
 }
 
 /// The override as it was written.
@@ -102,7 +102,7 @@ pub struct Written {
 
 impl Report for Percent {
     fn view(&self) -> View {
-        View::text(format!("{} %", self.override_percent))
+        View::text(format!("{} %", self.speed_override_percent))
     }
 }
 

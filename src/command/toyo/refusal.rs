@@ -70,8 +70,8 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
     if status.has_error() {
         let error = errors::explain(status.error);
-        let then = if row.command == Command::Cerr { "" } else { "; then `toyo alarm reset`" };
-        return Some((format!("error {}", error.in_a_line()), format!("{}{then}", error.remedy)));
+        let hint = if row.command == Command::Cerr { error.remedy.to_owned() } else { cure(error.remedy) };
+        return Some((format!("error {}", error.in_a_line()), hint));
     }
     if row.needs_host && !status.host_on() {
         return told("the host is OFF", "`toyo host on`");
@@ -111,6 +111,14 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
             told("the controller is not in program mode", "`toyo mode program`, if the controller asks for it")
         }
         _ => None,
+    }
+}
+
+/// What to do about an error, in the order in which a controller takes it: nothing moves before the error is cancelled.
+pub fn cure(remedy: &str) -> String {
+    match remedy.strip_suffix(" first") {
+        Some(motion) => format!("`toyo alarm reset`, then {motion}"),
+        None => format!("{remedy}; then `toyo alarm reset`"),
     }
 }
 

@@ -77,6 +77,7 @@ impl Command for RobotType {
 /// The robot type of an axis.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct InForce {
+    #[serde(rename = "axis_number")]
     axis: u8,
     /// The one in force: six digits.
     robot_type: String,

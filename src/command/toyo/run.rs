@@ -15,10 +15,12 @@ use super::program::steps;
 use super::tasks;
 use super::waiting::{Accepted, End, Work, step};
 use crate::client::toyo::Letters;
-use crate::command::frame::cycle::{Cycle, Repeat, Runs};
+use crate::command::frame::cycle::{Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::ending::{MotionEnd, ProgramEnd};
+use crate::command::robot::motion::Motion;
 use crate::command::robot::position::Position;
+use crate::command::robot::program::{self as robot, ProgramState};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::points;
@@ -29,7 +31,7 @@ use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation, outdated};
 use crate::output::Screen;
-use crate::output::view::{Cell, Section, Tone, View};
+use crate::output::view::{Section, View};
 use crate::settings::duration;
 
 commands! {
@@ -82,7 +84,7 @@ impl Command for Sequential {
         }
         ask_first(&mut context, Change::new(self.intent()), Program::Sequential(self.step)).await?;
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
-        go(context, &start, self.end.limit(), self.repeat).await
+        Ok(go(context, &start, self.end.limit(), self.repeat).await?.of("sequential", None))
     }
 }
 
@@ -116,7 +118,8 @@ impl Command for Palletizing {
         let program = self.number.or(self.program);
         ask_first(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
         choose(context.link, table::Command::Spln, program).await?;
-        go(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await
+        let ran = go(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
+        Ok(ran.of("palletizing", program))
     }
 }
 
@@ -151,7 +154,8 @@ impl Command for Easy {
         let program = self.number.or(self.program);
         ask_first(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
         choose(context.link, table::Command::Sesn, program).await?;
-        go(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await
+        let ran = go(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
+        Ok(ran.of("easy", program))
     }
 }
 
@@ -168,7 +172,7 @@ pub struct Point {
 
 impl Command for Point {
     type Family = Toyo;
-    type Report = Ran;
+    type Report = Moved;
     const ID: &'static str = "toyo.run.point";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -177,22 +181,50 @@ impl Command for Point {
         format!("move the axes to point {} of the coordinate table", self.point)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Moved, Failure> {
         let Context { link, authority, .. } = context;
+        let (mut from, mut to) = (None, None);
         if authority.asks() {
+            let letters = link.letters().await?;
+            let here = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
             let there = self.place(link).await?;
-            let change = self.change(link, there).await?;
+            let change = self.change(link, here, there).await?;
             authority.confirm(&change).await?;
             if self.place(link).await? != there {
                 let message = format!("point {} was changed since the question; nothing was moved", self.point);
                 return Err(outdated(message));
             }
+            (from, to) = (Some(here.position()), there.map(|there| there.position()));
         } else {
             authority.confirm(&Change::new(Command::intent(self))).await?;
         }
         let context = Context { link, authority, ..context };
         let start = Request::of(table::Command::Extp, [Value::Number(self.point)]);
-        go(context, &start, (!self.end.no_wait()).then_some(None), Repeat::once()).await
+        let ran = go(context, &start, (!self.end.no_wait()).then_some(None), Repeat::once()).await?;
+        let robot::Program { state, elapsed_ms, more: Place { position, .. }, .. } = ran.program;
+        let reached = (state != Some(ProgramState::Running)).then_some(state == Some(ProgramState::Ended));
+        let group = Some(UNIT.to_owned());
+        Ok(Moved(Motion { accepted: true, group, from, to, reached, position, elapsed_ms, ..Motion::default() }))
+    }
+}
+
+/// Result of a move to a point. From and to are null where no question was asked.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Moved(Motion);
+
+impl Report for Moved {
+    fn view(&self) -> View {
+        let Self(Motion { reached, position, elapsed_ms, .. }) = self;
+        let state = match reached {
+            None => ProgramState::Running,
+            Some(true) => ProgramState::Ended,
+            Some(false) => ProgramState::Held,
+        };
+        let mut fields = vec![("run", state.cell())];
+        fields.extend(position.as_ref().map(|place| ("at", place.line().into())));
+        fields.extend(elapsed_ms.map(|elapsed| ("elapsed (ms)", elapsed.into())));
+        View { sections: vec![Section::Fields(fields)] }
     }
 }
 
@@ -206,9 +238,8 @@ impl Point {
     }
 
     /// What the question says: each axis with where it is and where it goes.
-    async fn change(&self, link: &mut Link, there: Option<Coordinates>) -> Result<Change, Failure> {
+    async fn change(&self, link: &mut Link, here: Coordinates, there: Option<Coordinates>) -> Result<Change, Failure> {
         let letters = link.letters().await?;
-        let here = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
         let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
         let mut change = Change::new(Command::intent(self));
         let mut way = 0.0;
@@ -320,22 +351,22 @@ async fn go(
     loop {
         link.ask(start).await.map_err(|failure| runs.early(failure))?;
         let Some(limit) = limit else {
-            return Ok(Ran { accepted: true, ..Ran::default() });
+            return Ok(Ran::new(robot::Program { state: Some(ProgramState::Running), ..robot::Program::default() }));
         };
         let ran = within(limit, wait(link, screen, start.command(), letters)).await;
         let ran = ran.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
         if repeat.repeat.is_none() {
             return Ok(ran);
         }
-        if ran.stopped == Some(true) {
+        if ran.program.state == Some(ProgramState::Held) {
             let failure =
                 Failure::new(Kind::ConditionNotMet, "it stands at a stop, or after a step, and has not ended")
                     .hint("start it without a step or program to go on there");
             return Err(runs.early(failure));
         }
-        runs.ended(ran.elapsed_ms.unwrap_or(0));
+        runs.ended(ran.program.elapsed_ms.unwrap_or(0));
         if runs.are_over() {
-            return Ok(Ran { cycle: runs.cycle(), ..ran });
+            return Ok(Ran::new(robot::Program { cycle: runs.cycle(), ..ran.program }));
         }
     }
 }
@@ -363,8 +394,10 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: 
     }
     let (step, instruction) = last.unzip();
     let position = place.map(|place| place.position().of_group(UNIT));
-    let stopped = Some(is_paused);
-    Ok(Ran { accepted: true, stopped, step, instruction, position, elapsed_ms, ..Ran::default() })
+    let state = Some(if is_paused { ProgramState::Held } else { ProgramState::Ended });
+    let more = Place { instruction, position };
+    let step = step.map(i64::from);
+    Ok(Ran::new(robot::Program { step, state, elapsed_ms, more, ..robot::Program::default() }))
 }
 
 /// Notes in a dry run what is asked at the end.
@@ -405,44 +438,44 @@ fn after(failure: &Failure) -> Failure {
     Failure { message, ..failure.clone() }.hint("`toyo status` and `toyo position` tell how it stands")
 }
 
-/// Result of a start.
-#[derive(Debug, Default, Serialize, JsonSchema)]
+/// Result of a start. A program at a STOP, or after a step in step mode, is held.
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct Ran {
     /// The controller took the order.
     accepted: bool,
-    /// Whether it stands at a STOP, or after a step in step mode, and can go on; null if nobody waited.
-    stopped: Option<bool>,
-    /// The current step at the end; null if nobody waited, or if there is none.
-    step: Option<i32>,
-    /// The instruction of that step.
-    instruction: Option<String>,
-    /// Where the axes stand; null if nobody waited.
-    position: Option<Position>,
-    /// From the acceptance to the end; null if nobody waited.
-    elapsed_ms: Option<u64>,
     #[serde(flatten)]
-    cycle: Cycle,
+    program: robot::Program<Place>,
+}
+
+/// Where a program stands; null if nobody waited.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+struct Place {
+    /// The instruction of the step.
+    instruction: Option<String>,
+    /// Where the axes stand.
+    position: Option<Position>,
+}
+
+impl Ran {
+    fn new(program: robot::Program<Place>) -> Self {
+        Self { accepted: true, program }
+    }
+
+    /// With the name of the program: `easy 3`.
+    fn of(mut self, kind: &str, number: Option<i32>) -> Self {
+        let name = number.map_or_else(|| kind.to_owned(), |number| format!("{kind} {number}"));
+        self.program.program = Some(name);
+        self
+    }
 }
 
 impl Report for Ran {
     fn view(&self) -> View {
-        let (Some(stopped), Some(place)) = (self.stopped, &self.position) else {
-            return View::fields([("run", Cell::from("started").tone(Tone::Good))]);
-        };
-        let run = if stopped {
-            Cell::from("stands at a stop").tone(Tone::Warning)
-        } else {
-            Cell::from("ended").tone(Tone::Good)
-        };
-        let step = self.step.zip(self.instruction.as_ref()).map(|(step, text)| format!("{step}: {text}"));
-        let mut fields = vec![
-            ("run", run),
-            ("step", Cell::maybe(step)),
-            ("at", place.line().into()),
-            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
-        ];
-        fields.extend(self.cycle.rows());
-        View { sections: vec![Section::Fields(fields)] }
+        let Place { instruction, position } = &self.program.more;
+        let step = self.program.step.zip(instruction.as_ref()).map(|(step, text)| format!("{step}: {text}"));
+        let step = step.map(|step| ("step", step.into()));
+        let at = position.as_ref().map(|place| ("at", place.line().into()));
+        View { sections: vec![Section::Fields(self.program.fields(step.into_iter().chain(at).collect()))] }
     }
 }
 
@@ -492,7 +525,7 @@ mod tests {
     fn a_program_is_waited_for() {
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         let data = bench.data(&["run", "sequential", "1", "--wait"]);
-        assert_eq!((&data["stopped"], &data["position"]["x_mm"]), (&false.into(), &100.0.into()));
+        assert_eq!((&data["state"], &data["position"]["x_mm"]), (&"ended".into(), &100.0.into()));
         let elapsed = data["elapsed_ms"].as_u64().unwrap();
         assert!((1600..2000).contains(&elapsed), "{elapsed}");
         assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@SPST")).count(), 1);
@@ -513,7 +546,7 @@ mod tests {
             [[event]]\nat_ms = 3000\ndo = \"stop\"\n";
         let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["run", "sequential", "1", "--wait"]);
-        assert_eq!((&data["stopped"], &data["step"]), (&true.into(), &3.into()));
+        assert_eq!((&data["state"], &data["step"]), (&"held".into(), &3.into()));
         let failure = bench.run(&["run", "sequential", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert!(failure.message.contains("somebody stopped it at step 4 (TIM TM=010.0)"), "{}", failure.message);
@@ -523,7 +556,7 @@ mod tests {
     fn in_step_mode_every_step_is_an_end() {
         let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         bench.data(&["mode", "step"]);
-        assert_eq!(bench.data(&["run", "sequential", "1", "--wait"])["stopped"], true);
+        assert_eq!(bench.data(&["run", "sequential", "1", "--wait"])["state"], "held");
     }
 
     #[test]
@@ -641,7 +674,7 @@ mod tests {
     #[test]
     fn the_host_is_given_back_while_a_program_runs() {
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
-        assert_eq!(bench.data(&["run", "sequential", "1", "--no-wait"])["stopped"], serde_json::Value::Null);
+        assert_eq!(bench.data(&["run", "sequential", "1", "--no-wait"])["state"], "running");
         bench.close().unwrap();
         assert_eq!(heard.borrow().last().unwrap(), "@HSOF");
     }

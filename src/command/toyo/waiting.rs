@@ -184,7 +184,7 @@ pub(super) async fn present_error(link: &mut Link, tell: &impl Fn(&str) -> Failu
         Ok(Status { error: code, .. }) => {
             let error = errors::explain(code);
             tell(&format!("an error came up ({})", error.in_a_line()))
-                .hint(format!("{}; then `toyo alarm reset`", error.remedy))
+                .hint(refusal::cure(error.remedy))
                 .code(format!("{code:02X}"))
         }
         Err(failure) => tell(&format!("an error came up, which could not be read: {}", failure.message))

@@ -19,7 +19,7 @@ use crate::command::face::overview::OverviewReport;
 use crate::command::face::panel::Panel;
 use crate::command::face::sample::Traffic;
 use crate::command::robot::alarm::Alarm;
-use crate::command::{Access, Command as _, Context};
+use crate::command::{Access, Context};
 use crate::controller::yerc::{passing, simulator, status};
 use crate::failure::Failure;
 use crate::output::Screen;

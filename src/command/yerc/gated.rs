@@ -44,9 +44,6 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("backup DIR/new", Read, Read),
     ("restore DIR/backup --force", Destroy, Destroy),
     ("diff DIR/backup", Read, Read),
-    ("file backup DIR/new", Read, Read),
-    ("file restore DIR/backup --force", Destroy, Destroy),
-    ("file restore DIR/backup --force --differing", Destroy, Destroy),
     ("file cmos --start-only", Write, Write),
     ("position", Read, Read),
     ("axes", Read, Read),
@@ -55,6 +52,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("teach P5", Destroy, Destroy),
     ("var get B0", Read, Read),
     ("var watch B0", Read, Read),
+    ("var list B0..B9", Read, Read),
     ("var set B0=1", Write, Write),
     ("var set B0=1 P1.tool=2", Destroy, Destroy),
     ("var set EX1=pulse:1=5", Destroy, Destroy),
@@ -102,7 +100,7 @@ fn prepare(folder: &std::path::Path) {
     let dump = json!({ "format": "armctl-variables", "version": 1, "model": "dx200", "encoding": "shift_jis",
                        "variables": variables });
     std::fs::write(path("dump.json"), dump.to_string()).unwrap();
-    Bench::new("sim:").data(&["file", "backup", &path("backup")]);
+    Bench::new("sim:").data(&["backup", &path("backup")]);
 }
 
 /// The risk of a frame; bytes that an answer decides count as 0.

@@ -143,10 +143,10 @@ struct Task {
     /// Whether the controller has it; where not, all that follows but `refusal` is null. Null if that was not told.
     exists: Option<bool>,
     /// Name of the job without `.JBI`; null if there is none.
-    job: Option<String>,
+    program: Option<String>,
     /// The bytes of the name, where the text does not lead back to them.
     #[serde(skip_serializing_if = "Option::is_none")]
-    job_hex: Option<String>,
+    program_hex: Option<String>,
     line: Option<u32>,
     /// 0 while no step is executed.
     step: Option<u32>,
@@ -177,12 +177,12 @@ impl Task {
         };
         let info = info.as_ref();
         let name = info.filter(|info| !info.name.is_empty()).map(|info| encoding.name(info.name.as_bytes()));
-        let (job, job_hex) = name.map_or((None, None), |Name { text, hex }| (Some(text), hex));
+        let (program, program_hex) = name.map_or((None, None), |Name { text, hex }| (Some(text), hex));
         Self {
             number,
             exists: error.is_none().then_some(info.is_some()),
-            job,
-            job_hex,
+            program,
+            program_hex,
             line: info.map(|info| info.line),
             step: info.map(|info| info.step),
             speed_override_percent: info.map(|info| f64::from(info.speed_override) / 100.0),
@@ -209,7 +209,7 @@ impl Report for Jobs {
             let job = match (&task.refusal, &task.error) {
                 (Some(code), _) => format!("(no such task: {code})").into(),
                 (None, Some(error)) => error.cell(),
-                (None, None) => Cell::maybe(task.job.as_deref()),
+                (None, None) => Cell::maybe(task.program.as_deref()),
             };
             let percent = task.shown_override.as_deref().map(Cell::number);
             table.row([name.into(), job, Cell::maybe(task.line), Cell::maybe(task.step), Cell::maybe(percent)]);
@@ -310,7 +310,7 @@ impl Command for Select {
             (None, 0) => format!("{name} is selected"),
             (None, first) => format!("{name} is selected from line {first} on"),
         };
-        let new = New::of("job", name, words).with("job", name);
+        let new = New::of("program", name, words).with("program", name);
         Ok(Selected {
             done: new.replaces(Old::read(was)),
             line: self.task.is_none().then_some(self.line),
@@ -421,10 +421,12 @@ mod tests {
         };
         let json = serde_json::to_string(&tasks).unwrap();
         assert!(
-            json.contains(r#""job":"\\x85A","job_hex":"8541","line":3,"step":0,"speed_override_percent":33.33}"#),
+            json.contains(
+                r#""program":"\\x85A","program_hex":"8541","line":3,"step":0,"speed_override_percent":33.33}"#
+            ),
             "{json}"
         );
-        assert!(json.contains(r#""task":1,"exists":false,"job":null,"line":null"#), "{json}");
+        assert!(json.contains(r#""task":1,"exists":false,"program":null,"line":null"#), "{json}");
         assert!(json.contains(r#""refusal":"0xA001""#), "{json}");
         assert_eq!(
             render::csv(&tasks.view()),
@@ -462,12 +464,12 @@ mod tests {
     async fn a_start_waits_for_the_end_if_it_is_asked_to() {
         let lines = ["job select テスト", "job start --wait", "job select TESTJOB", "job start --wait 2s", "job show"];
         let [selected, ended, _, late, shown] = reports("", &lines).await.try_into().unwrap();
-        assert_eq!(selected.unwrap()["job"], "テスト");
+        assert_eq!(selected.unwrap()["program"], "テスト");
         let elapsed = ended.unwrap()["elapsed_ms"].as_u64().unwrap();
         assert!((1000..1200).contains(&elapsed), "the job's timer runs for a second, not {elapsed} ms");
         let failure = late.unwrap_err();
         assert_eq!((failure.kind, failure.message.as_str()), (Kind::ConditionNotMet, "the job still runs after 2s"));
-        assert_eq!(shown.unwrap()["tasks"][0]["job"], "TESTJOB");
+        assert_eq!(shown.unwrap()["tasks"][0]["program"], "TESTJOB");
     }
 
     #[tokio::test(start_paused = true)]

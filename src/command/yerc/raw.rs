@@ -203,7 +203,7 @@ pub struct Answer {
     data_bytes: usize,
     /// The data part field by field.
     fields: Vec<FieldNote>,
-    elapsed_ms: f64,
+    round_trip_ms: f64,
     /// Copies of the request that were sent.
     attempts: u32,
     #[serde(skip)]
@@ -264,7 +264,7 @@ impl Answer {
             data_hex: hex(&data),
             data_bytes: data.len(),
             fields: fields.into_iter().filter(|field| field.offset >= HEADER_LEN).collect(),
-            elapsed_ms: elapsed.as_secs_f64() * 1000.0,
+            round_trip_ms: elapsed.as_secs_f64() * 1000.0,
             attempts,
             refusal: (!status.is_ok()).then(|| Refusal { status, to: link::Asked::from(request) }.into()),
         }

@@ -53,6 +53,7 @@ pub struct StatusReport {
     /// What holds it: `pendant`, `external`, `command`.
     hold_sources: Vec<&'static str>,
     alarm: bool,
+    #[serde(rename = "has_error")]
     error: bool,
     /// In-guard safe operation.
     safe_operation: bool,

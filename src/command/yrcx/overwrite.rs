@@ -416,6 +416,7 @@ pub struct OfAxis {
     /// Robot, 1 to 4; null for what is no parameter.
     pub robot: Option<i32>,
     /// Axis, 1 to 4; null for what is no parameter of an axis.
+    #[serde(rename = "axis_number")]
     pub axis: Option<i32>,
 }
 

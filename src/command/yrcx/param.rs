@@ -104,6 +104,7 @@ pub struct Setting {
     /// Its number in the robot language.
     number: u16,
     /// 1 to 4; null for a parameter of the robot.
+    #[serde(rename = "axis_number")]
     axis: Option<u8>,
     /// What it is measured in; null where the manual does not say.
     unit: Option<&'static str>,
@@ -149,7 +150,7 @@ mod tests {
         assert_eq!(read_example("4.4.2-assign", &set)["items"][0]["new"], 1000);
         let read = read_example("4.4.2-reference", &["param", "get", "outpos", "--axis", "1"]);
         let row = json!({
-            "name": "OUTPOS", "label": null, "kind": "parameter", "number": 260, "axis": 1, "unit": "pulses",
+            "name": "OUTPOS", "label": null, "kind": "parameter", "number": 260, "axis_number": 1, "unit": "pulses",
             "meaning": "OUT effective position", "ok": true, "value": 131_071,
         });
         assert_eq!(read, json!({"items": [row]}));

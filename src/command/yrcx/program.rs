@@ -9,13 +9,14 @@ use serde::Serialize;
 use super::link;
 use super::single::{Single, one_row};
 use crate::command::frame::orders::{Done, New, Old, number};
+use crate::command::robot::program as robot;
 use crate::command::yrcx::complete;
 use crate::command::{Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::{COMMON_LINES, Command};
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::View;
+use crate::output::view::{Cell, Section, View};
 
 commands! {
     /// What can be done with programs.
@@ -237,28 +238,33 @@ one_row! {
     with draft => self.which.put(draft),
     done as answer => {
         let int = |key| answer.values.int(key).unwrap_or_default();
-        let line = ProgramLine::of(int(Key::Line));
-        Execution {
-            program: int(Key::Program),
-            name: answer.values.text(Key::ProgramName).unwrap_or_default().to_owned(),
+        let ProgramLine { line, in_common } = ProgramLine::of(int(Key::Line));
+        let more = Registration {
+            number: int(Key::Program),
             task: int(Key::Task),
             priority: int(Key::Priority),
-            line,
-        }
+            in_common,
+        };
+        let program = answer.values.text(Key::ProgramName).map(ToOwned::to_owned);
+        Execution(robot::Program { program, line: Some(line.into()), more, ..robot::Program::default() })
     };
 }
 
 /// Where a program stands.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Execution {
+#[serde(transparent)]
+pub struct Execution(robot::Program<Registration>);
+
+/// What a program is registered as.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+struct Registration {
     /// Number of the program.
-    program: i32,
-    name: String,
+    number: i32,
     task: i32,
     /// 1 to 64.
     priority: i32,
-    #[serde(flatten)]
-    line: ProgramLine,
+    /// Whether it is at a line of the COMMON program.
+    in_common: bool,
 }
 
 /// A line of a program.
@@ -288,13 +294,16 @@ impl ProgramLine {
 
 impl Report for Execution {
     fn view(&self) -> View {
-        View::fields([
-            ("program", self.program.into()),
-            ("name", self.name.as_str().into()),
-            ("task", self.task.into()),
-            ("priority", self.priority.into()),
-            ("line", self.line.describe().into()),
-        ])
+        let Self(program) = self;
+        let Registration { number, task, priority, in_common } = program.more;
+        let line = program.line.map(|line| format!("{line}{}", if in_common { " of COMMON" } else { "" }));
+        let more = vec![
+            ("number", number.into()),
+            ("task", task.into()),
+            ("priority", priority.into()),
+            ("line", Cell::maybe(line)),
+        ];
+        View { sections: vec![Section::Fields(program.fields(more))] }
     }
 }
 
@@ -316,7 +325,7 @@ mod tests {
         assert_eq!(read_example("4.6.1-designate", &select), done);
         let run = ["program", "run", "--program", "1"];
         assert_eq!(words(&run).unwrap(), [example("4.6.2-execute")]);
-        assert_eq!(read_example("4.6.2-execute", &run)["new"], "running");
+        assert_eq!(read_example("4.6.2-execute", &run)["state"], "running");
         // Its WI1 is printed as 0x0100, its name without the spaces that the text asks for.
         let reset = ["program", "reset", "--name", "ABC_DE"];
         assert_eq!(words(&reset).unwrap(), [example("4.6.3-reset")]);
@@ -324,7 +333,10 @@ mod tests {
         let show = read_example("4.6.4-reference", &["program", "show", "--program", "1"]);
         assert_eq!(
             show,
-            json!({"program": 1, "name": "ABCDEFGH", "task": 2, "priority": 32, "line": 101, "in_common": false})
+            json!({
+                "program": "ABCDEFGH", "line": 101, "step": null, "state": null, "elapsed_ms": null, "cycles": [],
+                "cycle_times": null, "number": 1, "task": 2, "priority": 32, "in_common": false,
+            })
         );
     }
 

@@ -259,7 +259,7 @@ fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
         }
         Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)".into(),
         Error::Port(PortError::Open { advice, .. }) => advice.clone(),
-        Error::Port(PortError::Setup { .. } | PortError::Flooded { .. }) => {
+        Error::Port(PortError::Setup { .. } | PortError::Mute { .. } | PortError::Flooded { .. }) => {
             "check that it is an SLCAN (Lawicel) adapter; check baud in the URL".into()
         }
         Error::Port(PortError::Gone { .. }) => "plug the adapter in again".into(),
@@ -283,7 +283,12 @@ impl From<Error> for LinkError {
             Error::Size { .. } => Self::Size(cause),
             Error::Refused { .. } => Self::Refused(cause),
             Error::Silent { .. } | Error::Lost { .. } | Error::BusOff => Self::Silent(cause),
-            Error::Senseless { .. } | Error::Port(PortError::Flooded { .. }) => Self::Malformed(cause),
+            Error::Port(PortError::Open { .. } | PortError::Mute { .. } | PortError::Gone { .. }) => {
+                Self::Silent(cause)
+            }
+            Error::Senseless { .. } | Error::Port(PortError::Setup { .. } | PortError::Flooded { .. }) => {
+                Self::Malformed(cause)
+            }
             Error::Settings(_) => Self::Settings(cause),
             Error::Duplicate { .. } | Error::Port(_) | Error::Outdated | Error::Ended => Self::Local(cause),
         }

@@ -178,12 +178,12 @@ impl From<ProfibusError> for LinkError {
         let cause = Cause::new(&error);
         match error {
             ProfibusError::Settings(_) => Self::Settings(cause),
-            ProfibusError::Port { .. } => Self::Local(cause.advice(
+            ProfibusError::Port { .. } => Self::Silent(cause.advice(
                 "check the name of the port (`armctl robots discover` lists the ports) and the abilities of the \
                  adapter; close every session and program that uses the port",
             )),
             ProfibusError::Gone { .. } => {
-                Self::Local(cause.advice("check the plug and the power supply of the adapter"))
+                Self::Silent(cause.advice("check the plug and the power supply of the adapter"))
             }
             ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
                 "disconnect the other master, because armctl must be the only one; or add role=listen to the URL to \

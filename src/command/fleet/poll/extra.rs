@@ -55,6 +55,9 @@ impl Extra {
         if command.driver().is_none() {
             return wrong("does not read from a robot", EXAMPLE);
         }
+        if command.uses_files() {
+            return Err(takes_files(text));
+        }
         if command.is_endless() {
             return wrong("does not end by itself", "use the command that reads once; armctl repeats it at each poll");
         }
@@ -87,13 +90,17 @@ fn wrong(text: &str, why: &str, hint: &str) -> Failure {
     Failure::usage(format!("'{text}' {why}")).hint(hint)
 }
 
+fn takes_files(text: &str) -> Failure {
+    wrong(text, "uses a file or folder of this computer", "use a command that only reads from the robot")
+}
+
 /// Parses words into a command; the first word is the family.
 fn read(text: &str, family: Family, words: &[String]) -> Read {
     let face = families::of(family);
     let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
     let parsed = parser.clone().try_get_matches_from(words);
     if parsed.as_ref().is_ok_and(|matches| takes_file(&parser, matches)) {
-        return Err(wrong(text, "names a file or folder", "use a command that only reads from the robot"));
+        return Err(takes_files(text));
     }
     match parsed.and_then(|mut matches| face.read(&mut matches)) {
         Ok(Typed { wish: Wish::Command(command), .. }) => Ok(command),
@@ -155,11 +162,14 @@ mod tests {
             ("toyo ports", "does not read from a robot"),
             ("yerc var get B0; yerc hold on", "is more than one command"),
             ("yerc status ; yerc hold on", "is more than one command"),
-            ("yerc var dump x.json", "names a file or folder"),
-            ("yerc file get A.JBI --dir x", "names a file or folder"),
-            ("yerc file get A.JBI", "names a file or folder"),
-            ("yrcx backup x", "names a file or folder"),
-            ("toyo point dump x.csv", "names a file or folder"),
+            ("yerc var dump x.json", "uses a file or folder"),
+            ("yerc file get A.JBI --dir x", "uses a file or folder"),
+            ("yerc file diff A.JBI", "uses a file or folder"),
+            ("yerc diff", "uses a file or folder"),
+            ("yrcx diff", "uses a file or folder"),
+            ("yerc file get A.JBI", "uses a file or folder"),
+            ("yrcx backup x", "uses a file or folder"),
+            ("toyo point dump x.csv", "uses a file or folder"),
         ] {
             let failure = Extra::parse(text).unwrap_err();
             assert!(failure.message.contains(why) && failure.hint.is_some(), "{text}: {failure:?}");

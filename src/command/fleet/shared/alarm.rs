@@ -86,10 +86,11 @@ impl Command for List {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<Present, Failure> {
-        let Context { robot, link, several, .. } = context;
+        let Context { robot, link, screen, several, .. } = context;
+        link.reach(screen).await?;
         let found = match link {
             Link::Open(face, connection) => face.alarms(&mut **connection).await?,
-            Link::Absent(failure) => return Err(failure.clone()),
+            Link::Absent(absent) => return Err(absent.failure.clone()),
         };
         let mut alarms = Vec::with_capacity(found.len());
         for alarm in found {

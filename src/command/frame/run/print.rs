@@ -6,6 +6,7 @@ use jiff::Timestamp;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::silences::Said;
 use super::{Run, RunError};
 use crate::command::frame::{AnyCommand, AnyReport, Outcome};
 use crate::failure::Failure;
@@ -63,7 +64,7 @@ impl Run {
         command: &dyn AnyCommand,
         robots: &[Robot],
         outcomes: &[Outcome],
-        place: ReportPosition<'_>,
+        (place, said): (ReportPosition<'_>, &mut Said<'_>),
     ) -> Result<Vec<Envelope>, Failure> {
         let envelopes = enveloped_all(robots, command.id(), outcomes)?;
         if !self.is_for_people() {
@@ -76,14 +77,15 @@ impl Run {
         }
         let mut views = Vec::new();
         let mut reasons = Vec::new();
-        for (robot, outcome) in robots.iter().zip(outcomes) {
-            match outcome {
+        for (index, (robot, outcome)) in robots.iter().zip(outcomes).enumerate() {
+            let reason = match outcome {
                 Ok(report) => {
                     views.push((robot, report.view()));
-                    reasons.extend(report.failure().map(|failure| (robot, failure)));
+                    report.failure()
                 }
-                Err(failure) => reasons.push((robot, failure.clone())),
-            }
+                Err(failure) => Some(failure.clone()),
+            };
+            reasons.extend(said.of(index, reason.as_ref()).into_iter().map(|failure| (robot, failure)));
         }
         if self.screen.format.is_rows() {
             let reports = robots.iter().zip(outcomes);
@@ -92,7 +94,8 @@ impl Run {
         } else {
             self.show_many(&views, place)?;
         }
-        if let Some(summary) = command.summary(&envelopes).filter(|_| self.has_trailer()) {
+        let summary = command.summary(&envelopes).filter(|_| self.has_trailer());
+        if let Some(summary) = summary.and_then(|summary| said.summary(summary).map(str::to_owned)) {
             self.screen.note(&summary);
         }
         for failure in alike(&reasons) {

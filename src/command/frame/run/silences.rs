@@ -1,8 +1,9 @@
-//! What a watch says of a robot that is silent: an error now and then, however often it is looked at.
+//! Failures of a watch: an error now and then, however often a robot is looked at.
 
 use std::time::Instant;
 
 use super::Run;
+use super::print::named;
 use crate::command::frame::repeats::{Line, Repeats};
 use crate::failure::Failure;
 use crate::output::log::Level;
@@ -23,26 +24,76 @@ impl<'a> Silences<'a> {
 
     /// Says why it did not answer, unless that was just said.
     pub fn say(&mut self, failure: &Failure) {
+        let failures = self.admit(failure);
+        self.print(failures);
+    }
+
+    /// The failures to say now: this one, unless it was just said, and counts that are due.
+    pub fn admit(&mut self, failure: &Failure) -> Vec<Failure> {
         let line = Line::new(Level::Warning, &failure.message, &[("robot", &self.robot.name)]);
         self.last = Some(failure.clone());
         let lines = self.repeats.lines(line, Instant::now());
-        self.print(lines);
+        self.failures(lines)
     }
 
     /// It answers, or nobody watches any more: says how often it did not.
     pub fn end(&mut self) {
         let lines = self.repeats.due(Instant::now(), true);
-        self.print(lines);
+        let failures = self.failures(lines);
+        self.print(failures);
         self.repeats = Repeats::default();
     }
 
-    fn print(&self, lines: Vec<Line>) {
-        for Line { text, .. } in lines {
-            if let Some(failure) = &self.last {
-                self.run.screen.failure(&Failure { message: text, ..failure.clone() });
-                self.run.redraw.forget();
-            }
+    fn failures(&self, lines: Vec<Line>) -> Vec<Failure> {
+        let failure = |line: Line| Some(Failure { message: line.text, ..self.last.clone()? });
+        lines.into_iter().filter_map(failure).collect()
+    }
+
+    fn print(&self, failures: Vec<Failure>) {
+        for failure in failures {
+            self.run.screen.failure(&named_among(self.run, self.robot, failure));
+            self.run.redraw.forget();
         }
+    }
+}
+
+/// A failure with the name of its robot, where several are watched.
+fn named_among(run: &Run, robot: &Robot, failure: Failure) -> Failure {
+    if run.sources.selection.is_plural() { named(robot, failure) } else { failure }
+}
+
+/// What a watch of several robots said in the rounds so far.
+pub(super) struct Said<'a> {
+    /// The failures of each robot, in their order.
+    silences: Vec<Silences<'a>>,
+    summary: Option<String>,
+}
+
+impl<'a> Said<'a> {
+    /// Nothing yet.
+    pub fn nothing(run: &'a Run, robots: &'a [Robot]) -> Self {
+        Self { silences: robots.iter().map(|robot| Silences::new(run, robot)).collect(), summary: None }
+    }
+
+    /// What is to be said now of a robot that failed, or did not.
+    pub fn of(&mut self, index: usize, failure: Option<&Failure>) -> Vec<Failure> {
+        match (self.silences.get_mut(index), failure) {
+            (Some(silences), Some(failure)) => silences.admit(failure),
+            (Some(silences), None) => {
+                silences.end();
+                Vec::new()
+            }
+            (None, failure) => failure.cloned().into_iter().collect(),
+        }
+    }
+
+    /// The line below a table, where it is another one than in the round before.
+    pub fn summary(&mut self, summary: String) -> Option<&str> {
+        if self.summary.as_ref() == Some(&summary) {
+            return None;
+        }
+        self.summary = Some(summary);
+        self.summary.as_deref()
     }
 }
 

@@ -64,7 +64,14 @@ pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<
     let Work { mut table, robot, link, screen, authority } = work;
     table.select(link).await.map_err(unwritten)?;
     let compared = write_selected(&table, link, screen, authority, rows).await;
-    let compared = table.deselect(link, compared).await?;
+    // After Ctrl-C nothing more is asked: the end of the link selects what was selected before.
+    let is_interrupted = |rows: &Vec<Compared<S>>| {
+        rows.iter().any(|row| row.outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted))
+    };
+    let compared = match compared {
+        Ok(rows) if is_interrupted(&rows) => rows,
+        compared => table.deselect(link, compared).await?,
+    };
     let written: Vec<S::Key> =
         compared.iter().filter(|row| matches!(row.outcome, Ok(true))).map(|row| row.key).collect();
     if let Some(words) = table.afterwards(&written).filter(|_| !written.is_empty()) {

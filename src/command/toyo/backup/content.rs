@@ -60,7 +60,7 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
         task_axes: axes.word("axes").or(axes.text("axes")).unwrap_or_default().to_owned(),
         axis_letters: letters.map(|record| written(&record)),
         task_steps: steps::rooms(link).await?,
-        override_percent: speed.map(|record| numbers::small(&record, "override")),
+        speed_override_percent: speed.map(|record| numbers::small(&record, "override")),
     })
 }
 

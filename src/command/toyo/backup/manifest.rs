@@ -27,14 +27,14 @@ pub struct Controller {
     /// Steps of each task (E22).
     pub task_steps: [u16; 4],
     /// Null if the controller refused to tell.
-    pub override_percent: Option<u8>,
+    pub speed_override_percent: Option<u8>,
 }
 
 impl About for Controller {
     const FAMILY: Option<Family> = Some(Family::Toyo);
 
     fn check(&self) -> Result<(), String> {
-        match self.override_percent {
+        match self.speed_override_percent {
             Some(percent) if !(1..=100).contains(&percent) => Err(format!("an override of {percent} % is none")),
             _ => Ok(()),
         }
@@ -85,7 +85,7 @@ mod tests {
             task_axes: "5000".into(),
             axis_letters: None,
             task_steps: [2000, 0, 0, 0],
-            override_percent: Some(percent),
+            speed_override_percent: Some(percent),
         };
         assert!(controller(100).check().is_ok());
         assert!(controller(101).check().is_err());

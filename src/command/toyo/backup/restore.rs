@@ -369,7 +369,7 @@ fn pending(part: Part) -> PartResult {
 
 /// The override that the backup has.
 fn speed(backup: &Controller) -> Result<Option<Store>, Failure> {
-    let Some(percent) = backup.override_percent else { return Ok(None) };
+    let Some(percent) = backup.speed_override_percent else { return Ok(None) };
     let values = vec![Value::Number(percent.into())];
     let wanted = table::Command::Rovr.row().answers[0].record(values.clone());
     let cell = Cell {

@@ -176,6 +176,6 @@ mod tests {
         assert_eq!((&read["items"][0]["name"], &read["items"][0]["value"]), (&"8".into(), &value));
         assert_eq!(bench.run(&["easy", "copy", "1", "1"]).unwrap_err().kind.exit(), 2);
         bench.data(&["easy", "select", "8"]);
-        assert_eq!(bench.data(&["easy", "progress"])["program"], 8);
+        assert_eq!(bench.data(&["easy", "progress"])["number"], 8);
     }
 }

@@ -37,6 +37,7 @@ impl Command for Progress {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProgressReport {
     /// 1 to 8.
+    #[serde(rename = "number")]
     program: i32,
     /// Step of the easy program that is executed.
     step: i32,

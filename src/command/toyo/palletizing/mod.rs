@@ -134,7 +134,8 @@ impl Hash for Key {
 /// What a record has besides.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct About {
-    /// 1 to 16.
+    /// Number of the program, 1 to 16.
+    #[serde(rename = "number")]
     program: i32,
     /// Number of the record, 1 to 16.
     record: u8,
@@ -324,6 +325,6 @@ mod tests {
         let mut bench = Bench::new("sim:");
         bench.data(&["palletizing", "select", "4"]);
         let progress = bench.data(&["palletizing", "progress"]);
-        assert_eq!((&progress["program"], &progress["directions"][0]["done"]), (&4.into(), &0.into()), "{progress}");
+        assert_eq!((&progress["number"], &progress["directions"][0]["done"]), (&4.into(), &0.into()), "{progress}");
     }
 }

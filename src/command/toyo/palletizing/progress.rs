@@ -30,6 +30,7 @@ impl Command for Progress {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProgressReport {
     /// 1 to 16.
+    #[serde(rename = "number")]
     program: i32,
     /// Which side is a matrix: `M-1`, `1-M` or `M-M`.
     mode: &'static str,

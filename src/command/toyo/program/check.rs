@@ -8,9 +8,12 @@ use serde::Serialize;
 
 use super::text::{self, Remark};
 use crate::command::toyo::files;
+use crate::command::toyo::sim::{self, Stop};
 use crate::command::{OfflineCommand, Report};
+use crate::controller::findings::{Finding, Severity};
 use crate::controller::names::{Name, Names};
 use crate::controller::toyo::bulk::points;
+use crate::controller::toyo::errors;
 use crate::controller::toyo::program::{self, Checked, Known, MOST_STEPS};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -22,7 +25,8 @@ use crate::output::view::{Cell, Section, Tone, View};
                         `program put` and `sim run` check as well; a faulty file is a wrong argument to them: 2.\n\n\
                         The form of a file: a step a line, # or ; begin a comment, labels stand for tags, numbers may \
                         be short. A controller would stop at what is warned of: a RET without a call, a call that leads \
-                        back to itself, half an arc, a point that is not taught.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
+                        back to itself, half an arc, a point that is not taught, and what a run of some seconds at the \
+                        desk stops at.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
                         JMPI TAG=next STN=0 PN1=.......1   ; while the gripper is full\n      END")]
 pub struct Check {
     /// Program files; - is stdin
@@ -42,6 +46,9 @@ pub struct Check {
     strict: bool,
 }
 
+/// The error of a TSTR whose task has no program.
+const NO_TASK: u8 = 0x63;
+
 impl OfflineCommand for Check {
     type Report = Verdict;
     const ID: &'static str = "toyo.program.check";
@@ -55,13 +62,47 @@ impl OfflineCommand for Check {
         });
         let known = Known { points: points.transpose()?.map(|points| points.into_iter().collect()) };
         let verdict = |path: &PathBuf| {
-            let bytes = files::read(path)?;
-            let checked = program::check_known(&bytes, room, None, &names, &known);
-            Ok(FileVerdict::new(&files::shown(path), &bytes, &checked))
+            let (bytes, name) = (files::read(path)?, files::shown(path));
+            let mut checked = program::check_known(&bytes, room, None, &names, &known);
+            if let Some(program) = &checked.program {
+                let stop = sim::rehearse(&name, program, self.points.as_deref())?;
+                rehearsed(&mut checked.findings, stop.as_ref());
+            }
+            Ok(FileVerdict::new(&name, &bytes, &checked))
         };
         let files = self.files.iter().map(verdict);
         Ok(Verdict { files: files.collect::<Result<_, Failure>>()?, strict: self.strict })
     }
+}
+
+/// Adds the step at which a run stops with an error, unless something is said of it already.
+fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
+    let Some(Stop { code, after_s, line }) = stop else { return };
+    let said = findings.iter().filter(|finding| finding.line == *line).map(|finding| finding.severity).min();
+    let severity = match said {
+        Some(Severity::Error | Severity::Warning) => return,
+        // It depends on what only a controller has, or another file has the program of the task.
+        Some(Severity::Note) => Severity::Note,
+        None if code.is_none_or(|code| code == NO_TASK) => Severity::Note,
+        None => Severity::Warning,
+    };
+    let what = match code {
+        Some(code) => {
+            format!("a controller stops here after {after_s:.3} s: error {}", errors::explain(*code).in_a_line())
+        }
+        None => format!("everything waits here after {after_s:.3} s"),
+    };
+    let at = findings.iter().position(|finding| finding.line > *line).unwrap_or(findings.len());
+    findings.insert(
+        at,
+        Finding {
+            severity,
+            line: *line,
+            column: 1,
+            message: format!("at the desk {what}"),
+            hint: Some("`toyo sim run` shows the steps before; counters begin at 0, inputs are off".to_owned()),
+        },
+    );
 }
 
 /// What there is to say about files.
@@ -216,6 +257,35 @@ b.txt: 2 steps, 1 label
         );
         let failure = verdict.failure().unwrap();
         assert_eq!((failure.kind.exit(), failure.message.as_str()), (8, "a.txt has errors"));
+    }
+
+    /// What shows only when the steps run.
+    #[test]
+    fn a_run_finds_what_the_steps_do_not_show() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        let findings = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            let check = Check { files: vec![path.clone()], room: 5000, points: None, name: Vec::new(), strict: false };
+            let screen = Screen::new(crate::output::Format::Json, crate::output::ColorChoice::Never, true, 0);
+            let verdict = check.run(&screen).unwrap();
+            let told = verdict.files[0].findings.iter().filter(|remark| remark.message.starts_with("at the desk"));
+            told.map(|remark| (remark.severity, remark.line, remark.message.clone())).collect::<Vec<_>>()
+        };
+        let error = |code: &str| format!("at the desk a controller stops here after 0.001 s: error {code}");
+        assert_eq!(
+            findings("CNT+ CN1=9999\nCNT+ CN1=1\nEND\n"),
+            [("warning", 2, error("A7: calculation error"))],
+            "a counter that is too large"
+        );
+        assert_eq!(findings("NOP\nTSTR TASK=2\nEND\n"), [("note", 2, error("63: task cannot be started"))]);
+        assert_eq!(
+            findings("NOP\nIN STN=0 PN1=.......1 AND\nEND\n"),
+            [("note", 2, "at the desk everything waits here after 0.001 s".to_owned())]
+        );
+        for text in ["RET\n", "a: SPD V=1\nJMP TAG=a\n", "SPD V=1\nEND\n"] {
+            assert_eq!(findings(text), [], "{text}: it is said already, or nothing stops");
+        }
     }
 
     #[test]

@@ -9,6 +9,7 @@ use super::get::Step;
 use super::steps;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::frame::names;
 use crate::command::toyo::complete;
 use crate::command::toyo::eeprom::{Cells, THERE};
 use crate::command::toyo::link::Link;
@@ -16,9 +17,10 @@ use crate::command::toyo::link::Toyo;
 use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::names::Names;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::program::{Part, check_part};
+use crate::controller::toyo::program::{Part, check_named};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
@@ -33,7 +35,7 @@ pub struct Insert {
     /// Number of the new step
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     step: u16,
-    /// Its instruction, such as OUT STN=0 PN1=.......1; quote < and >
+    /// Its instruction, such as MOVP pick or OUT STN=0 PN1=.......1; quote < and >
     #[arg(num_args = 0.., default_value = "NOP", add = complete::INSTRUCTION)]
     instruction: Vec<String>,
     /// Task, 1 to 4, instead of the current one
@@ -50,8 +52,8 @@ impl Command for Insert {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Inserted, Failure> {
-        let Context { link, screen, authority, .. } = context;
-        let instruction = self.instruction()?;
+        let Context { robot, link, screen, authority, .. } = context;
+        let instruction = self.instruction(names::of(robot, screen))?;
         if link.is_dry() {
             return self.dry_run(link, &authority, &instruction).await;
         }
@@ -62,9 +64,10 @@ impl Command for Insert {
 
 impl Insert {
     /// The instruction as it is sent. Its tag may be anywhere in the program.
-    fn instruction(&self) -> Result<Record, Failure> {
+    fn instruction(&self, names: &Names) -> Result<Record, Failure> {
         let text = self.instruction.join(" ");
-        let checked = check_part(text.as_bytes(), 1, &Part { first: self.step.into(), tags: None });
+        let part = Part { first: self.step.into(), tags: None };
+        let checked = check_named(text.as_bytes(), 1, Some(&part), names);
         let wrong = checked.errors().next().map(|finding| {
             let hint = finding.hint.clone().unwrap_or_else(|| "nothing was sent".to_owned());
             Failure::usage(format!("column {} of '{text}': {}", finding.column, finding.message)).hint(hint)

@@ -13,7 +13,9 @@ use sha2::{Digest as _, Sha256};
 
 use crate::command::frame::local::state_folder;
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::program::used;
+use crate::controller::toyo::program::{tags, used};
+use crate::controller::toyo::request::instruction;
+use crate::controller::toyo::table::Op;
 use crate::files;
 use crate::settings::Robot;
 
@@ -73,10 +75,26 @@ impl Source {
         differing + used.abs_diff(self.steps.len())
     }
 
-    /// Whether the steps behind it need no look, as far as those up to its last one are as they were put.
-    pub fn knows_rest(&self, room: u16) -> bool {
-        self.rest_is_nop && self.room == room
+    /// Whether the steps behind it need no look before these steps are put, as far as those up to its last one are as they
+    /// were put. An edit on the pendant behind them may be missed then, which must not matter: the new program defines no
+    /// tag that might be there twice, jumps to none but its own, and does not run on into what is behind it.
+    pub fn knows_rest(&self, steps: &[Record], room: u16) -> bool {
+        let known: Vec<Record> = self.steps.iter().filter_map(|step| instruction(step).ok()).collect();
+        let known = tags(&known, 1);
+        let is_closed = ends(steps) && !steps.iter().any(computes_jump);
+        self.rest_is_nop && self.room == room && is_closed && tags(steps, 1).keys().all(|tag| known.contains_key(tag))
     }
+}
+
+/// Whether steps end before what is behind them.
+fn ends(steps: &[Record]) -> bool {
+    let layouts = [Op::End, Op::Jmp, Op::Ret].map(|op| op.row().layout);
+    steps[..used(steps)].last().is_some_and(|last| layouts.contains(&last.layout()))
+}
+
+/// Whether a step goes to a tag that only a run tells.
+fn computes_jump(step: &Record) -> bool {
+    [Op::Brac, Op::Psel].iter().any(|op| step.layout() == op.row().layout)
 }
 
 impl Sources {
@@ -152,7 +170,6 @@ impl Sources {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::toyo::request::instruction;
 
     fn steps(texts: &[&str]) -> Vec<Record> {
         texts.iter().map(|text| instruction(text).unwrap()).collect()
@@ -170,11 +187,14 @@ mod tests {
         let put = steps(&["SPD V=05", "END", "NOP", "NOP"]);
         sources.keep(1, ("pick.toyo", "# text\nSPD V=5\nEND\n"), &put, 4).unwrap();
         let source = sources.get(1).unwrap();
-        assert!(source.is(&put) && source.len() == 2 && source.knows_rest(4) && !source.knows_rest(5));
+        assert!(source.is(&put) && source.len() == 2 && source.knows_rest(&put, 4) && !source.knows_rest(&put, 5));
+        let tagged = steps(&["TAG TAG=001", "END"]);
+        assert!(!source.knows_rest(&tagged, 4), "the tag may be behind them already");
+        assert!(!source.knows_rest(&steps(&["SPD V=05"]), 4), "it runs on into what is behind it");
         assert_eq!(source.differences(&steps(&["SPD V=06", "END", "TAG TAG=001"])), 2);
         sources.doubt();
         let source = sources.get(1).unwrap();
-        assert!(source.is(&put) && !source.knows_rest(4), "the text stays, what is behind it is unknown");
+        assert!(source.is(&put) && !source.knows_rest(&put, 4), "the text stays, what is behind it is unknown");
         let other = Sources { address: "tcp 127.0.0.1 2".to_owned(), ..sources };
         assert_eq!(other.get(1), None, "another controller");
     }

@@ -62,7 +62,8 @@ const HELP: &str = "The whole file is checked before anything is sent. It is the
                     last one become NOP, as a tag in what is left of an older program would be there twice. With --at \
                     it is a part of the program, and the other steps stay.\n\nThe steps of the file are read, and \
                     those behind it; only what differs is written. Where the controller holds the program that armctl \
-                    put there last, the steps behind it are known to be NOP and are not read; --read-all reads them. \
+                    put there last, the steps behind it are known to be NOP and are not read, unless the new one has \
+                    other tags or runs on behind its last step; --read-all reads them. \
                     The text is kept on this machine, so that `program get` shows labels and comments again.\n\nNames \
                     of points, counters and timers (robots.toml) stand for their numbers: PT=pick.";
 
@@ -143,7 +144,7 @@ impl Put {
             }
         };
         let end = if self.at.is_some() || self.keep_rest { last } else { room };
-        let found = self.found(link, screen, task, (from, last, end)).await?;
+        let found = self.found((link, screen), task, &program, (from, last, end)).await?;
         let end = from.saturating_add(u16::try_from(found.len()).unwrap_or(u16::MAX)).saturating_sub(1).max(last);
         if self.expected.as_ref().is_some_and(|expected| *expected != found) {
             return Err(Failure::new(Kind::Rejected, "the program was changed on the controller meanwhile")
@@ -195,17 +196,19 @@ impl Put {
     }
 
     /// The steps that are there, from the first that is compared on. Those behind the program are left out where the
-    /// controller holds what was put there last, and nothing but NOP was behind it.
+    /// controller holds what was put there last, and nothing but NOP was behind it: all but the first, where a program goes
+    /// on that was made longer on the pendant.
     async fn found(
         &self,
-        link: &mut Link,
-        screen: &Screen,
+        (link, screen): (&mut Link, &Screen),
         task: u8,
+        program: &Program,
         (from, last, end): (u16, u16, u16),
     ) -> Result<Vec<Record>, Failure> {
         let whole = from == 1 && end > last && !self.read_all;
-        let source = link.sources.get(task).filter(|source| whole && source.knows_rest(end));
-        let known = source.and_then(|source| Some((u16::try_from(source.len()).ok()?.max(last), source)));
+        let steps = records(program);
+        let source = link.sources.get(task).filter(|source| whole && source.knows_rest(&steps, end));
+        let known = source.and_then(|source| Some((u16::try_from(source.len()).ok()?.max(last) + 1, source)));
         let Some((known, source)) = known.filter(|(known, _)| *known < end) else {
             return steps::read_all(link, screen, from..=end).await;
         };
@@ -219,7 +222,7 @@ impl Put {
     /// Keeps the text, for a `get` to come.
     fn keep(&self, link: &mut Link, screen: &Screen, (task, room): (u8, u16), bytes: &[u8], program: &Program) {
         let Ok(text) = std::str::from_utf8(bytes) else { return };
-        let steps: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
+        let steps = records(program);
         link.sources.trust();
         if let Err(error) = link.sources.keep(task, (&self.name(), text), &steps, room) {
             screen.detail(1, &format!("the text of the program was not kept: {error}"));
@@ -273,6 +276,10 @@ fn replacing(edits: &[Edit], task: u8) -> Change {
 fn names_tags(program: &Program) -> bool {
     let is_tag = |name: &str| matches!(name, "tag" | "then" | "else");
     program.steps.iter().any(|step| step.record.pairs().any(|(field, _)| is_tag(field.name)))
+}
+
+fn records(program: &Program) -> Vec<Record> {
+    program.steps.iter().map(|step| step.record.clone()).collect()
 }
 
 fn last_of(first: u16, program: &Program) -> u16 {

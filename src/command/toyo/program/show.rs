@@ -7,13 +7,14 @@ use serde::Serialize;
 use super::steps;
 use crate::client::toyo::Refusal;
 use crate::command::frame::dry_run::unknown;
+use crate::command::robot::program::Program;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::refusal;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
-use crate::output::view::View;
+use crate::output::view::{Cell, View};
 
 /// Asks for the step at which the program of the current task stands.
 #[derive(Debug, Args)]
@@ -34,29 +35,34 @@ impl Command for Show {
         }
         let which = link.ask(&which).await?;
         let answer = steps::numbered(link, 0).await?.map_err(|Refusal(request)| refusal::of_question(&request))?;
-        Ok(Current {
-            task: which.number("task").unwrap_or_default(),
-            step: answer.number("step").unwrap_or_default(),
-            instruction: answer.text("text").unwrap_or_default().to_owned(),
-        })
+        let task = which.number("task").unwrap_or_default();
+        let more = Instruction { task, instruction: answer.text("text").map(ToOwned::to_owned) };
+        let step = answer.number("step").map(i64::from);
+        Ok(Current(Program { program: Some(format!("task {task}")), step, more, ..Program::default() }))
     }
 }
 
 /// Where a program stands.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Current {
+#[serde(transparent)]
+pub struct Current(Program<Instruction>);
+
+/// The step in words.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+struct Instruction {
+    /// The task whose program it is.
     task: i32,
-    step: i32,
-    /// What stands there.
-    instruction: String,
+    /// The instruction of the step.
+    instruction: Option<String>,
 }
 
 impl Report for Current {
     fn view(&self) -> View {
+        let Self(program) = self;
         View::fields([
-            ("task", self.task.into()),
-            ("step", self.step.into()),
-            ("instruction", self.instruction.as_str().into()),
+            ("task", program.more.task.into()),
+            ("step", Cell::maybe(program.step)),
+            ("instruction", Cell::maybe(program.more.instruction.as_deref())),
         ])
     }
 }

@@ -5,6 +5,9 @@ mod run;
 mod tests;
 mod trace;
 
+pub use self::run::rehearse;
+pub use self::trace::Stop;
+
 use crate::command::{Offline, commands};
 
 commands! {

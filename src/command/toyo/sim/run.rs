@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::trace::{End, Recorder, Source, Trace};
+use super::trace::{End, Recorder, Source, Stop, Trace};
 use crate::command::OfflineCommand;
 use crate::command::toyo::files;
 use crate::command::toyo::point::AXES;
@@ -14,7 +14,7 @@ use crate::controller::findings::Finding;
 use crate::controller::names::{Name, Names};
 use crate::controller::toyo::bulk::{self, Placed, Setting};
 use crate::controller::toyo::field::Value;
-use crate::controller::toyo::program::{MOST_STEPS, check_named};
+use crate::controller::toyo::program::{MOST_STEPS, Program, check_named};
 use crate::controller::toyo::simulator::{Simulator, Start, What};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -76,6 +76,8 @@ struct Input {
 
 /// Longest run if nobody says otherwise.
 const WITHIN: Duration = Duration::from_secs(600);
+/// How long a program is run that is only checked.
+const REHEARSAL: Duration = Duration::from_secs(30);
 /// Less than this between two positions is too much to print.
 const FINEST: Duration = Duration::from_millis(1);
 
@@ -133,6 +135,34 @@ impl OfflineCommand for Run {
             }
             sources.push(source(screen, &names, *task, file)?);
         }
+        let trace = self.trace(sources)?;
+        screen.note(&trace.summary());
+        Ok(trace)
+    }
+}
+
+/// Where a controller that has these points stops a program with an error, if it does so within some seconds.
+pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<Option<Stop>, Failure> {
+    let run = Run {
+        file: PathBuf::new(),
+        task: Vec::new(),
+        points: points.map(|path| (1, path.to_owned())).into_iter().collect(),
+        params: None,
+        state: None,
+        input: Vec::new(),
+        name: Vec::new(),
+        from: 1,
+        within: Some(REHEARSAL),
+        every: None,
+        rows: 0,
+    };
+    let sources = vec![Source { task: 1, file: file.to_owned(), program: program.clone() }];
+    run.trace(sources).map(|trace| trace.stop().cloned())
+}
+
+impl Run {
+    /// Runs the programs.
+    fn trace(&self, sources: Vec<Source>) -> Result<Trace, Failure> {
         let start = self.start(&sources)?;
         let mut simulator = Simulator::new(start);
         simulator.record_trace(true);
@@ -140,13 +170,9 @@ impl OfflineCommand for Run {
             Failure::usage(format!("the program cannot be started: {why}"))
                 .hint("--from names the step; --state sets what the controller needs")
         })?;
-        let trace = self.watch(&mut simulator, Recorder::new(sources, self.rows));
-        screen.note(&trace.summary());
-        Ok(trace)
+        Ok(self.watch(&mut simulator, Recorder::new(sources, self.rows)))
     }
-}
 
-impl Run {
     /// The controller, with the programs in it.
     fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
         let state = match &self.state {

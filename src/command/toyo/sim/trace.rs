@@ -78,6 +78,26 @@ pub struct Trace {
     rows_left_out: usize,
     #[serde(skip)]
     failure: Option<Failure>,
+    #[serde(skip)]
+    stop: Option<Stop>,
+}
+
+impl Trace {
+    /// Where task 1 was when the controller stopped with an error, or everything waited.
+    pub fn stop(&self) -> Option<&Stop> {
+        self.stop.as_ref()
+    }
+}
+
+/// Where a program stopped with an error, or waited for something that never came.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stop {
+    /// The error; `None` if the program waited.
+    pub code: Option<u8>,
+    /// Time of the program until then.
+    pub after_s: f64,
+    /// Line of the file, from 1.
+    pub line: usize,
 }
 
 /// A port of outputs.
@@ -168,10 +188,15 @@ impl Recorder {
     pub fn ended(self, end: End, at: Duration, state: &State) -> Trace {
         let steps: Vec<At> = self.at.iter().filter_map(|(task, step)| self.find(*task, *step)).collect();
         let ports = self.ports.iter().filter(|(_, bits)| **bits != 0);
+        let after_s = at.as_secs_f64();
+        let line = steps.iter().find(|at| at.task == 1).map(|at| at.line);
+        let code = if let End::Error(code) = end { Some(code) } else { None };
+        let stop = line.filter(|_| code.is_some() || end == End::Waits).map(|line| Stop { code, after_s, line });
         Trace {
+            stop,
             end: end.name(),
             alarm: if let End::Error(code) = end { Some(told(code)) } else { None },
-            elapsed_s: at.as_secs_f64(),
+            elapsed_s: after_s,
             position: Coordinates::at(state.position),
             outputs: ports.map(|((station, port), bits)| Port::new(*station, *port, *bits)).collect(),
             failure: end.failure(at, &steps),

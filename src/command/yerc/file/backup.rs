@@ -1,74 +1,23 @@
-//! `yerc file backup`: every file of the controller in a folder, with a list of itself.
+//! `yerc backup`: every file of the controller in a folder, with a manifest.
 
 use std::path::PathBuf;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::manifest::Controller;
-use super::name::{self, Shown, TypeArg, type_word};
-use super::results::{FileResult, Results, Shape};
+use super::name::{self, Shown, type_word};
 use super::transfer;
+use crate::command::Context;
 use crate::command::backup::manifest::{Entry, Hash, Saved};
-use crate::command::backup::options::BackupOptions;
 use crate::command::backup::saving::{Content, Part, Task, cut_off_by_ctrl_c};
 use crate::command::backup::{self, Item, Items, Making, Only};
 use crate::command::frame::local::{LocalNames, Target};
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
-use crate::command::{Command, Context, Report};
 use crate::controller::text::hex;
 use crate::controller::yerc::files::{self, FileType};
 use crate::controller::yerc::query::Query as _;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::output::view::View;
 use crate::settings::Robot;
-
-/// Fetches every file into a folder.
-#[derive(Debug, Args)]
-pub struct Backup {
-    #[command(flatten)]
-    options: BackupOptions,
-    /// Which types, such as jbi,dat [default: all, or those of the backup that goes on]
-    #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true)]
-    types: Vec<TypeArg>,
-}
-
-const SHAPE: Shape = Shape { done: "saved", has_paths: false, has_bytes: true };
-
-impl Backup {
-    /// The types that are asked for, as the list says it; none for all.
-    fn types(&self) -> Vec<String> {
-        let types = TypeArg::chosen(&self.types);
-        let is_all = types.len() == FileType::ALL.len();
-        types.into_iter().filter(|_| !is_all).map(|kind| format!("{TYPE}{}", type_word(kind))).collect()
-    }
-}
-
-/// What was asked for, read back.
-fn asked(scope: &[String]) -> (Vec<FileType>, Only) {
-    let word = |kind: &FileType| scope.iter().any(|word| word.strip_prefix(TYPE) == Some(type_word(*kind)));
-    let types: Vec<FileType> = FileType::ALL.into_iter().filter(word).collect();
-    (if types.is_empty() { FileType::ALL.into() } else { types }, Only::of_scope(scope))
-}
-
-/// Before a type, in the scope of a backup.
-const TYPE: &str = "type ";
-
-impl Command for Backup {
-    type Family = Yerc;
-    type Report = BackedUp;
-    const ID: &'static str = "yerc.file.backup";
-
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<BackedUp, Failure> {
-        let making = self.options.making(self.types());
-        // All types are what nobody needs to say, but not what a backup goes on with.
-        let scope = making.scope.or_else(|| (!self.types.is_empty()).then(Vec::new));
-        Ok(back_up(context, Making { scope, ..making }).await?.into())
-    }
-}
 
 /// Makes a backup.
 pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<backup::BackedUp, Failure> {
@@ -77,7 +26,7 @@ pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<backu
     if link.is_dry() {
         let question = Controller::question()?.request();
         link.plan_next(&question)?;
-        transfer::plan_all(link, transfer::LISTS, asked(&task.scope).0.iter().map(|kind| files::list(*kind)))?;
+        transfer::plan_all(link, transfer::LISTS, FileType::ALL.iter().map(|kind| files::list(*kind)))?;
         link.then("fetches every file that the lists name (service 0x16), and acknowledges each of its blocks");
         return Ok(backup::BackedUp::new(&task.folder, task.scope, false, Items::new(Vec::new())));
     }
@@ -96,12 +45,12 @@ async fn save(
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
 ) -> Result<backup::BackedUp, Failure> {
-    let (types, only) = asked(&task.scope);
+    let only = Only::of_scope(&task.scope);
     let controller = Controller::ask(link).await?;
     let (mut work, mut refused) = (Vec::new(), Vec::new());
     // The file service may be busy with what somebody else broke off.
     let looking = screen.spinner("looking for files");
-    for kind in types {
+    for kind in FileType::ALL {
         match transfer::list(link, kind).await {
             Ok(names) => work.extend(names.into_iter().map(|name| (kind, name))),
             Err(failure) if failure.kind == Kind::Refused => {
@@ -173,42 +122,4 @@ async fn fetch(
     .await?;
     draft.commit()?;
     Ok(Saved { file: String::new(), bytes: hash.bytes, sha256: hash.hex() })
-}
-
-/// What is in the folder now.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct BackedUp {
-    /// The folder.
-    folder: String,
-    /// The list of what is in it.
-    manifest: String,
-    /// Whether nothing is missing.
-    complete: bool,
-    #[serde(flatten)]
-    results: Results,
-}
-
-impl From<backup::BackedUp> for BackedUp {
-    fn from(backup::BackedUp { folder, manifest, complete, items, .. }: backup::BackedUp) -> Self {
-        let result = |Item { name, name_hex, state, bytes, notes, error, .. }| FileResult {
-            name: Shown { name, name_hex },
-            state,
-            path: None,
-            bytes,
-            notes,
-            error,
-        };
-        let results = Results::new(items.files.into_iter().map(result).collect(), SHAPE);
-        Self { folder, manifest, complete, results }
-    }
-}
-
-impl Report for BackedUp {
-    fn view(&self) -> View {
-        View::table(self.results.table())
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        Some(backup::with_hint(self.results.failure()?, "--resume fetches what is missing"))
-    }
 }

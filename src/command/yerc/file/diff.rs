@@ -43,6 +43,10 @@ impl Command for Diff {
     type Report = Difference;
     const ID: &'static str = "yerc.file.diff";
 
+    fn uses_files(&self) -> bool {
+        true
+    }
+
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Difference, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let file = name::typed(link.encoding, &self.name)?;

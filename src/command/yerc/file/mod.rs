@@ -42,10 +42,6 @@ commands! {
         Delete(delete::Delete),
         /// Compare a file on the controller with a local one
         Diff(diff::Diff),
-        /// Save all files to a folder, with sizes and hashes
-        Backup(backup::Backup),
-        /// Restore files of a backup
-        Restore(Restore),
         /// Create the batch backup CMOSBK.BIN on the controller and download it
         Cmos(cmos::Cmos),
     }

@@ -1,63 +1,44 @@
-//! `yerc file restore`: the files of a backup back to the controller.
+//! `yerc restore`: the files of a backup back to the controller.
 
 use std::path::PathBuf;
 
-use clap::Args;
 use serde_json::Value;
 
 use super::content::Content;
 use super::deliver::{self, Delivery, Manner, deliver};
 use super::lists::{Lists, There};
 use super::manifest::{Manifest, controller_file};
-use super::name::{self, Shown, TypeArg};
+use super::name::Shown;
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
+use crate::command::Context;
 use crate::command::backup::manifest;
-use crate::command::backup::manifest::{Entry, MANIFEST, State};
+use crate::command::backup::manifest::{Entry, State};
 use crate::command::backup::{NOT_CHOSEN, Only, Restoring, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::local::own_folder;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
-use crate::command::{Command, Context};
-use crate::controller::Risk;
 use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation};
+use crate::gate::Change;
 use crate::output::Screen;
 
-/// Sends the files of a backup back.
-#[derive(Debug, Args)]
-#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
+/// Which files of a backup go back.
+#[derive(Debug)]
 pub struct Restore {
-    /// Folder of the backup
     folder: PathBuf,
-    /// These files only
-    #[arg(long, value_name = "NAME", num_args = 1..)]
-    only: Vec<String>,
-    /// Which types, such as jbi,dat; parameters and system data only when named
-    #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true)]
-    types: Vec<TypeArg>,
-    /// Read every file back and compare
-    #[arg(long)]
-    verify: bool,
-    /// Compare without the line ///DATE, which controllers rewrite
-    #[arg(long)]
-    ignore_header: bool,
-    /// Replace jobs that the controller does not overwrite by itself
-    #[arg(long)]
-    replace: bool,
-    /// Compare first, and send only what differs
-    #[arg(long)]
-    differing: bool,
-    /// Files whose names fit
-    #[arg(skip)]
+    /// Types of the files.
+    types: Vec<FileType>,
+    /// Files whose names fit.
     patterns: Only,
-    /// Send the backup of one model to another
-    #[arg(long)]
+    /// Send the backup of one model to another.
     force: bool,
 }
+
+/// Jobs that the controller does not overwrite by itself are replaced.
+const MANNER: Manner = Manner { verify: false, ignore_header: false, replace: true };
 
 const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
 
@@ -70,36 +51,18 @@ impl Restore {
     /// Of what is asked for in any family.
     pub fn of(restoring: &Restoring) -> Self {
         let Restoring { folder, only: patterns, machine, force } = restoring.clone();
-        let mut types = vec![TypeArg::Dat, TypeArg::Cnd, TypeArg::Jbi];
-        if patterns != Only::default() {
-            types.push(TypeArg::Lst);
+        let mut types = USUAL.to_vec();
+        if patterns != Only::default() || machine {
+            types.push(FileType::Lst);
         }
         if machine {
-            types.extend([TypeArg::Lst, TypeArg::Prm, TypeArg::Sys]);
+            types.extend([FileType::Sys, FileType::Prm]);
         }
-        Self {
-            folder,
-            only: Vec::new(),
-            types,
-            verify: false,
-            ignore_header: false,
-            replace: true,
-            differing: true,
-            patterns,
-            force,
-        }
+        Self { folder, types, patterns, force }
     }
-}
 
-impl Command for Restore {
-    type Family = Yerc;
-    type Report = Results;
-    const ID: &'static str = "yerc.file.restore";
-    const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite files by those of the backup";
-    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
-
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
+    /// Sends what differs.
+    pub async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
         let Context { link, screen, robot, several, authority } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         manifest::check_origin(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
@@ -110,7 +73,7 @@ impl Command for Restore {
             return Err(Failure::new(Kind::Rejected, message)
                 .hint("check the model (?model=…); --force sends the files all the same"));
         }
-        let chosen = self.chosen(link, &manifest)?;
+        let chosen = self.chosen(&manifest)?;
         let mut deliveries = Vec::with_capacity(chosen.len());
         for (file, entry) in chosen {
             let Some(copy) = &entry.copy else { continue };
@@ -126,15 +89,14 @@ impl Command for Restore {
             results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
         }
         if link.is_dry() {
-            self.plan_items(link, &manifest, &deliveries);
+            Self::plan_items(link, &manifest, &deliveries);
         }
-        let manner = Manner { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
         let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
         let Some(lists) = lists else {
-            self.plan(link, &mut deliveries, manner, &authority).await?;
+            plan(link, &mut deliveries, &authority).await?;
             return Ok(Results::new(results, SHAPE));
         };
-        if self.differing && !self.compare(link, screen, &lists, &mut deliveries, &mut results).await? {
+        if !compare(link, screen, &lists, &mut deliveries, &mut results).await? {
             return Results::new(results, SHAPE).report();
         }
         // What is the same stays, and what could not be compared is not sent.
@@ -144,8 +106,8 @@ impl Command for Restore {
         let mut sent = screen.parts_progress("files sent", open.len());
         for (delivery, result) in &mut open {
             // What nobody knew of is not deleted.
-            let replace = manner.replace && lists.tell(&delivery.file) != There::No;
-            let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, result).await;
+            let replace = lists.tell(&delivery.file) != There::No;
+            let outcome = deliver(link, screen, delivery, Manner { replace, ..MANNER }, result).await;
             if !result.settle(outcome) {
                 break;
             }
@@ -157,39 +119,9 @@ impl Command for Restore {
 }
 
 impl Restore {
-    /// Finds the files that are the same on the controller already; `false` if the work cannot go on.
-    async fn compare(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        lists: &Lists,
-        deliveries: &mut [Delivery],
-        results: &mut [FileResult],
-    ) -> Result<bool, Failure> {
-        for (Delivery { file, content }, result) in deliveries.iter_mut().zip(results) {
-            if lists.tell(file) == There::No {
-                continue;
-            }
-            match transfer::is_same(link, screen, file, content, self.ignore_header).await {
-                Ok(true) => result.state = State::Kept,
-                Ok(false) => {}
-                Err(failure) => {
-                    if !result.settle(Err(failure)) {
-                        return Ok(false);
-                    }
-                }
-            }
-        }
-        Ok(true)
-    }
-
     /// What a dry run says of each file of the backup.
-    fn plan_items(&self, link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
-        let on = match (self.differing, self.replace) {
-            (true, _) => "whether the controller's file differs",
-            (false, true) => "what is there: a file of its name is replaced",
-            (false, false) => "what is there: a file of its name is overwritten",
-        };
+    fn plan_items(link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
+        let on = "whether the controller's file differs";
         for entry in &manifest.files {
             let Some(copy) = &entry.copy else { continue };
             let file = controller_file(entry).ok();
@@ -198,75 +130,67 @@ impl Restore {
             link.plan_item(match (is_sent, is_usual) {
                 (true, _) => would_write(&entry.name, ("bytes", copy.bytes), on),
                 (false, true) => would_leave(&entry.name, NOT_CHOSEN),
-                (false, false) => {
-                    would_leave(&entry.name, "parameters or system data: written with --machine or --type")
-                }
+                (false, false) => would_leave(&entry.name, "parameters or system data: written with --machine"),
             });
         }
     }
 
-    /// What a dry run shows behind the lists.
-    async fn plan(
-        &self,
-        link: &mut Link,
-        deliveries: &mut [Delivery],
-        manner: Manner,
-        authority: &Authority<'_>,
-    ) -> Result<(), Failure> {
-        authority.confirm(&Change::nothing()).await?;
-        let reason = if self.differing {
-            for Delivery { file, .. } in &*deliveries {
-                let reason =
-                    Reason::about("if the list has it: compares").depending_on("whether the list has the file");
-                link.plan_download(&file.save(), reason)?;
-            }
-            Reason::about("if it differs").depending_on("whether the file differs")
-        } else {
-            Reason::default()
-        };
-        for delivery in deliveries {
-            deliver::plan(link, delivery, manner, reason)?;
-        }
-        Ok(())
-    }
-
     /// The files to send, in the order of sending.
-    fn chosen<'a>(&self, link: &Link, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
-        let only = name::all_typed(link.encoding, &self.only)?;
-        let types = match &self.types[..] {
-            // A file that is named is meant, whatever its type; parameters and system data need their type as well.
-            [] if only.is_empty() => USUAL.to_vec(),
-            [] => [&USUAL[..], &[FileType::Lst]].concat(),
-            types => TypeArg::chosen(types),
-        };
-        for file in &only {
-            let shown = link.encoding.decode(file.as_bytes());
-            if manifest.entry_of(file.as_bytes()).and_then(|entry| entry.copy.as_ref()).is_none() {
-                return Err(Failure::usage(format!("the backup has no {shown}")).hint(format!("{MANIFEST} lists it")));
-            }
-            let kind = file.file_type();
-            if !kind.is_some_and(|kind| types.contains(&kind)) {
-                let kind = kind.map_or("of another extension", name::type_word);
-                return Err(Failure::usage(format!("{shown} is of type {kind}, which is not asked for"))
-                    .hint(format!("add --type {kind}; parameters and system data change the controller itself")));
-            }
-        }
+    fn chosen<'a>(&self, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
         let copied = || manifest.files.iter().filter(|entry| entry.copy.is_some());
         self.patterns.check(&copied().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
         let mut chosen = Vec::new();
         for entry in copied().filter(|entry| self.patterns.has(&entry.name)) {
             let file = controller_file(entry)?;
-            if file.file_type().is_some_and(|kind| types.contains(&kind)) && (only.is_empty() || only.contains(&file)) {
+            if file.file_type().is_some_and(|kind| self.types.contains(&kind)) {
                 chosen.push((file, entry));
             }
         }
         if chosen.is_empty() {
             let message = "what there is to restore are lists, parameters or system data, which change the controller";
-            return Err(Failure::usage(message)
-                .hint("add --machine if that is meant; `yerc file restore` has --type, as in --type lst"));
+            return Err(Failure::usage(message).hint("add --machine if that is meant"));
         }
         let place = |file: &FileName| ORDER.iter().position(|kind| Some(*kind) == file.file_type());
         chosen.sort_by_key(|(file, _)| place(file));
         Ok(chosen)
     }
+}
+
+/// Finds the files that are the same on the controller already; `false` if the work cannot go on.
+async fn compare(
+    link: &mut Link,
+    screen: &Screen,
+    lists: &Lists,
+    deliveries: &mut [Delivery],
+    results: &mut [FileResult],
+) -> Result<bool, Failure> {
+    for (Delivery { file, content }, result) in deliveries.iter_mut().zip(results) {
+        if lists.tell(file) == There::No {
+            continue;
+        }
+        match transfer::is_same(link, screen, file, content, MANNER.ignore_header).await {
+            Ok(true) => result.state = State::Kept,
+            Ok(false) => {}
+            Err(failure) => {
+                if !result.settle(Err(failure)) {
+                    return Ok(false);
+                }
+            }
+        }
+    }
+    Ok(true)
+}
+
+/// What a dry run shows behind the lists.
+async fn plan(link: &mut Link, deliveries: &mut [Delivery], authority: &Authority<'_>) -> Result<(), Failure> {
+    authority.confirm(&Change::nothing()).await?;
+    for Delivery { file, .. } in &*deliveries {
+        let reason = Reason::about("if the list has it: compares").depending_on("whether the list has the file");
+        link.plan_download(&file.save(), reason)?;
+    }
+    let reason = Reason::about("if it differs").depending_on("whether the file differs");
+    for delivery in deliveries {
+        deliver::plan(link, delivery, MANNER, reason)?;
+    }
+    Ok(())
 }

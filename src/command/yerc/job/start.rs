@@ -8,9 +8,10 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::{Select, about, without_suffix};
-use crate::command::frame::cycle::{Cycle, Repeat, Runs};
+use crate::command::frame::cycle::{Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::ending::ProgramEnd;
+use crate::command::robot::program::{Program, ProgramState};
 use crate::command::yerc::chosen::Chosen;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::{Link, Yerc};
@@ -23,7 +24,7 @@ use crate::controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob,
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation, outdated};
 use crate::output::Screen;
-use crate::output::view::{Cell, Section, Tone, View};
+use crate::output::view::{Section, View};
 use crate::settings::duration;
 
 /// Starts the selected job, or selects a job and starts it (FS and DX 3.3.23, 3.3.24).
@@ -101,7 +102,10 @@ impl Command for Start {
             }
             link.is_for("starts it").ask(&StartJob).await.map_err(early)?;
             let Some(limit) = limit else {
-                return Ok(Started { accepted: true, job, ..Started::default() });
+                return Ok(Started {
+                    accepted: true,
+                    program: Program { program: job, state: Some(ProgramState::Running), ..Program::default() },
+                });
             };
             if link.is_dry() {
                 return Err(self.plan(link).await?);
@@ -112,7 +116,10 @@ impl Command for Start {
             line = at;
         }
         let elapsed_ms = runs.last_ms();
-        Ok(Started { accepted: true, job, ended: Some(true), line, elapsed_ms, cycle: runs.cycle() })
+        let state = Some(ProgramState::Ended);
+        let (line, cycle) = (line.map(i64::from), runs.cycle());
+        let program = Program { program: job, line, state, elapsed_ms, cycle, ..Program::default() };
+        Ok(Started { accepted: true, program })
     }
 }
 
@@ -294,39 +301,17 @@ impl Watch {
 }
 
 /// Result of a start.
-#[derive(Debug, Default, Serialize, JsonSchema)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct Started {
     /// The controller took the order.
     accepted: bool,
-    /// Its name, as the controller told it before; null if it did not.
-    job: Option<String>,
-    /// Whether it has ended; null if nobody waited.
-    ended: Option<bool>,
-    /// The line it ended at, 0 being its head, to which END leads; null if nobody waited, or if it was not told.
-    line: Option<u32>,
-    /// From the acceptance to the end, of the last run if there were several; null if nobody waited.
-    elapsed_ms: Option<u64>,
+    /// The job. Its line is where it ended, 0 being its head, to which END leads.
     #[serde(flatten)]
-    cycle: Cycle,
+    program: Program,
 }
 
 impl Report for Started {
     fn view(&self) -> View {
-        match self.elapsed_ms {
-            None => View::fields([
-                ("job", Cell::maybe(self.job.as_deref())),
-                ("state", Cell::from("started").tone(Tone::Good)),
-            ]),
-            Some(ms) => {
-                let mut fields = vec![
-                    ("job", Cell::maybe(self.job.as_deref())),
-                    ("state", Cell::from("ended").tone(Tone::Good)),
-                    ("line", Cell::maybe(self.line)),
-                    ("elapsed (ms)", ms.into()),
-                ];
-                fields.extend(self.cycle.rows());
-                View { sections: vec![Section::Fields(fields)] }
-            }
-        }
+        View { sections: vec![Section::Fields(self.program.fields(Vec::new()))] }
     }
 }

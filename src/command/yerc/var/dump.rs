@@ -10,15 +10,14 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::entry::{Entry, is_undefined};
-use super::get::Named;
 use super::read::{once, read_all};
-use super::{in_form, listed, parse_kind, sheet};
+use super::{Choice, in_form, listed, sheet};
 use crate::command::frame::local::{Draft, Target};
 use crate::command::frame::sheet::{SheetManner, SheetTarget};
 use crate::command::frame::text_files;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
-use crate::controller::yerc::variables::{Reference, VariableKind};
+use crate::controller::yerc::variables::Reference;
 use crate::failure::Failure;
 use crate::output::escape;
 use crate::output::view::View;
@@ -41,12 +40,8 @@ pub const VERSION: u64 = 1;
 pub struct Dump {
     /// A new file, NAME.json or NAME.csv; - for stdout
     file: PathBuf,
-    /// Only these kinds: B,I,D,R,S,P,BP,EX
-    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = parse_kind, conflicts_with = "ranges")]
-    kinds: Vec<VariableKind>,
-    /// Exactly these, such as B0..B199,P0..P9, instead of all standard numbers
-    #[arg(long, value_name = "REF", value_delimiter = ',', value_parser = Named::parse)]
-    ranges: Vec<Named>,
+    #[command(flatten)]
+    choice: Choice,
     #[command(flatten)]
     manner: SheetManner,
     /// The robot whose variables went into the file, so that a second robot does not replace them.
@@ -62,7 +57,7 @@ impl Command for Dump {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, .. } = context;
         let model = link.model().await?;
-        let references = once(self.references().map(|reference| in_form(reference, model, false)));
+        let references = once(self.choice.references().map(|reference| in_form(reference, model, false)));
         let mut place = self.place(&robot.name, link.is_dry())?;
         let progress = screen.spinner("reading");
         let answers = read_all(link, &references, |wanted, known| {
@@ -77,7 +72,9 @@ impl Command for Dump {
             let failure = Failure::from(denied.clone());
             let message =
                 format!("{}: {}; no dump was written", listed(missing), failure.message.trim_end_matches('.'));
-            return Err(Failure { message, ..failure }.hint("--kinds or --ranges leaves them out"));
+            return Err(
+                Failure { message, ..failure }.hint("name the variables without them, or their kinds with --kinds")
+            );
         }
         let variables: Vec<Entry> = references
             .iter()
@@ -124,16 +121,6 @@ enum Place {
 }
 
 impl Dump {
-    /// What was asked for, or all standard numbers of the kinds.
-    fn references(&self) -> impl Iterator<Item = Reference> {
-        let kinds = VariableKind::all().filter(|kind| {
-            *kind != VariableKind::S16 && self.ranges.is_empty() && (self.kinds.is_empty() || self.kinds.contains(kind))
-        });
-        let standard =
-            kinds.flat_map(|kind| (0..=kind.last_standard()).map(move |number| Reference::new(kind, number)));
-        self.ranges.iter().flat_map(|named| named.0.clone()).chain(standard)
-    }
-
     /// The file beside the one to be written, made before the controller is asked: what cannot be written is known
     /// at once.
     fn place(&self, robot: &str, dry: bool) -> Result<Place, Failure> {

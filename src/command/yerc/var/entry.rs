@@ -174,6 +174,17 @@ impl Entry {
         matches!(self.value, Some(Data::Integer(_) | Data::Real(_)))
     }
 
+    /// Whether it holds nothing that anybody wrote: 0, no text, a position that was never taught.
+    pub fn is_blank(&self) -> bool {
+        match &self.value {
+            Some(Data::Integer(number)) => *number == 0,
+            Some(Data::Real(number)) => *number == 0.0,
+            Some(Data::Text(text)) => text.is_empty(),
+            Some(Data::Position(_)) => false,
+            None => self.error.is_none(),
+        }
+    }
+
     /// Whether it has a value.
     pub fn has_value(&self) -> bool {
         self.value.is_some()

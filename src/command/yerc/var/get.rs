@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::entry::Entry;
 use super::read::{once, read_all};
-use super::{in_form, model_of};
+use super::{Choice, in_form, model_of};
 use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::frame::{items, names};
 use crate::command::yerc::complete;
@@ -65,6 +65,44 @@ impl Command for Get {
         let report = Variables { items: entries.collect() };
         items::nothing(report.items.len(), report.items.iter().filter_map(Entry::error))?;
         Ok(report)
+    }
+}
+
+/// Reads variables, and shows those that hold something.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Numbers that are not 0, texts that are not empty, and positions that were taught. 884 variables take \
+                        a few seconds."
+)]
+pub struct List {
+    #[command(flatten)]
+    choice: Choice,
+    /// Those that hold nothing, too
+    #[arg(long)]
+    empty: bool,
+}
+
+impl Command for List {
+    type Family = Yerc;
+    type Report = Variables;
+    const ID: &'static str = "yerc.var.list";
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Variables, Failure> {
+        let Context { link, robot, screen, .. } = context;
+        let names = names::of(robot, screen);
+        let model = link.model().await?;
+        let references = once(self.choice.references().map(|reference| in_form(reference, model, false)));
+        let progress = screen.spinner("reading variables");
+        let answers = read_all(link, &references, |_, known| {
+            progress.say(&format!("reading variables ({known} of {})", references.len()));
+        })
+        .await?;
+        drop(progress);
+        let entries = references.iter().filter_map(|reference| {
+            let entry = Entry::new(*reference, answers.get(reference)?, link.encoding);
+            (self.empty || !entry.is_blank()).then(|| entry.labelled(names))
+        });
+        Ok(Variables { items: entries.collect() })
     }
 }
 

@@ -34,12 +34,39 @@ commands! {
         Get(get::Get),
         /// Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…
         Set(set::Set),
+        /// List the variables that hold something
+        List(get::List),
         /// Print each change of variables
         Watch(Watch<get::Get>),
         /// Save variables to a JSON or CSV file
         Dump(dump::Dump),
         /// Write variables from a dump
         Restore(restore::Restore),
+    }
+}
+
+/// Which variables: some, or all standard numbers of some kinds.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Choice {
+    /// Such as B0..B199,P0..P9, or names; all standard numbers unless given
+    #[arg(value_name = "REF", value_delimiter = ',', value_parser = get::Named::parse)]
+    variables: Vec<get::Named>,
+    /// Only these kinds: B,I,D,R,S,P,BP,EX
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = parse_kind, conflicts_with = "variables")]
+    kinds: Vec<VariableKind>,
+}
+
+impl Choice {
+    /// The variables, in their order.
+    fn references(&self) -> impl Iterator<Item = Reference> {
+        let is_chosen = |kind: &VariableKind| {
+            *kind != VariableKind::S16
+                && self.variables.is_empty()
+                && (self.kinds.is_empty() || self.kinds.contains(kind))
+        };
+        let numbers = |kind: VariableKind| (0..=kind.last_standard()).map(move |number| Reference::new(kind, number));
+        let standard = VariableKind::all().filter(is_chosen).flat_map(numbers);
+        self.variables.iter().flat_map(|named| named.0.clone()).chain(standard)
     }
 }
 

@@ -58,11 +58,11 @@ pub struct PositionData {
 struct Arm {
     tool: u32,
     user: u32,
-    /// The form in words.
-    form: Vec<&'static str>,
+    /// The form in words: `back+upper+noflip`.
+    form: String,
     form_code: u32,
     /// The extended form in words.
-    extended_form: Vec<&'static str>,
+    extended_form: String,
     extended_form_code: u32,
 }
 
@@ -85,9 +85,9 @@ impl PositionData {
             Value::Position(position) => Some(Arm {
                 tool: position.tool,
                 user: position.user,
-                form: position.form.words().collect(),
+                form: position.form.words().collect::<Vec<_>>().join("+"),
                 form_code: position.form.0,
-                extended_form: position.extended.words().collect(),
+                extended_form: position.extended.words().collect::<Vec<_>>().join("+"),
                 extended_form_code: position.extended.0,
             }),
             _ => None,
@@ -169,7 +169,7 @@ fn words_agree(
     is_default: bool,
 ) -> Result<(), String> {
     match (object.get(words), object.contains_key(code)) {
-        (Some(found), _) if *found == json!(expected) => Ok(()),
+        (Some(found), _) if *found == json!(expected.join("+")) => Ok(()),
         (Some(_), true) => Err(format!(": {words} and {code} say different things; remove {words} to use {code}")),
         (Some(_), false) => Err(format!(": {code} is missing; it holds the number that {words} explains")),
         (None, true) => Ok(()),

@@ -57,6 +57,7 @@ pub struct Origins {
 #[derive(Debug, Serialize, JsonSchema)]
 struct AxisOrigin {
     /// 1 to 4.
+    #[serde(rename = "axis_number")]
     axis: usize,
     /// `complete`, `incomplete`, or `not applicable` to this axis.
     state: String,

@@ -26,6 +26,7 @@ pub struct Servos {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct AxisServo {
     /// 1 to 4.
+    #[serde(rename = "axis_number")]
     pub axis: usize,
     /// `servo` (on), `brake` (off), `free` (off, brake released).
     pub state: String,

@@ -58,6 +58,7 @@ pub struct Torques {
 #[derive(Debug, Serialize, JsonSchema)]
 struct AxisTorque {
     /// 1 to 4.
+    #[serde(rename = "axis_number")]
     axis: u8,
     /// 0 also for an axis that is not there.
     torque_percent: i32,
@@ -88,7 +89,7 @@ mod tests {
         let max = ["info", "torque", "--axes", "3"];
         assert_eq!(words(&max).unwrap(), [example("4.7.12-reference")]);
         let read = read_example("4.7.12-reference", &max);
-        assert_eq!(read, json!({"of": "max", "axes": [{"axis": 3, "torque_percent": 20}]}));
+        assert_eq!(read, json!({"of": "max", "axes": [{"axis_number": 3, "torque_percent": 20}]}));
         let rated = ["info", "torque", "--of", "rated", "--axes", "3"];
         assert_eq!(words(&rated).unwrap(), [example("4.7.18-reference")]);
         assert_eq!(read_example("4.7.18-reference", &rated)["axes"][0]["torque_percent"], 100);
@@ -100,7 +101,7 @@ mod tests {
         (end[0], end[2]) = (0x0200, 0xFFEC);
         let (read, peer) = run_on(Scripted::new([Reply::Ends(1, end)]), &["info", "torque"]);
         let read = read.unwrap();
-        assert_eq!((&read["axes"][0]["torque_percent"], &read["axes"][3]["axis"]), (&json!(-20), &json!(4)));
+        assert_eq!((&read["axes"][0]["torque_percent"], &read["axes"][3]["axis_number"]), (&json!(-20), &json!(4)));
         assert_eq!(peer.taken[0][2], 0);
         assert!(objection(&["info", "torque", "--axes", "5"]).contains("1..=4"));
     }

@@ -30,7 +30,7 @@ impl Command for Diag {
             station: board.settings().station,
             ident: format!("{:#06x}", diagnosis.ident),
             master: diagnosis.master,
-            state: diagnosis.words().collect(),
+            states: diagnosis.words().collect(),
             blocks: diagnosis.blocks.iter().map(ToString::to_string).collect(),
         })
     }
@@ -46,7 +46,7 @@ pub struct Diagnosed {
     /// The master that it belongs to; null where it has none.
     master: Option<u8>,
     /// What the flags of the standard say, those that are set.
-    state: Vec<&'static str>,
+    states: Vec<&'static str>,
     /// What it says beyond that, a block each, in its order.
     blocks: Vec<String>,
 }
@@ -57,7 +57,7 @@ impl Report for Diagnosed {
             ("station", self.station.into()),
             ("ident", self.ident.as_str().into()),
             ("master", Cell::maybe(self.master)),
-            ("state", Cell::maybe((!self.state.is_empty()).then(|| self.state.join(", ")))),
+            ("state", Cell::maybe((!self.states.is_empty()).then(|| self.states.join(", ")))),
         ];
         fields.extend(self.blocks.iter().map(|block| ("block", block.as_str().into())));
         View::default().and(Section::Fields(fields))

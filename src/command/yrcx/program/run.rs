@@ -11,14 +11,14 @@ use super::WhichOrAll;
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::ending::ProgramEnd;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::robot::program::{Program, ProgramState};
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Section, Tone, View};
+use crate::output::view::{Section, View};
 use crate::settings::duration;
 
 /// Runs a program, or all that are registered. The controller answers as soon as it has accepted that.
@@ -56,8 +56,13 @@ impl Command for Run {
         let Context { link, screen, .. } = context;
         let order = self.which.put(link.draft(table::Command::ProgramRun)?).build()?;
         let what = self.which.describe();
-        let done = New::of("program_state", "running", format!("started {what}"));
-        let done = self.which.named(done).replaces(Old::UNREAD);
+        let report = |state: ProgramState, elapsed_ms: Option<u64>, cycle: Cycle| {
+            let program = self.which.program().or_else(|| self.which.name()).cloned();
+            let task = self.which.task.as_ref().and_then(|task| task.parse().ok());
+            let more = Started { task, all_programs: self.which.all_programs, words: what.clone() };
+            let program = Program { program, state: Some(state), elapsed_ms, cycle, more, ..Program::default() };
+            Ran { accepted: true, program }
+        };
         let limit = self.end.limit().or(self.repeat.repeat.map(|_| None));
         let mut runs = Runs::new(self.repeat);
         for _ in 0..self.repeat.count() {
@@ -65,7 +70,7 @@ impl Command for Run {
             link.ask(&order).await.map_err(early)?;
             let began = Instant::now();
             let Some(limit) = limit else {
-                return Ok(Ran { done, ended: None, elapsed_ms: None, cycle: Cycle::default() });
+                return Ok(report(ProgramState::Running, None, Cycle::default()));
             };
             if link.is_dry() {
                 return Err(self.plan(link));
@@ -81,7 +86,7 @@ impl Command for Run {
                 return Err(early(not_seen(&what)));
             }
         }
-        Ok(Ran { done, ended: Some(true), elapsed_ms: runs.last_ms(), cycle: runs.cycle() })
+        Ok(report(ProgramState::Ended, runs.last_ms(), runs.cycle()))
     }
 }
 
@@ -146,29 +151,29 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
 /// A program that was started.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Ran {
+    /// The controller took the order.
+    accepted: bool,
     #[serde(flatten)]
-    done: Done,
-    /// Whether it has ended; null if nobody waited.
-    ended: Option<bool>,
-    /// From the acceptance to the end, of the last run if there were several; null if nobody waited, or if it was over
-    /// before it was seen.
-    elapsed_ms: Option<u64>,
-    #[serde(flatten)]
-    cycle: Cycle,
+    program: Program<Started>,
+}
+
+/// What was started.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+struct Started {
+    /// The task by which it was named.
+    task: Option<i64>,
+    /// All registered programs.
+    all_programs: bool,
+    /// In words.
+    #[serde(skip)]
+    words: String,
 }
 
 impl Report for Ran {
     fn view(&self) -> View {
-        if self.ended.is_none() {
-            return self.done.view();
+        if self.program.state == Some(ProgramState::Running) {
+            return View::text(format!("started {}", self.program.more.words));
         }
-        let state = Cell::from("ended").tone(Tone::Good);
-        let mut fields = vec![
-            ("program", self.done.words().into()),
-            ("state", state),
-            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
-        ];
-        fields.extend(self.cycle.rows());
-        View { sections: vec![Section::Fields(fields)] }
+        View { sections: vec![Section::Fields(self.program.fields(Vec::new()))] }
     }
 }

@@ -79,6 +79,10 @@ pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findin
     if let Some(draft) = read_short(row, cursor, known, at, findings) {
         return Some(draft);
     }
+    if let Some((message, hint)) = unknown_short(row, cursor.rest(), known) {
+        findings.error(cursor.place(), message, Some(hint));
+        return None;
+    }
     let mut draft = Draft { instruction: row, values: Vec::new(), tags: Vec::new(), at };
     let mut keys = row.layout.text[row.word.len()..].split("{}");
     let form = || Some(format!("write {}", row.form()));
@@ -167,6 +171,13 @@ fn read_short(
     Some(Draft { instruction: row, values, tags: Vec::new(), at })
 }
 
+/// Message and hint for `MOVP pikc`, a short form with an unknown name.
+fn unknown_short(row: &Instruction, text: &str, known: &Names) -> Option<(String, String)> {
+    let point = row.layout.fields.iter().find(|field| field.name == "point")?;
+    let is_first = row.layout.fields.first()?.read(text).is_ok();
+    (is_label(text) && !is_first).then(|| unknown_name(point, text, known)).flatten()
+}
+
 /// Number of a named point, counter or timer; `None` if the field does not have this name.
 fn by_name(field: &Field, text: &str, known: &Names) -> Result<Option<i32>, String> {
     let Some((kind, _)) = names::of_field(field.name) else { return Ok(None) };
@@ -185,15 +196,19 @@ fn named_value(field: &Field, text: &str, known: &Names) -> Result<Value, (Strin
     if let Some(number) = by_name(field, text, known).map_err(|message| (message, None))? {
         return Ok(Value::Number(number));
     }
-    value(field, text).map_err(|error| match names::of_field(field.name).filter(|_| is_label(text)) {
-        Some((kind, prefix)) => {
-            let alike = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
-            let hint = nearest(text, alike).map(|near| format!("did you mean {near}?"));
-            let hint = hint.unwrap_or_else(|| format!("define names in robots.toml: {} = \"{prefix}1\"", shown(text)));
-            (format!("no {} has the name '{}'", kind.word(), shown(text)), Some(hint))
-        }
+    value(field, text).map_err(|error| match unknown_name(field, text, known) {
+        Some((message, hint)) => (message, Some(hint)),
         None => (error.to_string(), None),
     })
+}
+
+/// What is wrong with a text that looks like a name and is none, and a hint; `None` where no name may stand.
+fn unknown_name(field: &Field, text: &str, known: &Names) -> Option<(String, String)> {
+    let (kind, prefix) = names::of_field(field.name).filter(|_| is_label(text))?;
+    let alike = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
+    let hint = nearest(text, alike).map(|near| format!("did you mean {near}?"));
+    let hint = hint.unwrap_or_else(|| format!("define names in robots.toml: {} = \"{prefix}1\"", shown(text)));
+    Some((format!("no {} has the name '{}'", kind.word(), shown(text)), hint))
 }
 
 fn value(field: &Field, text: &str) -> Result<Value, FieldError> {

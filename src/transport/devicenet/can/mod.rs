@@ -250,6 +250,12 @@ pub enum PortError {
         /// Reason, as text.
         why: String,
     },
+    /// The adapter sends nothing.
+    #[error("{path}: no answer from the adapter")]
+    Mute {
+        /// Path of the adapter.
+        path: String,
+    },
     /// The adapter was disconnected.
     #[error("{path} was disconnected: {why}")]
     Gone {

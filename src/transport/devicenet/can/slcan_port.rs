@@ -39,6 +39,8 @@ pub struct SlcanPort {
     flags_due: Option<Instant>,
     /// Start of the current window, and the bytes received in it.
     received: (Instant, usize),
+    /// Whether anything came since it was set up anew.
+    hears: bool,
 }
 
 impl SlcanPort {
@@ -52,6 +54,7 @@ impl SlcanPort {
             health: Health::default(),
             flags_due: None,
             received: (Instant::now(), 0),
+            hears: false,
         };
         // Ends a line that an earlier use left unfinished.
         port.write(b"\r\r\r")?;
@@ -63,6 +66,7 @@ impl SlcanPort {
                 return Err(PortError::Flooded { path: port.path.clone() });
             }
         }
+        port.hears = false;
         let about = port.ask(b"V\r", |said| matches!(said, Said::About(_))).await?;
         let rate = port.ask(bitrate_command(bitrate), |said| *said == Said::Done).await?;
         if rate == Some(Said::No) {
@@ -75,7 +79,10 @@ impl SlcanPort {
                 let what = if listens { "listen only" } else { "go on the bus" };
                 return Err(port.wrong(&format!("the adapter refuses to {what}")));
             }
-            (None, None, None) => return Err(port.wrong("no answer of an SLCAN adapter")),
+            (None, None, None) if port.hears => {
+                return Err(port.wrong("its answers are not those of an SLCAN adapter"));
+            }
+            (None, None, None) => return Err(PortError::Mute { path: port.path.clone() }),
             _ => {}
         }
         if let Some(Said::Flags(flags)) = port.ask(b"F\r", |said| matches!(said, Said::Flags(_))).await? {
@@ -135,6 +142,7 @@ impl SlcanPort {
             self.received = (Instant::now(), 0);
         }
         self.received.1 += bytes.len();
+        self.hears |= !bytes.is_empty();
         if self.received.1 > MOST_RECEIVED {
             return Err(PortError::Flooded { path: self.path.clone() });
         }

@@ -140,8 +140,32 @@ async fn what_is_no_adapter_is_told() {
         drop(accepted);
     };
     tokio::select! {
-        error = open(place(port)) => assert!(error.to_string().contains("SLCAN"), "{error}"),
+        error = open(place(port)) => assert!(matches!(error, Error::Port(PortError::Mute { .. })), "{error}"),
         () = silent => {}
+    }
+}
+
+/// What answers no command, but sends a byte now and then, however slowly.
+#[tokio::test]
+async fn what_sends_something_else_is_no_adapter() {
+    for text in ["t4058AABBCCDDEEFF0011\r", "x", "z\r\x07"] {
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let place = Place::Tcp { host: "127.0.0.1".to_owned(), port: listener.local_addr().unwrap().port() };
+        let sends = async {
+            let (mut stream, _) = listener.accept().await.unwrap();
+            for byte in text.bytes().cycle() {
+                if stream.write_all(&[byte]).await.is_err() {
+                    break;
+                }
+                tokio::time::sleep(std::time::Duration::from_millis(90)).await;
+            }
+        };
+        let error = tokio::select! {
+            error = async { Network::open(&adapter(place, 1), Tap::default()).await.map(|_| ()).unwrap_err() } => error,
+            () = sends => unreachable!("it goes on"),
+        };
+        let code = crate::image::LinkError::from(error.clone());
+        assert!(matches!(code, crate::image::LinkError::Malformed(_)), "{text:?}: {error}");
     }
 }
 

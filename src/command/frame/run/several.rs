@@ -1,0 +1,127 @@
+//! A command for several robots: at a time, over a connection each.
+
+use std::time::{Duration, Instant};
+
+use super::print::{ReportPosition, enveloped_all, named, timed};
+use super::rounds::Rounds;
+use super::silences::Said;
+use super::{EVERY, Granted, Run, RunError, at_a_time};
+use crate::command::frame::{AnyCommand, Outcome};
+use crate::failure::{Failure, Kind};
+use crate::output::envelope::Envelope;
+use crate::settings::Robot;
+
+/// How often a watch tries to reach a robot that was not there.
+const RECONNECT_EVERY: Duration = Duration::from_secs(2);
+
+impl Run {
+    /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
+    pub(super) async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
+        if command.is_endless() && !self.gate.dry_run {
+            return self.watch_each(command, robots).await;
+        }
+        if self.gate.dry_run || !self.repeat.is_wanted() {
+            let outcomes = self.gather(command, robots).await;
+            let place = (ReportPosition::First, &mut Said::nothing(self, robots));
+            let printed = self.print_many(command, robots, &outcomes, place);
+            let printed = printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+            self.verdict(&outcomes)?;
+            return Ok(self.check(&printed)?);
+        }
+        let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;
+        let verdict = self.many_over(command, robots, &mut links).await;
+        let mut closed = Ok(());
+        for (link, _) in links.into_iter().flatten() {
+            closed = closed.and(link.close(&self.screen).await);
+        }
+        verdict?;
+        Ok(closed?)
+    }
+
+    async fn many_over(
+        &self,
+        command: &dyn AnyCommand,
+        robots: &[Robot],
+        links: &mut [Result<Granted, Failure>],
+    ) -> Result<(), RunError> {
+        let mut rounds = Rounds::new(&self.repeat, EVERY);
+        let mut said = Said::nothing(self, robots);
+        let mut reconnect_at = Instant::now() + RECONNECT_EVERY;
+        loop {
+            let reconnects = Instant::now() >= reconnect_at;
+            if reconnects {
+                reconnect_at = Instant::now() + RECONNECT_EVERY;
+            }
+            let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
+                // What could not be reached may be there by now.
+                if matches!(link, Err(failure) if failure.kind == Kind::NoAnswer && reconnects) {
+                    *link = self.connect(command, robot).await;
+                }
+                match link {
+                    Ok((link, grant)) => self.attempt(command, robot, &mut **link, grant).await,
+                    Err(failure) => Err(failure.clone()),
+                }
+            });
+            let outcomes = at_a_time(attempts).await;
+            let place = self.round(rounds.is_first(), false);
+            let is_met = if self.repeat.is_quiet {
+                rounds.is_met(&enveloped_all(robots, command.id(), &outcomes)?, &self.screen)?
+            } else {
+                let envelopes = self.print_many(command, robots, &outcomes, (place, &mut said))?;
+                rounds.is_met(&envelopes, &self.screen)?
+            };
+            let goes_on = !is_met && rounds.next().await?;
+            if self.repeat.is_quiet && !goes_on {
+                self.print_many(command, robots, &outcomes, (ReportPosition::First, &mut said))?;
+            }
+            if is_met {
+                return Ok(());
+            }
+            if !goes_on {
+                self.verdict(&outcomes)?;
+                return rounds.end().map_err(RunError::from);
+            }
+        }
+    }
+
+    /// What the outcomes of several robots come to.
+    fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
+        let failures: Vec<Failure> = outcomes
+            .iter()
+            .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |r| r.failure()))
+            .collect();
+        self.failed(&failures, outcomes.len())
+    }
+
+    /// What these failures, told already, come to among so many robots.
+    fn failed(&self, failures: &[Failure], robots: usize) -> Result<(), RunError> {
+        let Some(first) = failures.first() else { return Ok(()) };
+        let failure = if failures.len() == robots && failures.iter().all(|failure| failure.kind == first.kind) {
+            Failure::new(first.kind, "all robots failed")
+        } else {
+            Failure::new(Kind::Mixed, format!("{} of {robots} robots failed", failures.len()))
+        };
+        Err(RunError { failure, envelope: None, told: !self.is_for_people() })
+    }
+
+    /// Watches several robots side by side, each over its own connection, until all watches have ended.
+    async fn watch_each(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
+        let watches = robots.iter().map(|robot| async move {
+            let watched = self.watch(command, robot, Some(ReportPosition::LineOf(robot))).await;
+            let Err(stopped) = watched else { return Ok(()) };
+            if stopped.failure.kind != Kind::Interrupted && !stopped.told {
+                if self.is_for_people() {
+                    self.screen.failure(&named(robot, stopped.failure.clone()));
+                } else {
+                    self.emit(timed(Envelope::of(robot, command.id(), Err(stopped.failure.clone()))))?;
+                }
+            }
+            Err(stopped.failure)
+        });
+        let failures: Vec<Failure> = at_a_time(watches).await.into_iter().filter_map(Result::err).collect();
+        if let Some(interrupted) = failures.iter().find(|failure| failure.kind == Kind::Interrupted) {
+            return Err(interrupted.clone().into());
+        }
+        self.failed(&failures, robots.len())
+    }
+}

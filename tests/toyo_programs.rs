@@ -1,0 +1,186 @@
+//! Programs of a Toyo controller through the binary, against a served simulator: names in their text, sources that are
+//! kept, and how little a put reads.
+
+use std::collections::BTreeMap;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::simulator::Simulator;
+
+const NAMED: &str = "# pick and place\nSPD V=5            # slow\nnext: MOVP pick\nTIMP dwell=1.5\n\
+                     JMPC TAG=next parts>=5\nEND\n";
+
+/// A controller, and a user who knows it as `cell`, with names.
+struct Desk {
+    folder: TempDir,
+    _controller: Simulator,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let (folder, controller) = (tempfile::tempdir().unwrap(), Simulator::start("toyo"));
+        let url = &controller.url;
+        let inventory = format!(
+            "[[robot]]\nname = \"cell\"\nfamily = \"toyo\"\ntarget = \"{url}\"\n\n\
+             [robot.names]\npick = \"PT12\"\ndwell = \"TN2\"\nparts = \"CN3\"\n"
+        );
+        std::fs::write(folder.path().join("robots.toml"), inventory).unwrap();
+        Self { folder, _controller: controller }
+    }
+
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        let inventory = self.folder.path().join("robots.toml");
+        command.env_clear().env("HOME", self.folder.path()).env("ARMCTL_CONFIG", inventory);
+        command.args(["-r", "cell", "--yes", "toyo", "program"]).args(words);
+        command.stdin(Stdio::null()).current_dir(self.folder.path());
+        command
+    }
+
+    #[track_caller]
+    fn run(&self, words: &[&str]) -> Output {
+        let output = self.command(words).output().unwrap();
+        assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+        output
+    }
+
+    #[track_caller]
+    fn text(&self, words: &[&str]) -> String {
+        String::from_utf8(self.run(words).stdout).unwrap()
+    }
+
+    #[track_caller]
+    fn put(&self, text: &str, words: &[&str]) -> Put {
+        std::fs::write(self.folder.path().join("program.toyo"), text).unwrap();
+        let output = self.run(&[&["put", "program.toyo", "-vv", "--json"], words].concat());
+        let envelope: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let blocks = String::from_utf8(output.stderr).unwrap();
+        Put { data: envelope["data"].clone(), blocks }
+    }
+
+    /// Somebody at the pendant writes steps, of which this user's files know nothing.
+    #[track_caller]
+    fn at_pendant(&self, step: &str, text: &str) {
+        let state = tempfile::tempdir().unwrap();
+        let file = state.path().join("part.toyo");
+        std::fs::write(&file, text).unwrap();
+        let mut command = self.command(&["put", "--at", step]);
+        let output = command.arg(file).env("XDG_STATE_HOME", state.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+/// What came of a put.
+struct Put {
+    data: Value,
+    blocks: String,
+}
+
+impl Put {
+    /// The blocks of a kind, each with how often it was sent.
+    fn sent(&self, word: &str) -> BTreeMap<&str, usize> {
+        let mut sent = BTreeMap::new();
+        for (_, block) in self.blocks.lines().filter_map(|line| line.split_once("-> ")) {
+            if block.starts_with(word) {
+                let text = block.split_once("  #").map_or(block, |(text, _)| text);
+                *sent.entry(text).or_default() += 1;
+            }
+        }
+        sent
+    }
+
+    /// The steps that were read.
+    fn read(&self) -> usize {
+        self.sent("@RSTX").len()
+    }
+}
+
+#[test]
+fn names_stand_for_numbers_in_the_text_of_a_program() {
+    let desk = Desk::new();
+    let put = desk.put(NAMED, &[]);
+    let written: Vec<&str> = put.sent("@WSTX").into_keys().collect();
+    assert_eq!(
+        written,
+        [
+            "@WSTX 0001 SPD V=05",
+            "@WSTX 0002 TAG TAG=001",
+            "@WSTX 0003 MOVP a PT=012 CN=00 S V=00 POST",
+            "@WSTX 0004 TIMP TN2=001.5",
+            "@WSTX 0005 JMPC TAG=001 CN03>=0005",
+            "@WSTX 0006 END",
+        ]
+    );
+    let inserted = desk.text(&["insert", "2", "MOVP", "pick"]);
+    assert_eq!(inserted, "inserted in task 1: 0002 MOVP a PT=012 CN=00 S V=00 POST\n");
+    let inserted = desk.text(&["insert", "2", "CNT+", "parts=1"]);
+    assert_eq!(inserted, "inserted in task 1: 0002 CNT+ CN03=0001\n");
+    let wrong = desk.command(&["insert", "2", "MOVP", "pikc"]).output().unwrap();
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(
+        String::from_utf8_lossy(&wrong.stderr).contains("no point has the name 'pikc'\n\nhint: did you mean pick?"),
+        "{wrong:?}"
+    );
+}
+
+#[test]
+fn a_program_comes_back_as_it_was_written_while_its_steps_are_the_same() {
+    let desk = Desk::new();
+    desk.put(NAMED, &[]);
+    assert_eq!(desk.text(&["get"]), NAMED);
+    assert_eq!(desk.text(&["diff", "program.toyo"]), "the program of task 1 and program.toyo are the same, 6 steps\n");
+    desk.at_pendant("4", "TIMP TN2=3.5\n");
+    let text = desk.text(&["get"]);
+    assert!(text.contains("TIMP TN2=003.5") && !text.contains("pick and place"), "{text}");
+    let differs = desk.command(&["diff", "program.toyo"]).output().unwrap();
+    let shown = String::from_utf8(differs.stdout).unwrap();
+    assert_eq!(differs.status.code(), Some(8));
+    assert!(shown.contains("-TIMP TN2=003.5\n+TIMP TN2=001.5\n"), "{shown}");
+    // The text comes back with its steps.
+    desk.at_pendant("4", "TIMP TN2=1.5\n");
+    assert_eq!(desk.text(&["get"]), NAMED);
+}
+
+#[test]
+fn a_put_reads_the_steps_that_it_needs() {
+    let desk = Desk::new();
+    assert_eq!(desk.put(NAMED, &[]).read(), 2000, "nothing is known of them");
+    let changed = NAMED.replace("1.5", "2.5");
+    let put = desk.put(&changed, &[]);
+    assert_eq!((put.read(), put.sent("@WSTX").len()), (7, 1), "those of the program, and the one behind it");
+    assert_eq!((&put.data["unread_steps"], &put.data["cells_unchanged"]), (&1993.into(), &6.into()));
+    assert_eq!(desk.put(&changed, &["--read-all"]).read(), 2000);
+    // A part is compared alone.
+    assert_eq!(desk.put("SPD V=3\n", &["--at", "1"]).read(), 1);
+    assert_eq!(desk.put(&changed, &[]).read(), 2000, "a command has changed steps since");
+}
+
+#[test]
+fn a_put_finds_what_was_written_at_the_pendant_where_it_matters() {
+    let desk = Desk::new();
+    let base = "next: SPD V=5\nJMP TAG=next\n";
+    desk.put(base, &[]);
+    // A routine that nothing calls yet.
+    desk.at_pendant("5", "TAG TAG=7\nEND\n");
+    let put = desk.put(&base.replace('5', "6"), &[]);
+    assert_eq!(put.read(), 4, "its tags are those of before, and nothing runs on to what is behind");
+    // The program was made longer.
+    desk.at_pendant("4", "SPD V=1\n");
+    let put = desk.put(base, &[]);
+    assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &3.into()));
+    for program in [
+        // A tag that may be there twice, a last step that runs on, a jump that is computed.
+        "next: SPD V=5\nJMP TAG=next\nTAG TAG=7\nEND\n",
+        "next: SPD V=5\nJMPC TAG=next CN1<3\n",
+        "next: SPD V=5\nBRAC CN=1 OFS=1\nJMP TAG=next\n",
+    ] {
+        desk.put(base, &["--read-all"]);
+        desk.at_pendant("100", "TAG TAG=7\nHOME\n");
+        let put = desk.put(program, &[]);
+        assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &2.into()), "{program}");
+    }
+    let text = desk.text(&["get"]);
+    assert!(!text.contains("HOME"), "{text}");
+}

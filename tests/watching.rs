@@ -1,0 +1,68 @@
+//! Watches of several robots, one of which cannot be reached.
+
+use std::io::{BufRead as _, BufReader};
+use std::net::TcpListener;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::simulator::Simulator;
+
+/// A user with two robots: `here`, and `late` at a port where nothing listens.
+struct Desk {
+    folder: TempDir,
+    _here: Simulator,
+    late: String,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let (folder, here) = (tempfile::tempdir().unwrap(), Simulator::start("yerc"));
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let late = listener.local_addr().unwrap().to_string();
+        let robots = [("here", "yerc", here.url.clone()), ("late", "toyo", format!("tcp://{late}"))];
+        let entry = |(name, family, target): &(&str, &str, String)| {
+            format!("[[robot]]\nname = \"{name}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\n")
+        };
+        std::fs::write(folder.path().join("robots.toml"), robots.iter().map(entry).collect::<String>()).unwrap();
+        Self { folder, _here: here, late }
+    }
+
+    fn watch(&self, words: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        let inventory = self.folder.path().join("robots.toml");
+        command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
+        command.env("ARMCTL_CONFIG", inventory).args(["-r", "here", "-r", "late", "--no-session", "status"]);
+        command.args(words.split(' ')).stdin(Stdio::null()).stdout(Stdio::piped());
+        command
+    }
+}
+
+#[test]
+fn what_fails_in_each_round_is_counted() {
+    let desk = Desk::new();
+    let output = desk.watch("--watch 1ms --count 40").output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    let failures: Vec<&str> = said.lines().filter(|line| line.contains("nothing listens on TCP port")).collect();
+    assert_eq!(failures.len(), 6, "{said}");
+    assert!(failures.iter().all(|line| line.starts_with("error: late (tcp://")), "{said}");
+    assert!(failures[5].contains(" (35 more times in "), "{said}");
+    assert_eq!(said.matches("2 robots, 1 answers").count(), 1, "{said}");
+    let shown = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(shown.matches("ROBOT").count(), 40, "the tables are data, and all are shown");
+}
+
+#[test]
+fn a_robot_that_comes_is_watched_from_then_on() {
+    let desk = Desk::new();
+    let mut watch = desk.watch("--watch 20ms -o jsonl").spawn().unwrap();
+    let lines = BufReader::new(watch.stdout.take().unwrap()).lines().map_while(Result::ok);
+    let mut late =
+        lines.map(|line| serde_json::from_str::<Value>(&line).unwrap()).filter(|line| line["robot"] == "late");
+    assert_eq!(late.next().unwrap()["ok"], false);
+    let _simulator = Simulator::start_with("toyo", &["--bind", &desk.late]);
+    assert!(late.any(|line| line["ok"] == true && line["data"]["reachable"] == true));
+    watch.kill().unwrap();
+    watch.wait().unwrap();
+}
