@@ -211,7 +211,7 @@ fn control_characters_are_not_sent_to_a_display_or_as_a_name() {
         fails(&output, 2, &["control character"]);
     }
     let output = command(home.path(), "--sim yerc job select").arg("A\x07B").output().unwrap();
-    fails(&output, 2, &["the job name has a control character in it: \\u{7}"]);
+    fails(&output, 2, &["the job name contains a control character: \\u{7}"]);
 }
 
 #[cfg(target_os = "linux")]

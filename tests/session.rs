@@ -254,7 +254,7 @@ fn one_client_moves_and_another_one_stops_it() {
     let listed = desk.listed();
     assert_eq!((&listed["motion"]["pid"], &listed["under_way"]), (&pid.into(), &true.into()));
     assert!(listed["motion"]["command"].as_str().unwrap().contains("yrcx move --to 900,0,0,0"), "{listed}");
-    fails(&desk.run("-r cell yrcx servo on --yes"), 7, &format!("another client moves the robot: process {pid} ("));
+    fails(&desk.run("-r cell yrcx servo on --yes"), 7, &format!("another client is moving the robot: process {pid} ("));
     fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the link is in use by process");
     fails(&desk.run("session close cell"), 7, "moves the robot");
     assert_eq!(desk.data("-r cell yrcx status")["command_status"], "running");
@@ -290,14 +290,14 @@ fn what_a_dead_client_has_left_is_told_and_dealt_with() {
     assert_eq!((&listed["leftover"]["pid"], &listed["leftover"]["died"]), (&pid.into(), &true.into()));
     assert_eq!((&listed["motion"], &listed["under_way"]), (&Value::Null, &true.into()), "it goes on");
     let output = desk.run("-r cell yrcx servo on --yes");
-    fails(&output, 4, "another client's command is still under way: move-mm");
-    assert!(stderr(&output).contains("by a client that has died"), "{}", stderr(&output));
+    fails(&output, 4, "another client's command is still running: move-mm");
+    assert!(stderr(&output).contains("a client ended and left a command running"), "{}", stderr(&output));
 
     assert!(desk.run("-r cell yrcx stop").status.success());
     // The motion ends a moment after the stop; until then its words are taken.
     let mut next = (0..100).map(|_| desk.run("-r cell yrcx info servo"));
     let next = next.find(|next| next.status.success()).expect("the motion ends");
-    assert!(stderr(&next).contains("another client had left move-mm"), "{}", stderr(&next));
+    assert!(stderr(&next).contains("another client left move-mm running"), "{}", stderr(&next));
     assert_eq!(desk.listed()["leftover"], Value::Null);
 }
 
@@ -363,7 +363,10 @@ fn a_session_that_is_killed_takes_the_outcome_with_it() {
         "{said}"
     );
     assert_eq!((desk.files("sock").len(), desk.listed()["link"].as_str()), (1, Some("dead")));
-    assert!(stderr(&desk.run("-r cell yrcx status")).contains("its session has died, so this goes without it"));
+    assert!(stderr(&desk.run("-r cell yrcx status")).contains(
+        "the session process has ended, so the command runs \
+        without it"
+    ));
     // A stale socket is no obstacle. The adapter notices after a moment that its owner is gone.
     while !desk.run("-r cell session open --background").status.success() {}
     assert_eq!(desk.listed()["link"], "up");
@@ -381,7 +384,10 @@ fn a_session_that_is_asked_to_end_tells_its_clients() {
     let moving = moving(&desk);
     session.signal("TERM");
     let (code, said) = moving.end();
-    assert!(code == Some(6) && said.contains("the session has ended: asked to end (SIGTERM)"), "{code:?} {said}");
+    assert!(
+        code == Some(6) && said.contains("the session has ended: termination request (SIGTERM)"),
+        "{code:?} {said}"
+    );
     let (code, said) = session.end();
     assert!(code == Some(0) && !said.contains("not closed correctly"), "{said}");
     assert!(desk.files("sock").is_empty());

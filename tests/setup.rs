@@ -50,7 +50,7 @@ fn an_address_becomes_a_robot_that_is_checked_named_and_read_only() {
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", &address.to_string())]);
     answer(&mut setup, &[("Which controller is it?", "")]);
-    setup.says("it answers a status request");
+    setup.says("answers a status request");
     setup.says("dx200, by its software");
     answer(&mut setup, &[("Name [cell1]:", "cell 3"), ("Name [cell1]:", "cell3"), ("Read-only", "")]);
     setup.says("read_only = true");

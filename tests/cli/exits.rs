@@ -123,9 +123,9 @@ fn six_in_words() {
     snapbox::assert_data_eq!(
         stderr,
         snapbox::str![[r#"
-error: udp://127.0.0.1:10040: sent once, no answer within 100ms: it may or may not have been done
+error: udp://127.0.0.1:10040: sent once, no answer within 100ms: the result is unknown
 
-hint: ask before you repeat it: `yerc status` tells
+hint: check before you repeat it: `yerc status` shows the state
 
 "#]]
     );

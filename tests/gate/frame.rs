@@ -71,7 +71,7 @@ fn read_only_holds_in_a_session_that_is_open_already() {
         for change in changes {
             let refused = around(change);
             assert_eq!(refused.exit, Some(7), "{family} {change}: {refused:?}");
-            assert!(refused.stderr.contains("is read-only: its session passed nothing on"), "{change}: {refused:?}");
+            assert!(refused.stderr.contains("is read-only: the session sent nothing"), "{change}: {refused:?}");
         }
         assert_eq!(around(read).exit, Some(0), "{family}: {:?}", around(read));
         // It never relaxes.
@@ -102,7 +102,7 @@ fn a_robot_that_wants_it_has_its_session_opened() {
     let controller = Simulator::start("yrcx");
     let desk = Desk::new(&entry("cell", &controller.url, "hold = true"));
     let first = desk.run("-r cell yrcx info version");
-    assert!(first.exit == Some(0) && first.stderr.contains("a session was opened"), "{first:?}");
+    assert!(first.exit == Some(0) && first.stderr.contains("session opened"), "{first:?}");
     let second = desk.run("-r cell yrcx info version");
     assert!(second.exit == Some(0) && !second.stderr.contains("session"), "{second:?}");
     assert_eq!(desk.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");

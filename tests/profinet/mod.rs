@@ -61,7 +61,11 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
     };
     let trace = format!("--yes --trace {place}/trace.pcapng yrcx info version");
     for (typed, exit, parts) in [
-        ("robots check", "0", &["station ok 'yrcx-sim'", "RPC ok", "modules ok", "only to the controller it is"][..]),
+        (
+            "robots check",
+            "0",
+            &["station ok 'yrcx-sim'", "RPC ok", "modules ok", "only to the controller that owns"][..],
+        ),
         (&trace, "0", &["host V1.08"]),
         (
             "decode",

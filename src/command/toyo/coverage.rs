@@ -85,7 +85,7 @@ fn every_command_has_a_command_line() {
 /// What the manual does not mark "host ON" is sent while the teach pendant is ON, and the controller decides.
 #[test]
 fn the_pendant_keeps_from_being_sent_only_what_needs_the_host() {
-    let needs_host = |command: &&str| Row::named(command).is_none_or(|row| row.needs_host);
+    let needs_host = |command: &str| Row::named(command).is_none_or(|row| row.needs_host);
     for (line, commands) in LINES {
         let words: Vec<&str> = line.split(' ').collect();
         let (mut bench, heard) = Bench::with_faults("pendant = true\n", |_, _| Fault::None);
@@ -95,7 +95,7 @@ fn the_pendant_keeps_from_being_sent_only_what_needs_the_host() {
         for command in *commands {
             let is_sent = sent.contains(command);
             // What is there already is not written.
-            let may_be = if needs_host(&command) { !is_sent } else { is_sent || outcome.is_ok() };
+            let may_be = if needs_host(command) { !is_sent } else { is_sent || outcome.is_ok() };
             assert!(may_be, "{line}: {command}: {outcome:?}");
         }
     }

@@ -19,7 +19,7 @@ fn ends(scans: u32, head: &[u16]) -> Reply {
 
 const MOVE: &[&str] = &["move", "--point", "19", "--speed", "50"];
 const STOPPED: &[u16] = &[0x4000, 12, 400];
-/// Emergency stop and stop inputs on, as at rest; and without the stop input.
+/// Resting image: emergency stop and stop inputs on; and without the stop input.
 const REST: u16 = 0x0041;
 const HELD: u16 = 0x0001;
 
@@ -128,7 +128,7 @@ fn an_interrupt_tells_when_the_end_is_not_seen() {
 #[test]
 fn an_interrupt_before_anything_left_stops_nothing() {
     let mut bench = Bench::new(Scripted::new([]));
-    assert_eq!(bench.halt().unwrap(), "nothing was sent that moves the robot");
+    assert_eq!(bench.halt().unwrap(), "no motion command was sent");
     assert_eq!(bench.into_peer().bits, [REST]);
 }
 
@@ -152,7 +152,7 @@ fn signals_are_switched_while_a_command_runs() {
     let busy = bench.run(&["alarm", "reset"]).unwrap_err();
     assert!(busy.message.contains("move-ptp still runs"), "{busy}");
     bench.runtime.block_on(async { tokio::time::sleep(Duration::from_secs(2)).await });
-    // What ended meanwhile is noticed, and the next command goes out.
+    // The end of the command is noticed, and the next command is sent.
     bench.run(&["alarm", "reset"]).unwrap();
     assert_eq!(bench.into_peer().taken.len(), 2);
 }
@@ -161,7 +161,7 @@ fn signals_are_switched_while_a_command_runs() {
 fn the_end_of_a_command_is_not_taken_for_that_of_the_next() {
     let mut bench = Bench::new(Scripted::new([ends(10, &[0x4000, 2, 334]), ends(0, &[0x0200])]));
     bench.run(&[MOVE, &["--no-wait"]].concat()).unwrap();
-    // It ends while the pulse is waited for.
+    // The command ends during the pulse.
     bench.run(&["io", "pulse", "20"]).unwrap();
     bench.run(&["alarm", "reset"]).unwrap();
     assert_eq!(bench.into_peer().taken.len(), 2);

@@ -80,7 +80,7 @@ impl SlcanPort {
                 return Err(port.wrong(&format!("the adapter refuses to {what}")));
             }
             (None, None, None) if port.hears => {
-                return Err(port.wrong("its answers are not those of an SLCAN adapter"));
+                return Err(port.wrong("it does not answer as an SLCAN adapter"));
             }
             (None, None, None) => return Err(PortError::Mute { path: port.path.clone() }),
             _ => {}
