@@ -53,11 +53,11 @@ fn a_broken_inventory_does_not_keep_anybody_from_reading_the_help_on_it() {
 #[test]
 fn no_time_at_all_is_no_timeout() {
     let home = tempfile::tempdir().unwrap();
-    fails(&armctl(home.path(), "--sim yerc var set B0=1 --timeout 0"), 2, &["no time at all"]);
-    fails(&armctl(home.path(), "--sim yerc status --watch 0 --count 2"), 2, &["no time at all"]);
-    fails(&armctl(home.path(), "--sim yerc file cmos x --wait 0"), 2, &["no time at all"]);
+    fails(&armctl(home.path(), "--sim yerc var set B0=1 --timeout 0"), 2, &["is zero"]);
+    fails(&armctl(home.path(), "--sim yerc status --watch 0 --count 2"), 2, &["is zero"]);
+    fails(&armctl(home.path(), "--sim yerc file cmos x --wait 0"), 2, &["is zero"]);
     let output = command(home.path(), "--sim yerc status").env("ARMCTL_TIMEOUT", "0s").output().unwrap();
-    fails(&output, 2, &["ARMCTL_TIMEOUT", "no time at all"]);
+    fails(&output, 2, &["ARMCTL_TIMEOUT", "is zero"]);
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn control_characters_are_not_sent_to_a_display_or_as_a_name() {
         fails(&output, 2, &["control character"]);
     }
     let output = command(home.path(), "--sim yerc job select").arg("A\x07B").output().unwrap();
-    fails(&output, 2, &["the job name has a control character in it: \\u{7}"]);
+    fails(&output, 2, &["the job name contains a control character: \\u{7}"]);
 }
 
 #[cfg(target_os = "linux")]

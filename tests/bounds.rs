@@ -147,9 +147,9 @@ fn filters_are_bounded() {
         |filter: &str| limited(folder.path(), "-v 300000", &["--sim", "yerc", "status", &format!("--jq={filter}")]);
     let deep = "(".repeat(20_000) + "1" + &")".repeat(20_000);
     for filter in ["def f: 1 + f; f", "def f: [f]; f", "[repeat(1)]", "reduce range(1000000) as $i (0; [.])", &deep] {
-        ends(&status(filter), 5, "it needs too much memory, or calls itself too deep");
+        ends(&status(filter), 5, "it needs too much memory, or its recursion is too deep");
     }
-    ends(&status("reduce range(1000) as $i (0; [.])"), 5, "nests deeper");
+    ends(&status("reduce range(1000) as $i (0; [.])"), 5, "nested levels");
     for (filter, expected) in [
         ("nan, [nan]", "null\n[null]\n"),
         ("infinite, -infinite", "1.7976931348623157e+308\n-1.7976931348623157e+308\n"),
@@ -179,7 +179,7 @@ fn a_filter_that_fails_after_a_change_is_no_mistake_of_the_line() {
     }
     ends(&run(folder.path(), &["--config", "robots.toml", "robots", "show", "cell"]), 0, "");
     // One that does not compile is found before anything is done.
-    ends(&run(folder.path(), &["--sim", "yerc", "var", "set", "B0=1", "--jq", ".["]), 2, "does not parse");
+    ends(&run(folder.path(), &["--sim", "yerc", "var", "set", "B0=1", "--jq", ".["]), 2, "cannot be parsed");
 }
 
 /// It ends at one signal, which comes once it computes.

@@ -77,13 +77,13 @@ fn numbers_that_the_board_does_not_have() {
         (
             "in_size=50",
             "0x0109",
-            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 50 bytes",
+            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the correct size is 50 bytes",
             SIZE,
         ),
         (
             "out_size=50",
             "0x0109",
-            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 54 bytes",
+            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the correct size is 54 bytes",
             SIZE,
         ),
         ("in=101", "0x0117", "ForwardOpen was refused: invalid connection point (0x01/0x0117)", point),
@@ -114,7 +114,7 @@ fn what_only_looks_says_what_is_wrong_too() {
     let board = Board::start(&[]);
     let (exit, _, _, message, hint) = told(&board.with("in=101"), "yrcx io get");
     assert_eq!(exit, 3);
-    assert!(message.contains("to nobody who only looks") && hint.contains("role=input_only"), "{message}; {hint}");
+    assert!(message.contains("to a read-only client") && hint.contains("role=input_only"), "{message}; {hint}");
     let hint = "check in and in_size of the URL: `yrcx eip probe` finds both";
     tells(&board.with("in=1"), "yrcx io get", 5, "", "the input assembly has 0 bytes, not 48", hint);
     tells(&board.with("in_size=50"), "yrcx status", 5, "", "the input assembly has 48 bytes, not 50", hint);
@@ -131,8 +131,8 @@ fn an_owner_that_is_there_already() {
         3,
         "0x0106",
         "another master, such as a PLC, commands the controller: ForwardOpen was refused: ownership conflict (0x01/0x0106)",
-        "`yrcx io get` and `yrcx status` see its signals beside the owner; to command from here, stop the owner's \
-         connection first: take the controller out of the PLC's scan list, or close the session",
+        "`yrcx io get` and `yrcx status` can read its signals at the same time. To command the controller, stop the owner's \
+         connection first: remove the controller from the PLC's scan list, or close the session",
     );
     let (exit, _, code, message, _) = told(&board.target, &format!("yrcx eip set 4 150 3 {} --yes", "00".repeat(48)));
     assert_eq!((exit, &*code), (3, "0x0c"), "{message}");
@@ -247,37 +247,37 @@ fn many_at_once_find_room_one_after_the_other() {
     }
 }
 
-const NOBODY: &str = "check the address, that the controller is on, and that its EtherNet/IP board is enabled";
+const NOBODY: &str = "check the address; check that the controller is on and its EtherNet/IP board enabled";
 
 #[test]
 fn a_board_that_misbehaves() {
-    const LINK: &str = "check the link: `-v` counts what came";
+    const LINK: &str = "check the connection: `-v` counts received packets";
     for (mischief, line, message, hint) in [
-        ("mute", "yrcx info servo", "RegisterSession was not answered within 400 ms", NOBODY),
-        ("mute", "yrcx io get", "RegisterSession was not answered within 400 ms", NOBODY),
-        ("reset", "yrcx info servo", "the TCP connection ended before ForwardOpen was answered", NOBODY),
+        ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NOBODY),
+        ("mute", "yrcx io get", "no answer to RegisterSession within 400 ms", NOBODY),
+        ("reset", "yrcx info servo", "the TCP connection ended before the answer to ForwardOpen", NOBODY),
         (
             "reset",
             "yrcx io get",
-            "the TCP connection ended before Get_Attribute_Single of the input assembly was answered",
+            "the TCP connection ended before the answer to Get_Attribute_Single of the input assembly",
             NOBODY,
         ),
         (
             "frozen",
             "yrcx info servo",
-            "no answer to servo-status: the controller did not take it",
-            "`yrcx status` tells how the controller stands",
+            "no answer to servo-status: the controller did not start it",
+            "`yrcx status` shows the state of the controller",
         ),
-        ("stall", "yrcx info servo", "the controller shows nothing", LINK),
-        ("wrong-id", "yrcx info servo", "the controller shows nothing", LINK),
-        ("wrong-size", "yrcx info servo", "the controller shows nothing", LINK),
+        ("stall", "yrcx info servo", "the controller sends no data", LINK),
+        ("wrong-id", "yrcx info servo", "the controller sends no data", LINK),
+        ("wrong-size", "yrcx info servo", "the controller sends no data", LINK),
     ] {
         tells(&Board::start(&["--mischief", mischief]).target, line, 4, "", message, hint);
     }
     for line in ["yrcx info servo", "yrcx io get", "yrcx eip get 4 100 3"] {
         let (exit, _, _, message, hint) = told(&Board::start(&["--mischief", "garbage"]).target, line);
-        assert!(exit == 5 && message.contains("cannot be read"), "{line}: {exit} {message}");
-        assert_eq!(hint, "check that an EtherNet/IP adapter has this address");
+        assert!(exit == 5 && message.contains("cannot decode"), "{line}: {exit} {message}");
+        assert_eq!(hint, "check that this is the address of an EtherNet/IP device");
     }
     // Stale, doubled and miscounted images are passed over: a numbering that stands still is a silence.
     for (mischief, works) in [("double", true), ("drop", true), ("stale", false), ("wrong-sequence", false)] {
@@ -293,7 +293,7 @@ fn a_change_whose_answer_is_lost_is_not_repeated() {
     let board = Board::start(&["--mischief", "frozen"]);
     let (exit, kind, _, message, hint) = told(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
-    assert_eq!(hint, "`yrcx status` tells whether servos and motor power are on");
+    assert_eq!(hint, "`yrcx status` shows whether servos and motor power are on");
     // What is there is read first; without an answer nothing is written.
     let board = Board::start(&["--mischief", "reset"]);
     let (exit, kind, _, message, _) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
@@ -304,9 +304,9 @@ fn a_change_whose_answer_is_lost_is_not_repeated() {
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(
         message,
-        "sent once, and whether it was done is unknown: the TCP connection ended before Set_Attribute_Single was answered"
+        "sent once; the result is unknown: the TCP connection ended before the answer to Set_Attribute_Single"
     );
-    assert_eq!(hint, "`yrcx eip get 0xf5 1 3` tells");
+    assert_eq!(hint, "read the value with `yrcx eip get 0xf5 1 3`");
 }
 
 /// A TCP server that does with every connection what `serve` says; it ends with the process.

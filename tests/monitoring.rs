@@ -412,12 +412,16 @@ fn the_journal_gets_priorities_and_fields_and_a_file_gets_words() {
         let line = log.has(&["<4>gone (tcp://127.0.0.1:1)", "robot=gone family=toyo kind=no_answer"]);
         assert!(line.starts_with("<4>"), "{line}");
         std::fs::write(folder.path().join("robots.toml"), "[[robot]\n").expect("written");
-        log.has(&["<4>", "robots.toml:1:", "the robots stay as they were", "kind=usage"]);
+        log.has(&["<4>", "robots.toml:1:", "armctl keeps the earlier robots", "kind=usage"]);
         write(folder.path(), &[("cell3", "yerc", "sim:")]);
-        log.has(&["<5>gone (tcp://127.0.0.1:1): is looked at no more robot=gone family=toyo"]);
-        log.has(&["<5>cell3 (sim:): is looked at from now on robot=cell3 family=yerc"]);
+        log.has(&["<5>gone (tcp://127.0.0.1:1): is no longer polled robot=gone family=toyo"]);
+        log.has(&["<5>cell3 (sim:): is polled from now on robot=cell3 family=yerc"]);
         if words[0] == "publish" {
-            log.has(&["<4>mqtt://127.0.0.1:1: nobody listens there", "trying again", " broker=mqtt://127.0.0.1:1"]);
+            log.has(&[
+                "<4>mqtt://127.0.0.1:1: no program listens on this port",
+                "next try in",
+                " broker=mqtt://127.0.0.1:1",
+            ]);
         }
     }
     let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
@@ -469,7 +473,7 @@ fn a_port_that_others_reach_is_warned_of() {
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(std::fs::File::create(&log).expect("a file"));
     let _service = Service { process: command.spawn().expect("it starts") };
     let said = until("a warning", || std::fs::read_to_string(&log).ok().filter(|text| text.contains('\n')));
-    assert!(said.starts_with("warning: others on the network can read") && said.contains("no password"), "{said}");
+    assert!(said.starts_with("warning: everyone on the network can read") && said.contains("no password"), "{said}");
 }
 
 #[test]

@@ -47,7 +47,7 @@ fn the_prompt_tells_how_the_robot_is_and_lines_change_it() {
     let mut repl = desk.repl("yerc --sim");
     repl.says("sim [simulated, servo on] yerc>");
     repl.press("servo off\r");
-    repl.says("servo power is switched off");
+    repl.says("servo power is off");
     repl.says("sim [simulated, servo off] yerc>");
     repl.press("job select NONE\r");
     repl.says("no such job");
@@ -81,7 +81,7 @@ fn ctrl_c_stops_the_motion_and_not_the_prompt() {
     repl.says("the robot was stopped: HOLD is on");
     repl.says("[simulated, servo on, hold] yerc>");
     repl.press("hold off\r");
-    repl.says("hold is off");
+    repl.says("HOLD is off");
     repl.says("yerc> ");
     repl.press("half a line");
     // The grey rest of a line that was typed before comes and goes meanwhile.

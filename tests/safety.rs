@@ -385,7 +385,7 @@ fn a_hold_that_nobody_confirms_is_sent_again_and_told() {
     let controller = Controller::new(|_| Reaction::Silence);
     let output = controller.run("hold on --timeout 60s --retries 0");
     assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
-    assert!(stderr(&output).contains("nothing tells that the robot is held"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("armctl cannot confirm that the robot is held"), "{}", stderr(&output));
     assert_eq!(controller.changes().len(), 15);
 }
 

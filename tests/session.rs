@@ -239,7 +239,7 @@ fn commands_go_through_a_session_by_themselves() {
     assert!(stderr(&desk.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
     fails(&desk.run("-r cell --no-session --yes yrcx info servo"), 3, "[0x0106]");
     let second = desk.run("-r cell session open");
-    fails(&second, 4, &format!("a session is open already: process {}, since", session.process.id()));
+    fails(&second, 4, &format!("a session is already open: process {}, since", session.process.id()));
     session.signal("TERM");
     assert_eq!(session.end().0, Some(0));
     assert!(desk.files("sock").is_empty());
@@ -254,7 +254,7 @@ fn one_client_moves_and_another_one_stops_it() {
     let listed = desk.listed();
     assert_eq!((&listed["motion"]["pid"], &listed["under_way"]), (&pid.into(), &true.into()));
     assert!(listed["motion"]["command"].as_str().unwrap().contains("yrcx move --to 900,0,0,0"), "{listed}");
-    fails(&desk.run("-r cell yrcx servo on --yes"), 7, &format!("another client moves the robot: process {pid} ("));
+    fails(&desk.run("-r cell yrcx servo on --yes"), 7, &format!("another client is moving the robot: process {pid} ("));
     fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the link is in use by process");
     fails(&desk.run("session close cell"), 7, "moves the robot");
     assert_eq!(desk.data("-r cell yrcx status")["command_status"], "running");
@@ -290,14 +290,14 @@ fn what_a_dead_client_has_left_is_told_and_dealt_with() {
     assert_eq!((&listed["leftover"]["pid"], &listed["leftover"]["died"]), (&pid.into(), &true.into()));
     assert_eq!((&listed["motion"], &listed["under_way"]), (&Value::Null, &true.into()), "it goes on");
     let output = desk.run("-r cell yrcx servo on --yes");
-    fails(&output, 4, "another client's command is still under way: move-mm");
-    assert!(stderr(&output).contains("by a client that has died"), "{}", stderr(&output));
+    fails(&output, 4, "another client's command is still running: move-mm");
+    assert!(stderr(&output).contains("a client ended and left a command running"), "{}", stderr(&output));
 
     assert!(desk.run("-r cell yrcx stop").status.success());
     // The motion ends a moment after the stop; until then its words are taken.
     let mut next = (0..100).map(|_| desk.run("-r cell yrcx info servo"));
     let next = next.find(|next| next.status.success()).expect("the motion ends");
-    assert!(stderr(&next).contains("another client had left move-mm"), "{}", stderr(&next));
+    assert!(stderr(&next).contains("another client left move-mm running"), "{}", stderr(&next));
     assert_eq!(desk.listed()["leftover"], Value::Null);
 }
 
@@ -308,7 +308,7 @@ fn a_jog_whose_client_is_killed_is_stopped() {
     let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
     jogging.says("<- WO 0100");
     jogging.signal("KILL");
-    session.says("what it was to be stopped by is shown");
+    session.says("armctl sends its stop signals");
     desk.until(|session| session["under_way"] == false);
     let next = desk.run("-r cell yrcx info servo");
     assert!(next.status.success() && stderr(&next).contains("12.400 stopped by the stop input"), "{}", stderr(&next));
@@ -346,7 +346,7 @@ fn a_command_whose_holder_is_killed_says_so() {
         commanding.says(until);
         session.signal("KILL");
         let (code, said) = commanding.end();
-        assert!(code == Some(6) && said.contains("the session's holder has ended"), "{words}: {code:?}, {said}");
+        assert!(code == Some(6) && said.contains("the process of the session has ended"), "{words}: {code:?}, {said}");
         assert!(!said.contains("os error") && !said.contains("reset by peer"), "{words}: {said}");
     }
 }
@@ -359,11 +359,14 @@ fn a_session_that_is_killed_takes_the_outcome_with_it() {
     session.signal("KILL");
     let (code, said) = moving.end();
     assert!(
-        code == Some(6) && said.contains("the session's holder has ended") && said.contains("hint: keep clear"),
+        code == Some(6) && said.contains("the process of the session has ended") && said.contains("hint: keep clear"),
         "{said}"
     );
     assert_eq!((desk.files("sock").len(), desk.listed()["link"].as_str()), (1, Some("dead")));
-    assert!(stderr(&desk.run("-r cell yrcx status")).contains("its session has died, so this goes without it"));
+    assert!(stderr(&desk.run("-r cell yrcx status")).contains(
+        "the session process has ended, so the command runs \
+        without it"
+    ));
     // A stale socket is no obstacle. The adapter notices after a moment that its owner is gone.
     while !desk.run("-r cell session open --background").status.success() {}
     assert_eq!(desk.listed()["link"], "up");
@@ -381,9 +384,12 @@ fn a_session_that_is_asked_to_end_tells_its_clients() {
     let moving = moving(&desk);
     session.signal("TERM");
     let (code, said) = moving.end();
-    assert!(code == Some(6) && said.contains("the session has ended: asked to end (SIGTERM)"), "{code:?} {said}");
+    assert!(
+        code == Some(6) && said.contains("the session has ended: termination request (SIGTERM)"),
+        "{code:?} {said}"
+    );
     let (code, said) = session.end();
-    assert!(code == Some(0) && !said.contains("not closed properly"), "{said}");
+    assert!(code == Some(0) && !said.contains("not closed correctly"), "{said}");
     assert!(desk.files("sock").is_empty());
 }
 
@@ -393,11 +399,11 @@ fn a_lost_link_is_opened_again() {
     let mut session = Running::session(&desk, "cell");
     let address = simulator.first.trim_start_matches("eip://").to_owned();
     drop(simulator);
-    session.says("the link was lost");
+    session.says("the connection was lost");
     desk.until(|session| session["link"] == "down");
-    fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller shows nothing");
+    fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller sends no data");
     let _simulator = self::simulator(&desk, "yrcx", &format!("{address} --io-port 0"));
-    session.says("the link is open again");
+    session.says("the connection is open again");
     let listed = desk.until(|session| session["link"] == "up");
     assert_eq!(listed["reopenings"], 1);
     assert!(desk.run("-r cell yrcx info servo").status.success());
@@ -428,7 +434,7 @@ fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
 
 #[test]
 fn a_motion_whose_link_was_lost_says_how_the_stop_input_stands_after_it_came_back() {
-    const TOLD: &str = "the link went down; it is up again, and the stop input SI(06) is on";
+    const TOLD: &str = "the connection was lost; it is up again, and the stop input SI(06) is on";
     // Through a session, and on a connection of the command's own.
     for is_held in [true, false] {
         let (simulator, desk) = cell();
@@ -436,7 +442,7 @@ fn a_motion_whose_link_was_lost_says_how_the_stop_input_stands_after_it_came_bac
         let mut moving = Running::start(desk.command(&format!("{SLOW} -vv --timeout 1m")), false);
         moving.says("<- WO 0100");
         simulator.signal("STOP");
-        let lost = "the link was lost";
+        let lost = " was lost";
         session.as_mut().unwrap_or(&mut moving).says(lost);
         simulator.signal("CONT");
         let (code, said) = moving.end();
@@ -451,10 +457,10 @@ fn a_session_in_the_background_is_up_when_it_says_so() {
     assert_eq!((&opened["robot"], &opened["background"]), (&"cell".into(), &true.into()));
     let log = PathBuf::from(opened["log"].as_str().unwrap());
     assert_eq!(mode(&log), 0o600);
-    assert!(std::fs::read_to_string(&log).unwrap().contains("the link is open"));
+    assert!(std::fs::read_to_string(&log).unwrap().contains("the connection is open"));
     assert_eq!(desk.listed()["pid"], opened["pid"]);
-    fails(&desk.run("-r cell session open --background"), 4, "a session is open already");
-    fails(&desk.run("session close elsewhere"), 2, "there is no session of 'elsewhere'");
+    fails(&desk.run("-r cell session open --background"), 4, "a session is already open");
+    fails(&desk.run("session close elsewhere"), 2, "no session of 'elsewhere' is open");
     assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "closed");
     assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 0);
     // It is gone, with its connection, so that another one can take its place.
@@ -513,10 +519,10 @@ fn a_line_goes_from_client_to_client() {
 
     let address = simulator.first.trim_start_matches("tcp://").to_owned();
     drop(simulator);
-    session.says("the link was lost");
+    session.says("the connection was lost");
     fails(&desk.run("-r cell toyo status"), 4, "the line is gone");
     let _simulator = self::simulator(&desk, "toyo", &address);
-    session.says("the link is open again");
+    session.says("the connection is open again");
     assert!(desk.run("-r cell toyo status").status.success());
 }
 
@@ -544,7 +550,7 @@ fn a_folder_of_others_is_not_trusted() {
     let folder = desk.folder.path().join("run/armctl");
     std::fs::create_dir(&folder).unwrap();
     std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();
-    fails(&desk.run("-r x session open"), 1, "other users may use it");
+    fails(&desk.run("-r x session open"), 1, "other users have access to it");
     let output = desk.run("-r x yrcx status");
     assert!(output.status.success() && stderr(&output).contains("sessions are not used"), "{}", stderr(&output));
 }

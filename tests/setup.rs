@@ -50,7 +50,7 @@ fn an_address_becomes_a_robot_that_is_checked_named_and_read_only() {
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", &address.to_string())]);
     answer(&mut setup, &[("Which controller is it?", "")]);
-    setup.says("it answers a status request");
+    setup.says("answers a status request");
     setup.says("dx200, by its software");
     answer(&mut setup, &[("Name [cell1]:", "cell 3"), ("Name [cell1]:", "cell3"), ("Read-only", "")]);
     setup.says("read_only = true");
@@ -74,7 +74,7 @@ fn a_simulator_is_set_up_as_well_and_a_second_robot_may_become_the_default() {
     assert_eq!(setup.end().code(), Some(0));
     let mut setup = desk.setup();
     answer(&mut setup, &simulator);
-    answer(&mut setup, &[("Name [cell2]:", "cell1"), ("robot 'cell1' exists already", "")]);
+    answer(&mut setup, &[("Name [cell2]:", "cell1"), ("robot 'cell1' already exists", "")]);
     answer(&mut setup, &[("Read-only", "yes"), ("instead of cell1? [y/N]", "y"), ("Write this", "")]);
     assert_eq!(setup.end().code(), Some(0));
     let inventory = desk.inventory().expect("it was written");
@@ -105,7 +105,7 @@ fn escape_and_signals_write_nothing_and_give_the_terminal_back() {
     for way in ["escape", "ctrl-c", "INT", "TERM"] {
         let desk = Desk::new();
         let mut setup = desk.setup();
-        setup.says("nowhere yet: a simulator");
+        setup.says("no robot yet: use a simulator");
         match way {
             "escape" => setup.press("\x1b"),
             "ctrl-c" => setup.press("\x03"),
@@ -139,7 +139,7 @@ fn a_name_that_is_missing_is_chosen() {
     select.says("NAME");
     select.press("WAIT\r");
     // The terminal is narrower than the line.
-    select.says("the same without a question: armctl --config robots.toml --sim yerc job select");
+    select.says("the same command without the question: armctl --config robots.toml --sim yerc job select");
     select.says("WAITIN is selected");
     assert_eq!(select.end().code(), Some(0));
     gives_back(&select, "chosen");

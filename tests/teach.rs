@@ -115,7 +115,7 @@ fn what_it_is_not_for_is_refused() {
     for (words, part) in [
         (&["teach", "yerc", "--dry-run"][..], "has no dry run"),
         (&["teach", "yerc", "-o", "json"], "is interactive"),
-        (&["teach", "yerc", "--max-step", "0"], "more than nothing"),
+        (&["teach", "yerc", "--max-step", "0"], "above 0"),
         (&["teach", "yerc", "--yes"], "needs a terminal"),
         (&["teach", "yerc", "--watch"], "--watch"),
     ] {

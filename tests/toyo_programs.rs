@@ -23,13 +23,13 @@ struct Desk {
 
 impl Desk {
     fn new() -> Self {
-        let (folder, controller) = (tempfile::tempdir().unwrap(), Simulator::start("toyo"));
+        let (folder, controller) = (tempfile::tempdir().expect("a folder"), Simulator::start("toyo"));
         let url = &controller.url;
         let inventory = format!(
             "[[robot]]\nname = \"cell\"\nfamily = \"toyo\"\ntarget = \"{url}\"\n\n\
              [robot.names]\npick = \"PT12\"\ndwell = \"TN2\"\nparts = \"CN3\"\n"
         );
-        std::fs::write(folder.path().join("robots.toml"), inventory).unwrap();
+        std::fs::write(folder.path().join("robots.toml"), inventory).expect("a file");
         Self { folder, _controller: controller }
     }
 
@@ -44,33 +44,33 @@ impl Desk {
 
     #[track_caller]
     fn run(&self, words: &[&str]) -> Output {
-        let output = self.command(words).output().unwrap();
+        let output = self.command(words).output().expect("armctl runs");
         assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
         output
     }
 
     #[track_caller]
     fn text(&self, words: &[&str]) -> String {
-        String::from_utf8(self.run(words).stdout).unwrap()
+        String::from_utf8(self.run(words).stdout).expect("UTF-8")
     }
 
     #[track_caller]
     fn put(&self, text: &str, words: &[&str]) -> Put {
-        std::fs::write(self.folder.path().join("program.toyo"), text).unwrap();
+        std::fs::write(self.folder.path().join("program.toyo"), text).expect("a file");
         let output = self.run(&[&["put", "program.toyo", "-vv", "--json"], words].concat());
-        let envelope: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let blocks = String::from_utf8(output.stderr).unwrap();
+        let envelope: Value = serde_json::from_slice(&output.stdout).expect("UTF-8");
+        let blocks = String::from_utf8(output.stderr).expect("UTF-8");
         Put { data: envelope["data"].clone(), blocks }
     }
 
     /// Somebody at the pendant writes steps, of which this user's files know nothing.
     #[track_caller]
     fn at_pendant(&self, step: &str, text: &str) {
-        let state = tempfile::tempdir().unwrap();
+        let state = tempfile::tempdir().expect("a folder");
         let file = state.path().join("part.toyo");
-        std::fs::write(&file, text).unwrap();
+        std::fs::write(&file, text).expect("a file");
         let mut command = self.command(&["put", "--at", step]);
-        let output = command.arg(file).env("XDG_STATE_HOME", state.path()).output().unwrap();
+        let output = command.arg(file).env("XDG_STATE_HOME", state.path()).output().expect("armctl runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
 }
@@ -120,7 +120,7 @@ fn names_stand_for_numbers_in_the_text_of_a_program() {
     assert_eq!(inserted, "inserted in task 1: 0002 MOVP a PT=012 CN=00 S V=00 POST\n");
     let inserted = desk.text(&["insert", "2", "CNT+", "parts=1"]);
     assert_eq!(inserted, "inserted in task 1: 0002 CNT+ CN03=0001\n");
-    let wrong = desk.command(&["insert", "2", "MOVP", "pikc"]).output().unwrap();
+    let wrong = desk.command(&["insert", "2", "MOVP", "pikc"]).output().expect("armctl runs");
     assert_eq!(wrong.status.code(), Some(2));
     assert!(
         String::from_utf8_lossy(&wrong.stderr).contains("there is no point called 'pikc'\n\nhint: did you mean pick?"),
@@ -137,8 +137,8 @@ fn a_program_comes_back_as_it_was_written_while_its_steps_are_the_same() {
     desk.at_pendant("4", "TIMP TN2=3.5\n");
     let text = desk.text(&["get"]);
     assert!(text.contains("TIMP TN2=003.5") && !text.contains("pick and place"), "{text}");
-    let differs = desk.command(&["diff", "program.toyo"]).output().unwrap();
-    let shown = String::from_utf8(differs.stdout).unwrap();
+    let differs = desk.command(&["diff", "program.toyo"]).output().expect("armctl runs");
+    let shown = String::from_utf8(differs.stdout).expect("UTF-8");
     assert_eq!(differs.status.code(), Some(8));
     assert!(shown.contains("-TIMP TN2=003.5\n+TIMP TN2=001.5\n"), "{shown}");
     // The text comes back with its steps.

@@ -265,7 +265,7 @@ fn what_is_to_be_left_is_left() {
     signal(&child, "INT");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130));
-    assert!(errors(&output).contains("what was started goes on"), "{}", errors(&output));
+    assert!(errors(&output).contains("not stopped; the motion or program continues"), "{}", errors(&output));
     let (heard, machine) = controller.end();
     assert!(machine.runs && count(&heard, "@STOP") == 0, "{heard:?}");
 }

@@ -21,14 +21,15 @@ struct Desk {
 
 impl Desk {
     fn new() -> Self {
-        let (folder, here) = (tempfile::tempdir().unwrap(), Simulator::start("yerc"));
-        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-        let late = listener.local_addr().unwrap().to_string();
+        let (folder, here) = (tempfile::tempdir().expect("a folder"), Simulator::start("yerc"));
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let late = listener.local_addr().expect("an address").to_string();
         let robots = [("here", "yerc", here.url.clone()), ("late", "toyo", format!("tcp://{late}"))];
         let entry = |(name, family, target): &(&str, &str, String)| {
             format!("[[robot]]\nname = \"{name}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\n")
         };
-        std::fs::write(folder.path().join("robots.toml"), robots.iter().map(entry).collect::<String>()).unwrap();
+        std::fs::write(folder.path().join("robots.toml"), robots.iter().map(entry).collect::<String>())
+            .expect("a file");
         Self { folder, _here: here, late }
     }
 
@@ -45,27 +46,28 @@ impl Desk {
 #[test]
 fn what_fails_in_each_round_is_counted() {
     let desk = Desk::new();
-    let output = desk.watch("--watch 1ms --count 40").output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
+    let output = desk.watch("--watch 1ms --count 40").output().expect("armctl runs");
+    let said = String::from_utf8(output.stderr).expect("UTF-8");
     let failures: Vec<&str> = said.lines().filter(|line| line.contains("nothing listens on TCP port")).collect();
     assert_eq!(failures.len(), 6, "{said}");
     assert!(failures.iter().all(|line| line.starts_with("error: late (tcp://")), "{said}");
     assert!(failures[5].contains(" (35 more times in "), "{said}");
     assert_eq!(said.matches("2 robots, 1 answers").count(), 1, "{said}");
-    let shown = String::from_utf8(output.stdout).unwrap();
+    let shown = String::from_utf8(output.stdout).expect("UTF-8");
     assert_eq!(shown.matches("ROBOT").count(), 40, "the tables are data, and all are shown");
 }
 
 #[test]
 fn a_robot_that_comes_is_watched_from_then_on() {
     let desk = Desk::new();
-    let mut watch = desk.watch("--watch 20ms -o jsonl").spawn().unwrap();
-    let lines = BufReader::new(watch.stdout.take().unwrap()).lines().map_while(Result::ok);
-    let mut late =
-        lines.map(|line| serde_json::from_str::<Value>(&line).unwrap()).filter(|line| line["robot"] == "late");
-    assert_eq!(late.next().unwrap()["ok"], false);
+    let mut watch = desk.watch("--watch 20ms -o jsonl").spawn().expect("armctl starts");
+    let lines = BufReader::new(watch.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
+    let mut late = lines
+        .map(|line| serde_json::from_str::<Value>(&line).expect("an envelope"))
+        .filter(|line| line["robot"] == "late");
+    assert_eq!(late.next().expect("a line")["ok"], false);
     let _simulator = Simulator::start_with("toyo", &["--bind", &desk.late]);
     assert!(late.any(|line| line["ok"] == true && line["data"]["reachable"] == true));
-    watch.kill().unwrap();
-    watch.wait().unwrap();
+    watch.kill().expect("it runs");
+    watch.wait().expect("it ends");
 }

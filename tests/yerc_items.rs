@@ -325,7 +325,7 @@ fn a_job_under_another_name_is_warned_of_and_a_plain_last_ack_is_looked_after() 
         .output()
         .unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
-    assert!(told.contains("B.JBI says //NAME OTHER but is sent as B"), "{told}");
+    assert!(told.contains("B.JBI has //NAME OTHER but is sent as B"), "{told}");
 
     let unlisted = controller("plain_last_ack = true", |request| {
         let is_list = request.division == Division::File && request.service == 0x32;

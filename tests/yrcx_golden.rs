@@ -160,10 +160,10 @@ fn what_the_controller_would_refuse_is_refused_before() {
         (Command::MovePtp.order(), "WI4 point: missing; allowed: 0 to 29999"),
         (to_point().with(Key::Point, 30_000), "WI4 point: 30000 is out of range; allowed: 0 to 29999"),
         (to_point().with(Key::Axes, 0), "WI2 axes: 0 named; name 1 to 4"),
-        (to_point().with(Key::Axes, "5"), "WI2 axes: 5: there are 1 to 4"),
+        (to_point().with(Key::Axes, "5"), "WI2 axes: 5: must be from 1 to 4"),
         (
             to_point().with(Key::Robot, 5),
-            "WI0 robot: 5 is not defined; there are 0 = none (robot 1), 1 = 1, 2 = 2, 3 = 3, 4 = 4",
+            "WI0 robot: 5 is not defined; use 0 = none (robot 1), 1 = 1, 2 = 2, 3 = 3, 4 = 4",
         ),
         (to_point().with(Key::SpeedPercent, 0), "WI3 speed_percent: 0 is out of range; allowed: 1 to 100 %"),
         (
@@ -172,7 +172,7 @@ fn what_the_controller_would_refuse_is_refused_before() {
         ),
         (
             to_point().with(Key::SpeedPercent, 1).with(Key::SpeedOfMax, 1),
-            "WI3 speed_percent: does not go with speed_mode = 1, which is given or follows from another field",
+            "WI3 speed_percent: is not possible with speed_mode = 1, which is set or follows from another field",
         ),
         (to_point().with(Key::SpeedMmS, 100), "speed_mm_s: this command has no such field"),
         (drive(), "WI2 axes: missing; name exactly 1"),
@@ -193,11 +193,11 @@ fn what_the_controller_would_refuse_is_refused_before() {
                 .with(Key::CountX, 200)
                 .with(Key::CountY, 200)
                 .with(Key::CountZ, 1),
-            "WI3 nx: X times Y times Z is 40000; 1 to 32767 fit a pallet",
+            "WI3 nx: X times Y times Z is 40000; a pallet has 1 to 32767 positions",
         ),
         (
             Command::ParamSet.order().with(Key::Parameter, "TOLE").with(Key::Value, 1000),
-            "WI3 axes: TOLE belongs to an axis; name one",
+            "WI3 axes: TOLE belongs to an axis; set the axis",
         ),
         (
             Command::PortSet.order().with(Key::PortType, "DO").with(Key::Port, 8).with(Key::Value, 1),
@@ -209,7 +209,7 @@ fn what_the_controller_would_refuse_is_refused_before() {
         ),
         (
             Command::ProgramRun.order(),
-            "WI1 selection: missing; there are 0 = all, 1 = program number, 2 = task number, 4 = program name",
+            "WI1 selection: missing; use 0 = all, 1 = program number, 2 = task number, 4 = program name",
         ),
     ];
     for (draft, text) in cases {

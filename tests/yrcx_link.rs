@@ -69,12 +69,12 @@ fn failed(output: &Output) -> (i32, String) {
 #[test]
 fn what_the_adapter_does_wrong_has_its_exit_code() {
     for (mischief, exit, part) in [
-        ("mute", 4, "was not answered"),
+        ("mute", 4, "no answer to"),
         ("reset", 4, "ended before"),
-        ("stall", 4, "shows nothing"),
-        ("wrong-id", 4, "shows nothing"),
-        ("wrong-size", 4, "shows nothing"),
-        ("garbage", 5, "cannot be read"),
+        ("stall", 4, "sends no data"),
+        ("wrong-id", 4, "sends no data"),
+        ("wrong-size", 4, "sends no data"),
+        ("garbage", 5, "cannot decode"),
     ] {
         let output = Simulator::start(&["--mischief", mischief]).run("yrcx info servo");
         let (code, stderr) = failed(&output);
@@ -104,7 +104,7 @@ fn one_owner_at_a_time_and_others_may_listen() {
 
     let (code, stderr) = failed(&simulator.run("yrcx status --full"));
     assert!(code == 3 && stderr.contains("[0x0106]") && stderr.contains("another master"), "{code} {stderr}");
-    assert!(stderr.contains("hint: `yrcx io get` and `yrcx status` see its signals"), "{stderr}");
+    assert!(stderr.contains("hint: `yrcx io get` and `yrcx status` can read its signals"), "{stderr}");
     let mut listener = armctl();
     listener.args([
         "-t",
@@ -147,7 +147,7 @@ fn looking_leaves_the_owner_alone() {
     assert_eq!((&seen["data"]["servos"], &seen["data"]["joints"]), (&Value::Null, &Value::Null));
     assert!(seen["data"]["not_asked"].as_str().unwrap().contains("--full"));
     let (code, stderr) = failed(&simulator.run("yrcx io get SI06"));
-    assert!(code == 2 && stderr.contains("known to whoever commands"), "{code} {stderr}");
+    assert!(code == 2 && stderr.contains("can be read only by the client that commands"), "{code} {stderr}");
     interrupt(&owner);
     assert_eq!(owner.wait().unwrap().code(), Some(130));
 }
@@ -166,11 +166,11 @@ fn a_simulator_in_this_process_has_faults_too() {
         assert!(run(url).status.success(), "{url}: {:?}", failed(&run(url)));
     }
     for (url, exit, part) in [
-        ("sim:?mischief=stall", 4, "shows nothing"),
-        ("sim:?mischief=mute", 4, "was not answered within 400 ms"),
-        ("sim:?mischief=garbage", 5, "cannot be read"),
+        ("sim:?mischief=stall", 4, "sends no data"),
+        ("sim:?mischief=mute", 4, "within 400 ms"),
+        ("sim:?mischief=garbage", 5, "cannot decode"),
         ("sim:?mischief=none", 2, "wrong-sequence"),
-        ("sim:?fault=busy=5%25", 2, "busy is not for yrcx"),
+        ("sim:?fault=busy=5%25", 2, "the fault busy does not exist for yrcx"),
     ] {
         let (code, stderr) = failed(&run(url));
         assert!(code == exit && stderr.contains(part), "{url}: {code} {stderr}");

@@ -54,9 +54,8 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
 /// Rejects repetition options, because they belong to a line and not to the file.
 pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
-        return Err(
-            Failure::usage("--watch, --count and --until cannot apply to a batch").hint("write them into its line")
-        );
+        return Err(Failure::usage("--watch, --count and --until cannot apply to a batch")
+            .hint("add them to the line of the command"));
     }
     Ok(())
 }
@@ -65,8 +64,9 @@ fn read(path: &Path) -> Result<String, Failure> {
     let most = files::SETTINGS;
     let bytes = if path.as_os_str() == "-" { files::stdin(most) } else { files::read(path, most) };
     let bytes = bytes.with_context(|| path.display().to_string())?;
-    let text = String::from_utf8(bytes)
-        .map_err(|_| Failure::usage(format!("{}: this is not UTF-8", path.display())).hint("save the file as UTF-8"))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        Failure::usage(format!("{}: the file is not UTF-8", path.display())).hint("save the file as UTF-8")
+    })?;
     Ok(text.strip_prefix('\u{FEFF}').map_or_else(|| text.clone(), ToOwned::to_owned))
 }
 
@@ -141,11 +141,11 @@ impl Plan<'_> {
             results: self.results.clone(),
         };
         let Invocation::Task(task) = command.into() else {
-            return Err(Failure::usage("this command cannot be used in a file").hint("see `armctl help batch`"));
+            return Err(Failure::usage("this command is not possible in a file").hint("see `armctl help batch`"));
         };
         let ready = PreparedCommand::new(globals, Some(self.globals), task, Some(line))?;
         if let Some(why) = ready.why_not_in_batch() {
-            return Err(Failure::usage(format!("this command cannot be a line of a file: {why}"))
+            return Err(Failure::usage(format!("this command is not possible in a file: {why}"))
                 .hint("run it in another terminal"));
         }
         ready.check_gate()?;
@@ -181,7 +181,7 @@ impl Plan<'_> {
             let places: Vec<String> = failed.iter().map(|(origin, _)| origin.line.to_string()).collect();
             format!("{} of {all} commands failed, in line {}", failed.len(), places.join(", "))
         } else {
-            format!("stopped at {}; {} done before it, {} not begun", origin, begun - failed.len(), all - begun)
+            format!("stopped at {}; {} done before it, {} not started", origin, begun - failed.len(), all - begun)
         };
         if !self.screen.is_json() {
             self.screen.note(&message);

@@ -9,7 +9,7 @@ use crate::gate::OnInterrupt;
 
 /// Groups of global flags that a command uses, in addition to output flags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a group of flags of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent group of flags")]
 struct Uses {
     robots: bool,
     /// Link options.

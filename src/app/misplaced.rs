@@ -227,7 +227,7 @@ fn number(why: &str) -> Option<String> {
 fn every_file(args: &[OsString], typed: &Typed<'_>) -> Option<String> {
     let is_meant = typed.path == ["yerc", "file", "get"] && args.iter().any(|word| word == "--all");
     is_meant
-        .then(|| "use '*' for all files, '*.JBI' for all jobs; --all selects all robots of the inventory".to_owned())
+        .then(|| "use '*' for all files, '*.JBI' for all jobs; --all selects all robots in the inventory".to_owned())
 }
 
 /// Suggestion for a missing value.
@@ -328,7 +328,7 @@ fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Suggestion> {
     }
     let family = words.iter().find_map(|word| word.parse::<Family>().ok());
     if family.is_some() && whole.find_subcommand(word).is_some() {
-        return vec![Suggestion(word.to_owned(), ", which is for all families")];
+        return vec![Suggestion(word.to_owned(), ", a command for all families")];
     }
     let words: Vec<&str> = words.into_iter().filter(|word| word.parse::<Family>().is_err()).collect();
     let families = Family::ALL.into_iter().filter(|other| family.is_none_or(|family| family == *other));
@@ -424,7 +424,7 @@ mod tests {
             ("armctl status yerc", "the command is `armctl yerc status`"),
             ("armctl --sim status toyo", "the command is `armctl toyo status`"),
             ("armctl yerc select WELD", "the command is `armctl yerc job select`"),
-            ("armctl yerc robots list", "the command is `armctl robots`, which is for all families"),
+            ("armctl yerc robots list", "the command is `armctl robots`, a command for all families"),
             ("armctl stats", "a similar subcommand exists: 'status'"),
             ("armctl yerc jop", "some similar subcommands exist: 'stop', 'job'"),
         ] {

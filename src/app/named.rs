@@ -50,7 +50,7 @@ mod tests {
             ("armctl --sim yerc io get griper", "did you mean 'GRIPPER'?"),
             ("armctl --sim yerc io get PARTS_DONE", "not a valid signal"),
             ("armctl --sim yerc io get 20018", "from 0 to 7"),
-            ("armctl --sim yerc io set GRIPPER=maybe", "there are on and off"),
+            ("armctl --sim yerc io set GRIPPER=maybe", "use on or off"),
             ("armctl --sim yerc var set PARTS_DONE=x", "not a number from 0 to 255"),
             ("armctl --sim yerc var set PARTS_DONE", "'=' and a value are expected"),
             ("armctl --sim yrcx io get GRIPPER", "not a valid signal"),

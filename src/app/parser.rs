@@ -85,7 +85,7 @@ impl Refusal {
     /// The refusal as a failure.
     pub fn failure(&self) -> Failure {
         match self {
-            Self::Text(_) => Failure::usage("this command prints a text").hint("run it in a terminal"),
+            Self::Text(_) => Failure::usage("this command prints text, not data").hint("run it in a terminal"),
             Self::Verb(_, verbs) => Failure::usage("a command is missing").hint(format!("add one of {verbs}")),
             Self::Unknown(failure) | Self::Failed(failure) => failure.clone(),
             Self::Mistake(error) => {

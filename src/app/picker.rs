@@ -81,7 +81,7 @@ fn chosen(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -
             None => value.clone(),
         })
         .collect();
-    let question = format!("{what} (type to search, Enter takes, Esc leaves)");
+    let question = format!("{what} (type to search, Enter selects, Esc cancels)");
     let asked = move || screen.ask_one_of(&question, &options, has_first);
     let mut at = None;
     on_this_thread(async {
@@ -90,11 +90,11 @@ fn chosen(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -
         Ok(())
     })?;
     let value = at.and_then(|at| found.get(at)).map(|candidate| candidate.value.clone());
-    let value = value.ok_or_else(|| Failure::local("internal error: nothing was chosen"))?;
+    let value = value.ok_or_else(|| Failure::local("internal error: nothing was selected"))?;
     let line: Vec<OsString> = [args, &[value.into()]].concat();
     let words: Vec<&str> = line.iter().skip(1).filter_map(|word| word.to_str()).collect();
     if let Ok(words) = shlex::try_join(words) {
-        screen.note(&format!("the same without a question: armctl {words}"));
+        screen.note(&format!("the same command without the question: armctl {words}"));
     }
     Ok(line)
 }

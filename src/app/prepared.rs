@@ -43,7 +43,7 @@ pub enum Invocation {
 }
 
 /// A command to run.
-#[allow(clippy::large_enum_variant, reason = "there are few in a process")]
+#[allow(clippy::large_enum_variant, reason = "a process has only a few")]
 pub enum Task {
     /// A command of a family, with the options of the family.
     Family(Own, Box<dyn AnyCommand>),
@@ -240,7 +240,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     let environment = Options {
         timeout: variable("ARMCTL_TIMEOUT", duration::parse_some)?,
         retries: variable("ARMCTL_RETRIES", |number| {
-            number.parse().map_err(|_| format!("'{number}' is not a number of retries"))
+            number.parse().map_err(|_| format!("'{number}' is not a valid number of retries"))
         })?,
         encoding: variable("ARMCTL_ENCODING", |name| name.parse().map_err(|error| format!("{error}")))?,
         ..Options::default()

@@ -48,7 +48,7 @@ pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
     if let Err(Refusal::Text(help)) = Parser::default().parse(&family_help(prefix)) {
         screen.usage(&help);
     }
-    screen.note(&format!("`armctl {} repl` reads commands from stdin, a line each", prefix.join(" ")));
+    screen.note(&format!("`armctl {} repl` reads commands from stdin, one per line", prefix.join(" ")));
     RunError { told: true, ..Failure::usage("a command is missing").into() }
 }
 
@@ -120,7 +120,7 @@ impl Repl {
         {
             line_of(manager, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }
-        self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D leaves.");
+        self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D ends the prompt.");
         // Ctrl-C clears a line. On an empty line, only a second one leaves.
         let mut is_second = false;
         let mut is_new = true;
@@ -131,7 +131,7 @@ impl Repl {
             };
             if std::mem::take(&mut is_new) {
                 for left in seen.left_over() {
-                    self.screen.note(&format!("left over: {}; {}", left.what, left.undo));
+                    self.screen.note(&format!("still active from before: {}; {}", left.what, left.undo));
                 }
             }
             let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());
@@ -148,7 +148,7 @@ impl Repl {
                 Typed::Line(text) => text,
                 Typed::Interrupted if is_second => return Err(ended("Ctrl-C again")),
                 Typed::Interrupted => {
-                    self.screen.note("Ctrl-C again, `exit` or Ctrl-D leaves.");
+                    self.screen.note("Ctrl-C again, `exit` or Ctrl-D ends the prompt.");
                     is_second = true;
                     continue;
                 }
@@ -235,11 +235,9 @@ impl Repl {
             },
             Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
             Invocation::Teach(_) => Err(Failure::usage("the teach panel needs its own terminal")
-                .hint("leave the prompt, then run `armctl teach`")
+                .hint("end the prompt, then run `armctl teach`")
                 .into()),
-            Invocation::Prompt(_) => {
-                Err(Failure::usage("you are at the prompt already").hint("leave it with `exit`").into())
-            }
+            Invocation::Prompt(_) => Err(Failure::usage("the prompt already runs").hint("end it with `exit`").into()),
             Invocation::Bare(prefix) => Err(usage(&screen, &prefix)),
         };
         done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)

@@ -58,7 +58,8 @@ fn the_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     }
     match &sources.robots(teach.family)?[..] {
         [robot] => Ok(robot.clone()),
-        robots => Err(Failure::usage(format!("teach moves one robot, not {}", robots.len())).hint("name it with -r")),
+        robots => Err(Failure::usage(format!("teach moves one robot, but {} are selected", robots.len()))
+            .hint("select one with -r")),
     }
 }
 
@@ -117,7 +118,7 @@ impl Types for Lines {
         let parsed = self.parser.borrow_mut().parse(&args);
         let Words { globals, command } = parsed.map_err(|refusal| refusal.failure())?;
         let Invocation::Task(task) = command.into() else {
-            return Err(Failure::local(format!("internal error: '{}' is no command", words.join(" "))));
+            return Err(Failure::local(format!("internal error: '{}' is not a command", words.join(" "))));
         };
         let prepared = PreparedCommand::new(globals, Some(&self.globals), task, Some(line))?;
         Box::pin(prepared.go()).await.map_err(|stopped| stopped.failure)?;

@@ -1,5 +1,5 @@
-//! Simulators as servers on real sockets and ports: what is the same for all families. `FAMILY/serve.rs` has the rest;
-//! `armctl sim` brings both together.
+//! Simulators as servers on real sockets and ports, for all families. `FAMILY/serve.rs` has the family-specific part;
+//! `armctl sim` combines both.
 
 pub mod terminal_link;
 
@@ -17,47 +17,47 @@ use super::{Report, SchemaEntry};
 use crate::failure::{Failure, Kind, plain};
 use crate::output::view::View;
 
-/// The arguments of `armctl sim FAMILY`.
+/// Arguments of `armctl sim FAMILY`.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Serve: Sized {
-    /// `sim.yerc`: its name in envelopes and schemas.
+    /// `sim.yerc`: name in envelopes and schemas.
     const ID: &'static str;
-    /// The URL of one that is started without arguments.
+    /// URL of a simulator that is started without arguments.
     const TARGET: &'static str;
-    /// Says where the simulator is.
+    /// Report with the address of the simulator.
     type Report: Report + 'static;
-    /// The simulator.
+    /// Simulator.
     type Server: Server;
 
-    /// Begins to listen.
+    /// Starts to listen.
     async fn start(self) -> Result<Started<Self>, Failure>;
 }
 
 /// A simulator that listens.
 #[derive(Debug)]
 pub struct Started<S: Serve> {
-    /// Where it is.
+    /// Report.
     pub report: S::Report,
-    /// A command line that reaches it.
+    /// Command line that reaches it.
     pub reach: String,
-    /// The simulator.
+    /// Simulator.
     pub server: S::Server,
-    /// Where others may come from; none for a terminal.
+    /// Address that it listens on; none for a terminal.
     pub address: Option<SocketAddr>,
-    /// Whether lines on stdin are for it.
+    /// Whether it reads console lines on stdin.
     pub with_console: bool,
 }
 
-/// A simulator behind what clients connect to.
+/// A simulator with its server.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Server {
-    /// Serves until something arrives or is due, and all that follows from it. The future may be dropped.
+    /// Serves until something arrives or is due, and handles it. The future may be dropped.
     async fn turn(&mut self) -> io::Result<()>;
-    /// Does what a line of the console says, and tells what was done, or why not.
+    /// Executes a console line and returns the result or the reason for a failure.
     fn console(&mut self, line: &str) -> Result<String, String>;
 }
 
-/// The schema of what is said of a simulator that listens.
+/// Schema of the report of a simulator that listens.
 pub fn schema<S: Serve>() -> SchemaEntry {
     SchemaEntry::of::<S::Report>(S::ID)
 }
@@ -65,9 +65,9 @@ pub fn schema<S: Serve>() -> SchemaEntry {
 /// A simulator that listens.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Serving {
-    /// Its family.
+    /// Family.
     pub family: &'static str,
-    /// The URL to reach it by.
+    /// URL.
     pub target: String,
 }
 
@@ -77,16 +77,16 @@ impl Report for Serving {
     }
 }
 
-/// Starts a simulator, says where, and serves it until Ctrl-C.
+/// Starts a simulator, prints its address, and serves it until Ctrl-C.
 pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     let Started { report, reach, mut server, address, with_console } = arguments.start().await?;
     run.local(S::ID, &report)?;
     if address.is_some_and(|address| !address.ip().is_loopback()) {
         run.screen.note("warning: others on the network can reach this simulator");
     }
-    // Programs read where it is, and know how to end it.
+    // Programs read the report and know how to end the process.
     if !run.screen.is_json() {
-        let console = if with_console { " or `quit`; `help` lists what this console takes" } else { "" };
+        let console = if with_console { " or `quit`; `help` lists the console commands" } else { "" };
         run.screen.note(&format!("reach it: {reach}\nend it:   Ctrl-C{console}"));
     }
     let mut console = with_console.then(|| Console::new(tokio::io::stdin()));
@@ -99,7 +99,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
         });
         let line = match turn.await {
             Ok(turned) => turned?,
-            // This is how one ends a server.
+            // Ctrl-C is the normal end of a server.
             Err(_) => return Ok(()),
         };
         match line {
@@ -109,34 +109,34 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
             Some(Some(line)) if line.trim() == "quit" => return Ok(()),
             Some(Some(line)) => match server.console(&line) {
                 Ok(text) => run.screen.note(&text),
-                Err(why) => run.screen.failure(&Failure::usage(why).hint("`help` lists what the console takes")),
+                Err(why) => run.screen.failure(&Failure::usage(why).hint("`help` lists the console commands")),
             },
         }
     }
 }
 
-/// Lines that somebody types to a simulator.
+/// Console lines of a simulator.
 struct Console<R> {
     from: BufReader<R>,
-    /// What came of the next line so far: a turn of the simulator does not lose it.
+    /// Bytes of the next line so far, so that a turn of the simulator does not lose them.
     held: Vec<u8>,
 }
 
 impl<R: AsyncRead + Unpin> Console<R> {
-    /// More than any command takes.
+    /// Maximum length of a line.
     const LONGEST: usize = 1 << 16;
 
     fn new(from: R) -> Self {
         Self { from: BufReader::new(from), held: Vec::new() }
     }
 
-    /// The next line; `None` at the end.
+    /// Next line; `None` at the end.
     async fn next(&mut self) -> Result<Option<String>, Failure> {
         let room = u64::try_from(Self::LONGEST.saturating_sub(self.held.len())).unwrap_or_default();
         (&mut self.from).take(room).read_until(b'\n', &mut self.held).await.context("stdin")?;
         if self.held.len() >= Self::LONGEST {
             return Err(
-                Failure::usage("a line of the console is longer than 64 KiB").hint("`help` lists what it takes")
+                Failure::usage("the console line is longer than 64 KiB").hint("`help` lists the console commands")
             );
         }
         let line = std::mem::take(&mut self.held);
@@ -144,7 +144,7 @@ impl<R: AsyncRead + Unpin> Console<R> {
     }
 }
 
-/// The next line of the console, if there is one.
+/// Next line of the console, if there is a console.
 async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Result<Option<String>, Failure> {
     match console {
         Some(console) => console.next().await,
@@ -152,23 +152,23 @@ async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Re
     }
 }
 
-/// A command line that reaches a simulator of a family at a URL.
+/// Command line that reaches a simulator of a family at a URL.
 pub fn reach(family: &str, target: &str) -> String {
     format!("armctl -t '{target}' {family} status")
 }
 
-/// An address with a port, or without one.
+/// Parses an address with or without a port.
 pub fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
     let address = text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, usual_port)));
     address.map_err(|_| format!("'{text}' is not a valid address, such as 127.0.0.1:{usual_port}"))
 }
 
-/// The failure of a server that cannot begin.
+/// Failure of a server that cannot start.
 pub fn cannot_listen(on: &str, error: &io::Error) -> Failure {
     let hint = match error.kind() {
-        io::ErrorKind::AddrInUse => "another simulator may run; choose a port with --bind 127.0.0.1:0",
-        io::ErrorKind::PermissionDenied => "ports below 1024 need rights; choose a higher one",
-        _ => "choose an address of this machine with --bind",
+        io::ErrorKind::AddrInUse => "stop the other simulator, or choose a free port with --bind 127.0.0.1:0",
+        io::ErrorKind::PermissionDenied => "ports below 1024 need privileges; use a higher port",
+        _ => "use an address of this computer with --bind",
     };
     Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)
 }

@@ -71,7 +71,7 @@ impl Findings {
     pub fn error(&mut self, at: SourceLocation, message: impl Into<String>, hint: Option<String>) {
         self.errors += 1;
         if self.errors == MOST {
-            self.add(Severity::Error, at, "there are more errors; they are not shown".to_owned(), None);
+            self.add(Severity::Error, at, "more errors follow; they are not shown".to_owned(), None);
         } else if self.errors < MOST {
             self.add(Severity::Error, at, message.into(), hint);
         }

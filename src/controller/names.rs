@@ -105,13 +105,13 @@ pub const LONGEST: usize = 128;
 /// Why a text cannot be used as a name; `None` if it can.
 pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
     if text.trim().is_empty() || text.trim() != text {
-        Some("it is empty, or has blanks at an end")
+        Some("it is empty, or begins or ends with a blank")
     } else if text.len() > LONGEST {
         Some("it is too long")
     } else if text.contains([',', '=']) || text.chars().any(char::is_control) {
-        Some("it has a comma, an equals sign or a control character")
+        Some("it contains a comma, an equals sign or a control character")
     } else if text.starts_with('-') {
-        Some("it begins with a dash, as flags do")
+        Some("it begins with a dash, like a flag")
     } else if grammar.is_shaped(text) {
         Some("it looks like an address")
     } else {

@@ -161,7 +161,7 @@ impl Sheet {
             if row.cells.len() == head.cells.len() {
                 rows.push(row);
             } else {
-                let message = format!("{} cells under {} columns", row.cells.len(), head.cells.len());
+                let message = format!("{} cells for {} columns", row.cells.len(), head.cells.len());
                 findings.error(SourceLocation { line: number, column: 1 }, message, None);
             }
         }
@@ -203,15 +203,15 @@ impl Sheet {
             let place = self.head.place(at);
             match known.iter().position(|column| column.as_ref().eq_ignore_ascii_case(name.trim())) {
                 Some(index) if places[index].is_some() => {
-                    findings.error(place, format!("column {name} is there twice"), None);
+                    findings.error(place, format!("column {name} appears twice"), None);
                 }
                 Some(index) => places[index] = Some(at),
                 None if is_comment(name) => {}
                 None => {
                     let near = nearest(name, known.iter().map(AsRef::as_ref));
                     let near = near.map(|near| format!("did you mean {near}?"));
-                    let message = format!("there is no column '{}'", name.escape_debug());
-                    let usual = || format!("{expected}; a column of your own begins with {COMMENT}");
+                    let message = format!("unknown column '{}'", name.escape_debug());
+                    let usual = || format!("{expected}; the name of an extra column must begin with {COMMENT}");
                     findings.error(place, message, near.or_else(|| Some(usual())));
                 }
             }
@@ -229,9 +229,9 @@ impl Sheet {
     pub fn number<'r>(&self, row: &'r Row, index: usize) -> Result<Cow<'r, str>, &'static str> {
         let text = row.text(index);
         match (self.dialect, text.contains(',')) {
-            (Dialect { separator: ',', .. }, true) => Err("numbers have a point, not a comma"),
+            (Dialect { separator: ',', .. }, true) => Err("use a decimal point, not a comma"),
             (Dialect { decimal_comma: true, .. }, _) if text.contains('.') => {
-                Err("other numbers of the file have a comma, so it is not clear what the point is")
+                Err("other numbers in the file have a decimal comma, so the point is ambiguous")
             }
             (_, true) => Ok(Cow::Owned(text.replacen(',', ".", 1))),
             (_, false) => Ok(Cow::Borrowed(text)),
@@ -318,7 +318,7 @@ fn is_decimal(text: &str, mark: char) -> bool {
 fn row(line: &str, number: usize, separator: char, findings: &mut Findings) -> Option<Row> {
     let column = |at: usize| line.get(..at).map_or(1, |before| before.chars().count() + 1);
     let told = cells(line, separator).map_err(|at| {
-        findings.error(SourceLocation { line: number, column: column(at) }, "the quotes are wrong here", None);
+        findings.error(SourceLocation { line: number, column: column(at) }, "wrong quotes", None);
     });
     let cells = told.ok()?.into_iter().map(|(at, text)| Cell { column: column(at), text: text.into_owned() });
     Some(Row { line: number, cells: cells.collect() })
@@ -412,13 +412,13 @@ mod tests {
     #[test]
     fn what_is_not_clear_is_refused() {
         let errors = |text: &str| read(text).unwrap_err();
-        assert!(errors("point,x_mm\n1,\"1,5\"\n")[0].contains("numbers have a point"));
-        assert!(errors("point;x_mm;y_mm\n1;1,5;1.234\n")[0].contains("not clear what the point is"));
-        assert!(errors("point;x_mm;remark\n")[0].contains("there is no column 'remark'"));
+        assert!(errors("point,x_mm\n1,\"1,5\"\n")[0].contains("use a decimal point"));
+        assert!(errors("point;x_mm;y_mm\n1;1,5;1.234\n")[0].contains("the point is ambiguous"));
+        assert!(errors("point;x_mm;remark\n")[0].contains("unknown column 'remark'"));
         assert!(errors("point;x_mn\n")[0].contains("did you mean x_mm?"));
-        assert!(errors("point,x_mm,X_mm\n")[0].contains("is there twice"));
-        assert!(errors("point,x_mm\n1\n")[0].contains("1 cells under 2 columns"));
-        assert!(errors("point,x_mm\n1,\"2\n")[0].contains("the quotes are wrong here"));
+        assert!(errors("point,x_mm,X_mm\n")[0].contains("appears twice"));
+        assert!(errors("point,x_mm\n1\n")[0].contains("1 cells for 2 columns"));
+        assert!(errors("point,x_mm\n1,\"2\n")[0].contains("wrong quotes"));
         assert!(errors("")[0].contains("the file is empty"));
     }
 

@@ -15,7 +15,7 @@ pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
     }
     let text = match text.strip_prefix("\u{FEFF}".as_bytes()) {
         Some(rest) => {
-            findings.note(START, "the file begins with a byte order mark, which is passed over");
+            findings.note(START, "the file begins with a byte order mark, which is ignored");
             rest
         }
         None => text,
@@ -28,7 +28,7 @@ pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
         let bytes = match bytes.strip_suffix(b"\r") {
             Some(bytes) => {
                 if !ends_told {
-                    findings.note(place(number, bytes), "lines end in CR LF, of which the CR is passed over");
+                    findings.note(place(number, bytes), "lines end with CR LF; the CR is ignored");
                     ends_told = true;
                 }
                 bytes
@@ -36,8 +36,12 @@ pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
             None => bytes,
         };
         if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
-            let hint = "this is not a text file, or one in UTF-16: save it as UTF-8";
-            findings.error(place(number, &bytes[..at]), "there is a NUL; the rest is not read", Some(hint.to_owned()));
+            let hint = "this is not a text file, or it is UTF-16: save it as UTF-8";
+            findings.error(
+                place(number, &bytes[..at]),
+                "NUL character; the rest of the file is not read",
+                Some(hint.to_owned()),
+            );
             break;
         }
         if let Err(error) = std::str::from_utf8(bytes) {
@@ -48,11 +52,7 @@ pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
         lines.push(String::from_utf8_lossy(bytes));
     }
     if let Some((at, byte)) = bad {
-        let more = if bad_lines > 1 {
-            format!("; there is more such text, in {bad_lines} lines in all")
-        } else {
-            String::new()
-        };
+        let more = if bad_lines > 1 { format!("; {bad_lines} lines have this error") } else { String::new() };
         let hint = Some("save the file as UTF-8".to_owned());
         findings.error(at, format!("byte {byte:02X} is not UTF-8{more}"), hint);
     }

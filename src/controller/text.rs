@@ -53,7 +53,7 @@ const NAMES: [(Encoding, &str, &[&str]); 10] = [
 
 /// An unknown encoding name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("unknown text encoding '{name}'; there are {}", Encoding::names().collect::<Vec<_>>().join(", "))]
+#[error("unknown text encoding '{name}'; known: {}", Encoding::names().collect::<Vec<_>>().join(", "))]
 pub struct UnknownEncoding {
     /// The unknown name.
     pub name: String,
@@ -73,13 +73,13 @@ pub enum EncodeError {
         encoding: Encoding,
     },
     /// A NUL, which would end the text on the controller.
-    #[error("character {position} of the text is a NUL, which would cut the text there")]
+    #[error("character {position} of the text is a NUL, which would end the text")]
     Nul {
         /// Position in characters, from 1.
         position: usize,
     },
     /// The text is longer than its field.
-    #[error("the text takes {len} bytes in {encoding}, but there is room for {max}")]
+    #[error("the text has {len} bytes in {encoding}, but at most {max} are possible")]
     TooLong {
         /// Length in bytes.
         len: usize,
@@ -378,7 +378,7 @@ mod tests {
         assert!(!Encoding::ShiftJis.fits("てすと", 5));
         assert!(!Encoding::Utf8.fits("てすと", 6));
         let error = Encoding::Utf8.encode_within("てすと", 8).unwrap_err();
-        assert_eq!(error.to_string(), "the text takes 9 bytes in utf-8, but there is room for 8");
+        assert_eq!(error.to_string(), "the text has 9 bytes in utf-8, but at most 8 are possible");
         assert_eq!(Encoding::Utf8.encode_within("A\0", 8), Err(EncodeError::Nul { position: 2 }));
     }
 

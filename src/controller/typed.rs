@@ -10,7 +10,7 @@ use thiserror::Error;
 
 /// A range with its ends in the wrong order.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("the range ends before it begins; did you mean {meant}?")]
+#[error("the end of the range is before its start; did you mean {meant}?")]
 pub struct RangeError {
     /// The range in the right order.
     pub meant: String,
@@ -129,7 +129,7 @@ pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> St
 /// # Errors
 /// The message names both parts and shows the example.
 pub fn setting<'t>(text: &'t str, name: &str, value: &str, example: &str) -> Result<(&'t str, &'t str), String> {
-    text.split_once('=').ok_or_else(|| format!("{name}, '=' and {value} are expected, as in {example}"))
+    text.split_once('=').ok_or_else(|| format!("write {name}, '=' and {value}, as in {example}"))
 }
 
 /// Parses the state of a signal: `on` or `1`, `off` or `0`.
@@ -140,7 +140,7 @@ pub fn state(text: &str) -> Result<bool, String> {
     match text {
         "on" | "1" => Ok(true),
         "off" | "0" => Ok(false),
-        _ => Err(format!("'{text}' is not a valid state; there are on and off")),
+        _ => Err(format!("'{text}' is not a valid state; use on or off")),
     }
 }
 
@@ -180,7 +180,7 @@ mod tests {
             [Ok(1..=5), Ok(1..=5), Ok(1..=5)]
         );
         let wrong = |text| range(text, read).unwrap_err();
-        assert_eq!(wrong("5-2"), "the range ends before it begins; did you mean 2-5?");
+        assert_eq!(wrong("5-2"), "the end of the range is before its start; did you mean 2-5?");
         assert_eq!([wrong("1..x"), wrong("-3"), wrong("")], ["not x", "not ", "not "]);
         let named = |text: &str| {
             unsigned::<u16>(&text[1..]).filter(|_| text.starts_with('B')).ok_or_else(|| format!("not {text}"))
@@ -189,7 +189,7 @@ mod tests {
             [range("B0-B9", named), range("B0..9", named), range("B0-9", named)],
             [Ok(0..=9), Ok(0..=9), Ok(0..=9)]
         );
-        assert_eq!(range("B5-2", named).unwrap_err(), "the range ends before it begins; did you mean B2-B5?");
+        assert_eq!(range("B5-2", named).unwrap_err(), "the end of the range is before its start; did you mean B2-B5?");
         assert_eq!(range("B0-C9", named).unwrap_err(), "not C9");
     }
 
@@ -219,8 +219,8 @@ mod tests {
     fn settings_and_states_say_what_is_expected() {
         assert_eq!(setting("B0=7=8", "a variable", "a value", "B0=255"), Ok(("B0", "7=8")));
         let error = setting("B0", "a variable", "a value", "B0=255").unwrap_err();
-        assert_eq!(error, "a variable, '=' and a value are expected, as in B0=255");
+        assert_eq!(error, "write a variable, '=' and a value, as in B0=255");
         assert_eq!((state("on"), state("0")), (Ok(true), Ok(false)));
-        assert_eq!(state("2").unwrap_err(), "'2' is not a valid state; there are on and off");
+        assert_eq!(state("2").unwrap_err(), "'2' is not a valid state; use on or off");
     }
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::failure::Failure;
 use crate::settings::Robot;
 
-/// What `--json` prints of a robot:
+/// Output of `--json` for a robot:
 /// `{"robot":…,"family":…,"target":…,"simulated":…,"command":…,"ok":…,"data"|"error":…}`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 #[schemars(extend("allOf" = [
@@ -17,15 +17,15 @@ use crate::settings::Robot;
     {"if": {"properties": {"robot": {"type": "string"}}}, "then": {"required": ["family", "target", "simulated"]}}
 ]))]
 pub struct Envelope {
-    /// When the answer was complete; in `jsonl` only.
+    /// Time of the complete answer; only in `jsonl`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String", extend("format" = "date-time"))]
     pub time: Option<Timestamp>,
-    /// The file that the command stands in; in a batch only.
+    /// File of the command; only in a batch.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub file: Option<String>,
-    /// Its line there, from 1.
+    /// Its line in the file, from 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "usize")]
     pub line: Option<usize>,
@@ -39,19 +39,19 @@ pub struct Envelope {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub target: Option<String>,
-    /// Whether nothing real was talked to.
+    /// Whether the robot is a simulator.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "bool")]
     pub simulated: Option<bool>,
-    /// `yerc.status` and the like.
+    /// Command, such as `yerc.status`.
     pub command: Option<String>,
-    /// Whether it was done.
+    /// Whether the command succeeded.
     pub ok: bool,
     /// The report.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Value")]
     pub data: Option<Value>,
-    /// Why there is none, or why it is not whole.
+    /// Why the report is missing or incomplete.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ErrorBody")]
     pub error: Option<ErrorBody>,
@@ -60,7 +60,7 @@ pub struct Envelope {
 /// Why a command failed: `{"kind":"refused","exit":3,"code":"0x2060","message":…,"hint":…}`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ErrorBody {
-    /// Exit code that the kind stands for.
+    /// Exit code of the kind.
     exit: u8,
     #[serde(flatten)]
     failure: Failure,

@@ -48,9 +48,9 @@ impl Filter {
         taken?;
         asked.map_err(|trouble| match trouble {
             FilterError::Mistake(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
-                .hint("filters see the whole envelope: try '.data', or leave --jq away to see it"),
+                .hint("a filter gets the whole envelope: try '.data', or remove --jq to see the envelope"),
             FilterError::Failed(why) => Failure::new(Kind::Malformed, format!("jq filter '{}': {why}", self.text))
-                .hint("--json shows what the filter is given"),
+                .hint("--json shows the input of the filter"),
             FilterError::Halted { exit, text } => Failure::new(Kind::Halted(exit), text),
         })
     }
@@ -81,7 +81,7 @@ pub fn after_a_change(failure: Failure) -> Failure {
         return failure;
     }
     let message = format!("succeeded, but the report could not be written: {}", failure.message);
-    Failure { kind: Kind::Local, message, ..failure }.hint("look before you repeat it")
+    Failure { kind: Kind::Local, message, ..failure }.hint("check the result before you repeat the command")
 }
 
 #[cfg(test)]
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn mistakes_are_usage_failures() {
-        assert!(Filter::new(".data[").unwrap_err().message.contains("does not parse"));
+        assert!(Filter::new(".data[").unwrap_err().message.contains("cannot be parsed"));
         assert!(Filter::new("nonsense").unwrap_err().message.contains("'nonsense' is not defined"));
         assert!(made(".a.b", &json!({"a": 1})).is_err());
     }

@@ -29,18 +29,18 @@ use serde::Serialize;
 
 use crate::failure::{Failure, Kind};
 
-/// How data is written.
+/// Output format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Format {
     /// Tables for people.
     Table,
     /// One envelope, or an array of them.
     Json,
-    /// An envelope a line, with the time.
+    /// One envelope per line, with the time.
     Jsonl,
     /// Comma-separated values.
     Csv,
-    /// Values alone, with tabs between them, for a shell.
+    /// Only values, with tabs between them, for a shell.
     Value,
 }
 
@@ -54,17 +54,17 @@ impl Format {
 /// When to use colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum ColorChoice {
-    /// On a terminal that can, or where `CLICOLOR_FORCE` is set, unless `NO_COLOR` is.
+    /// On a terminal with colours, or if `CLICOLOR_FORCE` is set, but not if `NO_COLOR` is set.
     Auto,
-    /// Even into a file.
+    /// Always, also in a file.
     Always,
-    /// Not at all.
+    /// Never.
     Never,
 }
 
 /// Output settings.
 #[derive(Debug, Clone, Copy)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent flag")]
 pub struct Screen {
     /// Format of data.
     pub format: Format,

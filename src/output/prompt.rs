@@ -26,7 +26,7 @@ impl Screen {
 
     /// Prints the effect, and asks the user to type `word`.
     pub fn confirm_word(&self, what: &str, word: &str) -> Result<bool, Failure> {
-        Self::ask(&format!("{what} Type '{word}' to go on:")).map(|answer| answer.trim_ascii() == word.as_bytes())
+        Self::ask(&format!("{what} Type '{word}' to continue:")).map(|answer| answer.trim_ascii() == word.as_bytes())
     }
 
     pub(super) fn ask(question: &str) -> Result<Vec<u8>, Failure> {
@@ -35,7 +35,7 @@ impl Screen {
         // A closed terminal also gives no answer.
         if std::io::stdin().lock().read_until(b'\n', &mut answer).unwrap_or(0) == 0 {
             Self::stderr("\n");
-            return Err(Failure::new(Kind::Rejected, "not confirmed: there was no answer; nothing was sent")
+            return Err(Failure::new(Kind::Rejected, "not confirmed: no answer; nothing was sent")
                 .hint("answer the question, or use --yes"));
         }
         Ok(answer)

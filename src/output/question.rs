@@ -72,7 +72,7 @@ fn asked<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failure> {
     prompt::save();
     ask(&Term::stderr()).map_err(|Error::IO(error)| match error.kind() {
         io::ErrorKind::Interrupted => left(),
-        _ => Failure::new(Kind::Rejected, "there was no answer").hint("answer the question at a terminal"),
+        _ => Failure::new(Kind::Rejected, "no answer").hint("answer the question at a terminal"),
     })
 }
 

@@ -29,14 +29,14 @@ use crate::files;
 
 const FILE_NAME: &str = "alarms.toml";
 
-/// What the file says of an alarm.
+/// Explanation of an alarm in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Explanation {
-    /// What it means.
+    /// Its meaning.
     pub text: String,
-    /// What usually causes it.
+    /// Its usual cause.
     pub cause: Option<String>,
-    /// What to do.
+    /// Remedy.
     pub remedy: Option<String>,
 }
 
@@ -95,7 +95,7 @@ impl Alarms {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(error) => {
                 return Err(Failure::usage(format!("{}: {}", path.display(), plain(&error)))
-                    .hint("correct it, or move it away: armctl works without"));
+                    .hint("correct the file, or move it to another folder: armctl works without it"));
             }
         };
         Ok(Table::parse(&text, &path.display().to_string())?.find(origin, code))
@@ -136,10 +136,10 @@ impl Table {
         let entry = |raw: RawEntry| {
             let wrong = |span: &Spanned<String>, why: &str| at(span.span().start, why);
             let family = raw.family.as_ref().parse::<Family>();
-            let family = family.map_err(|why| wrong(&raw.family, &why).hint("families are yerc, yrcx and toyo"))?;
+            let family = family.map_err(|why| wrong(&raw.family, &why).hint("use yerc, yrcx or toyo"))?;
             let model = raw.model.as_ref().map(|model| {
                 let parsed = model.as_ref().parse::<Model>();
-                parsed.map_err(|why| wrong(model, &why).hint("models are fs100, dx100, dx200 and yrc1000"))
+                parsed.map_err(|why| wrong(model, &why).hint("use fs100, dx100, dx200 or yrc1000"))
             });
             let model = model.transpose()?;
             let RawEntry { code, robot, text, cause, remedy, .. } = raw;

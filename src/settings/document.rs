@@ -9,8 +9,8 @@ pub struct Document(DocumentMut);
 /// Reason why the text cannot be edited.
 pub type Wrong = &'static str;
 
-const NO_LIST: Wrong = "`robot` is no list of [[robot]] tables";
-const NO_ENTRY: Wrong = "the robot has no [[robot]] table of its own";
+const NO_LIST: Wrong = "`robot` is not a list of [[robot]] tables";
+const NO_ENTRY: Wrong = "the robot has no [[robot]] table";
 
 impl Document {
     /// Parses a text.
@@ -144,7 +144,7 @@ fn is_called(entry: &Table, name: &str) -> bool {
 
 /// Sets or removes a name of an entry. An empty table of names is removed.
 fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<Value>, Wrong> {
-    const NO_TABLE: Wrong = "`names` is no table";
+    const NO_TABLE: Wrong = "`names` is not a table";
 
     let Some(new) = new else {
         let Some(names) = entry.get_mut("names") else { return Ok(None) };

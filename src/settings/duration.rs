@@ -33,7 +33,7 @@ pub fn parse(text: &str) -> Result<Duration, String> {
 /// Parses a duration that must not be 0.
 pub fn parse_some(text: &str) -> Result<Duration, String> {
     match parse(text)? {
-        Duration::ZERO => Err(format!("'{text}' leaves no time at all; write 500ms, 3s, 2m or 1h")),
+        Duration::ZERO => Err(format!("'{text}' is zero; write a longer time such as 500ms, 3s, 2m or 1h")),
         duration => Ok(duration),
     }
 }

@@ -161,8 +161,8 @@ impl Inventory {
                     .hint("use letters, digits, '-', '_' and '.'"));
             }
             if robots.iter().any(|known| known.name == *robot) {
-                return Err(at(raw.name.span(), &format!("a second robot is called '{robot}'"))
-                    .hint("give every robot its own name"));
+                return Err(at(raw.name.span(), &format!("two robots have the name '{robot}'"))
+                    .hint("give each robot a different name"));
             }
             let mut span = raw.target.span();
             let wrong = |failure: Failure| {
@@ -179,21 +179,19 @@ impl Inventory {
             };
             let target = given.of(named).map_err(wrong)?;
             let Some(family) = named.or(target.family()) else {
-                return Err(
-                    at(span, "this URL does not tell the family").hint("add family = \"yerc\" or family = \"toyo\"")
-                );
+                return Err(at(span, "armctl cannot infer the family from this URL")
+                    .hint("add family = \"yerc\" or family = \"toyo\""));
             };
-            target.check(family).map_err(|why| at(span, &why).hint("check target and family against each other"))?;
+            target.check(family).map_err(|why| at(span, &why).hint("correct `target` or `family`"))?;
             if let Some(model) = raw.model.as_ref().filter(|_| !family.has_model()) {
-                return Err(at(model.span(), &format!("a {family} robot has no model")).hint("leave `model` away"));
+                return Err(at(model.span(), &format!("a {family} robot has no model")).hint("remove `model`"));
             }
             for value in &raw.pulses_per_degree {
                 let is_number = value.as_ref().is_finite() && *value.as_ref() > 0.0;
                 if family != Family::Yerc || !is_number || raw.pulses_per_degree.len() > MAX_AXES {
-                    let why =
-                        "pulses_per_degree are the pulses of a degree of up to 8 axes of a yerc robot, more than 0";
+                    let why = "pulses_per_degree is a list of up to 8 numbers above 0, one per axis of a yerc robot";
                     return Err(
-                        at(value.span(), why).hint("such as pulses_per_degree = [1360, 1360, 1360, 1000, 1000, 500]")
+                        at(value.span(), why).hint("example: pulses_per_degree = [1360, 1360, 1360, 1000, 1000, 500]")
                     );
                 }
             }
@@ -219,7 +217,7 @@ impl Inventory {
             && !robots.iter().any(|robot| robot.name == *default.as_ref())
         {
             return Err(at(default.span(), &format!("there is no robot '{}'", default.as_ref()))
-                .hint("let `default` name one of the robots of this file"));
+                .hint("set `default` to the name of a robot in this file"));
         }
         let defaults = file.defaults;
         Ok(Self {
@@ -296,18 +294,17 @@ fn named_address(
 /// Checks a name and the address it stands for.
 pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure> {
     let examples = match family {
-        Family::Yerc => "such as clamp = 27010, parts = \"B5\" or speed = \"M10\"",
-        Family::Yrcx => "such as clamp = \"SI(20)\", parts = \"SGI5\" or lamp = \"DO2.1\"",
-        Family::Toyo => "such as clamp = \"OUT1.3\", part = \"IN2.1\" or parts = \"CN05\"",
+        Family::Yerc => "examples: clamp = 27010, parts = \"B5\", speed = \"M10\"",
+        Family::Yrcx => "examples: clamp = \"SI(20)\", parts = \"SGI5\", lamp = \"DO2.1\"",
+        Family::Toyo => "examples: clamp = \"OUT1.3\", part = \"IN2.1\", parts = \"CN05\"",
     };
     if let Some(why) = unusable(grammar(family), name) {
         return Err(Failure::usage(format!("'{name}' cannot be a name: {why}")).hint(examples));
     }
     match (grammar(family).address)(address) {
         Some((kind, address)) => Ok(Name { kind, address, name: name.to_owned(), source: Source::Inventory }),
-        None => {
-            Err(Failure::usage(format!("'{address}' is nothing that a {family} robot has a name for")).hint(examples))
-        }
+        None => Err(Failure::usage(format!("'{address}' is not an address that can have a name on a {family} robot"))
+            .hint(examples)),
     }
 }
 
@@ -398,12 +395,12 @@ mod tests {
             (
                 "[[robot]]\nname = \"a\"\ntarget = \"sim:?axes=2\"\nfamily = \"yerc\"\n",
                 "robots.toml:4:10: 'axes'",
-                "against each other",
+                "correct `target`",
             ),
             (
                 "[[robot]]\nname=\"a\"\ntarget=\"udp://h\"\n[[robot]]\nname=\"a\"\ntarget=\"udp://h\"\n",
                 ":5:6",
-                "own name",
+                "a different name",
             ),
         ] {
             let failure = Inventory::parse(text, "robots.toml").unwrap_err();
@@ -422,7 +419,7 @@ mod tests {
         let names = inventory.robots[0].names.iter().map(|name| format!("{}={}", name.name, name.address));
         assert_eq!(names.collect::<Vec<_>>(), ["FILTER CLEAN=#10011", "clamp=#27010", "parts=B5", "speed=M10"]);
         for (names, place, why) in [
-            ("clamp = 27018", ":6:9:", "'27018' is nothing that a yerc robot has a name for"),
+            ("clamp = 27018", ":6:9:", "'27018' is not an address that can have a name on a yerc robot"),
             ("clamp = \"SO(20)\"", ":6:9:", "yerc"),
             ("B5 = 27010", ":6:6:", "'B5' cannot be a name: it looks like an address"),
             ("clamp = true", ":6:9:", "'true'"),

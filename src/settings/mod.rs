@@ -140,7 +140,7 @@ impl Robot {
 
 /// Selection of robots by flags and environment.
 #[derive(Debug, Clone, Default)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a flag, or what a command makes of one")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag, or a command's value for one")]
 pub struct Selection {
     /// `--sim`.
     pub sim: bool,
@@ -226,8 +226,8 @@ impl Sources {
     pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
         if selection.from_environment && selection.environment.is_some() {
-            return Err(Failure::usage("ARMCTL_TARGET and ARMCTL_ROBOT are both set, and each names a robot")
-                .hint("unset one of them, or name the robot with -r or -t"));
+            return Err(Failure::usage("ARMCTL_TARGET and ARMCTL_ROBOT are both set, and each selects a robot")
+                .hint("unset one of them, or select the robot with -r or -t"));
         }
         if selection.sim {
             let simulator = |family| self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family);
@@ -251,8 +251,8 @@ impl Sources {
         }
         let address = family.map_or("udp://HOST", Family::address);
         Err(Failure::usage("no robot selected").hint(format!(
-            "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the inventory, or \
-             set ARMCTL_TARGET or ARMCTL_ROBOT{}",
+            "use --sim (built-in simulator), -t {address} (address) or -r NAME (robot in the inventory), or set \
+             ARMCTL_TARGET or ARMCTL_ROBOT{}",
             if self.inventory.robots.is_empty() { "; `armctl setup` adds a robot step by step" } else { "" }
         )))
     }
@@ -292,9 +292,8 @@ impl Sources {
     /// A flag also selects robots.
     pub fn choose_all(&mut self, names: &[String]) -> Result<(), Failure> {
         if self.selection.has_flags() {
-            return Err(
-                Failure::usage(format!("{} and a flag name robots", names.join(" and "))).hint("name them once")
-            );
+            return Err(Failure::usage(format!("{} and a flag both select robots", names.join(" and ")))
+                .hint("remove one of the two"));
         }
         (self.selection.robots, self.selection.from_environment) = (names.to_vec(), false);
         Ok(())
@@ -303,7 +302,9 @@ impl Sources {
     /// Selects a robot by name or URL.
     pub fn choose(&mut self, robot: &str) -> Result<(), Failure> {
         if self.selection.has_flags() {
-            return Err(Failure::usage(format!("'{robot}' and a flag name a robot")).hint("name it once"));
+            return Err(
+                Failure::usage(format!("'{robot}' and a flag both select a robot")).hint("remove one of the two")
+            );
         }
         let Selection { target, robots, from_environment, .. } = &mut self.selection;
         if std::mem::take(from_environment) {
@@ -341,12 +342,12 @@ impl Sources {
         // For a simulator without a family, the first family.
         let simulated = target.is_simulated().then_some(self.selection.simulated.unwrap_or(Family::Yerc));
         let Some(family) = family.or(target.family()).or(simulated) else {
-            return Err(Failure::usage(format!("target '{target}' does not show the family"))
+            return Err(Failure::usage(format!("armctl cannot infer the family from target '{target}'"))
                 .hint("name the family: `armctl yerc …`"));
         };
         target
             .check(family)
-            .map_err(|why| Failure::usage(why).hint("see the URLs of each family: `armctl help targets`"))?;
+            .map_err(|why| Failure::usage(why).hint("for the URLs of each family, see `armctl help targets`"))?;
         let name = target.short_name();
         Ok(self.robot(name, family, Setting { value: target, origin }, &Options::default(), Vec::new()))
     }
@@ -366,14 +367,16 @@ impl Sources {
                 let set = if selection.from_environment { "ARMCTL_ROBOT: " } else { "" };
                 let failure = Failure::usage(format!("{set}there is no robot '{pattern}' in the inventory"));
                 if pattern.contains("://") || pattern.starts_with("sim:") {
-                    return Err(failure.hint("a URL is given by -t (--target)"));
+                    return Err(failure.hint("use -t (--target) for a URL"));
                 }
                 return Err(match (nearest(pattern, known()), &self.inventory.path) {
                     (Some(name), _) => failure.hint(format!("did you mean '{name}'?")),
                     (None, Some(path)) => {
-                        failure.hint(format!("`armctl robots list` shows those of {}", path.display()))
+                        failure.hint(format!("`armctl robots list` lists the robots in {}", path.display()))
                     }
-                    (None, None) => failure.hint("there is no home folder to find robots.toml in; use --config"),
+                    (None, None) => {
+                        failure.hint("armctl finds no home folder for robots.toml; set the file with --config")
+                    }
                 });
             }
         }
@@ -383,7 +386,7 @@ impl Sources {
         for tag in &selection.tags {
             let known = || self.inventory.robots.iter().flat_map(|robot| &robot.tags).map(String::as_str);
             if !known().any(|known| known == tag) {
-                let failure = Failure::usage(format!("no robot of the inventory has the tag '{tag}'"));
+                let failure = Failure::usage(format!("no robot in the inventory has the tag '{tag}'"));
                 return Err(match nearest(tag, known()) {
                     Some(near) => failure.hint(format!("did you mean '{near}'?")),
                     None => failure.hint("`armctl robots list` shows the robots with their tags"),
@@ -399,9 +402,8 @@ impl Sources {
             chosen.retain(|robot| robot.family == family || selection.robots.contains(&robot.name));
         }
         if chosen.is_empty() {
-            return Err(
-                Failure::usage("no robot of the inventory fits").hint("`armctl robots list` shows them with tags")
-            );
+            return Err(Failure::usage("no robot in the inventory matches")
+                .hint("`armctl robots list` shows the robots with their tags"));
         }
         chosen.into_iter().map(|entry| self.resolved(entry, family)).collect()
     }

@@ -53,7 +53,7 @@ impl FromStr for ModelSetting {
         if text.eq_ignore_ascii_case(Self::AUTO) {
             return Ok(Self::Auto);
         }
-        text.parse().map(Self::Is).map_err(|error: String| error.replace("there are ", "there are auto, "))
+        text.parse().map(Self::Is).map_err(|error: String| error.replace("known: ", "known: auto, "))
     }
 }
 
@@ -229,7 +229,7 @@ mod tests {
         assert_eq!("auto".parse(), Ok(ModelSetting::Auto));
         assert_eq!("YRC1000".parse(), Ok(ModelSetting::Is(Model::Yrc1000)));
         let error = "xrc".parse::<ModelSetting>().unwrap_err();
-        assert_eq!(error, "unknown model 'xrc'; there are auto, fs100, dx100, dx200 and yrc1000");
+        assert_eq!(error, "unknown model 'xrc'; known: auto, fs100, dx100, dx200 and yrc1000");
         assert_eq!(ModelSetting::Is(Model::Fs100).to_string(), "fs100");
     }
 }

@@ -145,9 +145,9 @@ pub struct KeptFile {
     pub file: String,
     /// Its size.
     pub bytes: u64,
-    /// Of its bytes.
+    /// SHA-256 of its bytes.
     pub sha256: String,
-    /// How many names it has.
+    /// Number of names in it.
     pub names: usize,
 }
 
@@ -206,9 +206,13 @@ impl Kept {
         match self.software.as_deref().filter(|then| *then != software) {
             None => Ok(()),
             Some(then) => Err(Failure::local(format!(
-                "the names kept for this address are of a controller with software {then}; this one has {software}"
+                "the stored names for this address belong to a controller with software {then}; this controller has \
+                 {software}"
             ))
-            .hint("`armctl yerc names get` reads those of this one, `armctl yerc names forget` removes the others")),
+            .hint(
+                "read the names of this controller with `armctl yerc names get`, or delete the stored ones with \
+                 `armctl yerc names forget`",
+            )),
         }
     }
 
@@ -236,8 +240,9 @@ impl Place {
     /// Reads the cache; `None` if it does not exist.
     pub fn read(&self) -> Result<Option<Kept>, Failure> {
         let damaged = |why: String| {
-            Failure::local(format!("the names kept in {} cannot be used: {why}", self.path.display()))
-                .hint("`armctl yerc names get` reads them anew, `armctl yerc names forget` removes them")
+            Failure::local(format!("the stored names in {} cannot be used: {why}", self.path.display())).hint(
+                "read the names again with `armctl yerc names get`, or delete them with `armctl yerc names forget`",
+            )
         };
         let text = match files::text(&self.path, MOST) {
             Ok(text) => text,
@@ -246,7 +251,7 @@ impl Place {
         };
         let kept: Kept = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
         if kept.format != FORMAT || kept.version != VERSION || kept.address != self.address {
-            return Err(damaged("it is another file".to_owned()));
+            return Err(damaged("it is not the file for this controller".to_owned()));
         }
         Ok(Some(kept))
     }
@@ -318,7 +323,10 @@ mod tests {
         assert!(robot().all().damage.is_none());
         models.keep(&address, ToldModel::now(Model::Dx200, "DN2.07.00A(EN)-00".to_owned())).unwrap();
         let damage = robot().all().damage.clone().unwrap();
-        assert!(damage.message.contains("YAS2.80") && damage.message.contains("this one has DN2.07"), "{damage}");
+        assert!(
+            damage.message.contains("YAS2.80") && damage.message.contains("this controller has DN2.07"),
+            "{damage}"
+        );
     }
 
     #[test]

@@ -96,7 +96,7 @@ impl FromStr for Family {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|family| family.name() == text);
-        found.ok_or_else(|| format!("unknown family '{text}'; there are yerc, yrcx and toyo"))
+        found.ok_or_else(|| format!("unknown family '{text}'; known: yerc, yrcx and toyo"))
     }
 }
 
@@ -260,7 +260,7 @@ impl Target {
     /// Checks that the URL and all its options are valid for a family.
     pub fn check(&self, family: Family) -> Result<(), String> {
         if !family.is_reached_over(self.scheme()) {
-            return Err(format!("{family} is not reached over {}:", self.scheme()));
+            return Err(format!("a {family} robot has no {}: URL", self.scheme()));
         }
         match &self.place {
             Place::Sim(sim) => sim.check(family),
@@ -282,13 +282,13 @@ impl FromStr for Target {
         let (scheme, rest) = url.split_once(':').unwrap_or(("", url));
         let wrong = |why: String| Failure::usage(format!("target '{url}': {why}")).hint(hint(scheme));
         if scheme.is_empty() && url.contains('.') && url.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.') {
-            return Err(wrong("it is no IPv4 address, which has four numbers from 0 to 255".into()));
+            return Err(wrong("it is not a valid IPv4 address; write four numbers from 0 to 255".into()));
         }
         if scheme.contains('.') && !rest.is_empty() && rest.bytes().all(|byte| byte.is_ascii_digit()) {
-            return Err(wrong(format!("port {rest} is not one of 1 to 65535")));
+            return Err(wrong(format!("port {rest} is not from 1 to 65535")));
         }
         if scheme.is_empty() {
-            return Err(wrong("there is no scheme such as udp:// in it".into()));
+            return Err(wrong("the scheme is missing, such as udp://".into()));
         }
         let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
         let mut query = Query::parse(query).map_err(wrong)?;
@@ -312,10 +312,10 @@ impl FromStr for Target {
 fn hint(scheme: &str) -> String {
     let buses = BUSES.iter().map(|bus| (bus.name, bus.form));
     match FORMS.into_iter().chain(buses).find(|(known, _)| *known == scheme) {
-        Some((_, form)) => format!("write {form}; `armctl help targets` explains it"),
+        Some((_, form)) => format!("write {form}; see `armctl help targets`"),
         None => format!(
-            "write udp://HOST, {}, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a controller, or sim: for the \
-             simulator; `armctl help targets` explains them",
+            "write udp://HOST, {}, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a controller, or sim: \
+             for the simulator; see `armctl help targets`",
             BUSES.iter().map(|bus| bus.shortest).collect::<Vec<_>>().join(", ")
         ),
     }
@@ -339,7 +339,7 @@ fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
     let file_port = match query.take("file_port") {
         Some(port) => self::port("file_port", &port)?,
         // By default the next port, also behind a port forwarding.
-        None => port.checked_add(1).ok_or("port 65535 leaves none above it for files; file_port=PORT says which")?,
+        None => port.checked_add(1).ok_or("port 65535 has no next port for files; set one with file_port=PORT")?,
     };
     Ok(Udp { host, port, file_port, traits: traits(query)? })
 }
@@ -364,19 +364,19 @@ fn serial(place: &str, query: &mut Query) -> Result<Serial, String> {
 
 fn tcp(place: &str, query: &mut Query) -> Result<Tcp, String> {
     let (host, port) = host_and_port(authority("tcp", place)?)?;
-    let port = self::port("port", port.ok_or("the port is missing; device servers have no usual one")?)?;
+    let port = self::port("port", port.ok_or("the port is missing; device servers have no default port")?)?;
     Ok(Tcp { host, port, baud: baud(query)?.unwrap_or(BAUD) })
 }
 
 fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
     if !place.is_empty() {
-        return Err(format!("'{place}' after sim: means nothing; parameters start with ?"));
+        return Err(format!("'{place}' after sim: has no meaning; parameters start with ?"));
     }
     let axes = match query.take("axes") {
         None => None,
         Some(text) => match text.parse() {
             Ok(axes @ 1..=4) => Some(axes),
-            _ => return Err(format!("axes is a number from 1 to 4, not '{text}'")),
+            _ => return Err(format!("axes must be a number from 1 to 4, not '{text}'")),
         },
     };
     Ok(Sim {
@@ -395,7 +395,7 @@ fn bus(name: &str) -> Result<&'static str, String> {
     let found = bus::simulators().find(|(known, _)| *known == name);
     found.map(|(known, _)| known).ok_or_else(|| {
         let all: Vec<&str> = bus::simulators().map(|(known, _)| known).collect();
-        format!("bus is {}, not '{name}'", all.join(" or "))
+        format!("bus must be {}, not '{name}'", all.join(" or "))
     })
 }
 
@@ -423,7 +423,7 @@ fn traits(query: &mut Query) -> Result<YercTraits, String> {
         None => None,
         Some("25") => Some(25),
         Some("26") => Some(26),
-        Some(other) => return Err(format!("move_words is 25 or 26, not '{other}'")),
+        Some(other) => return Err(format!("move_words must be 25 or 26, not '{other}'")),
     };
     Ok(YercTraits { model, move_words })
 }
@@ -462,19 +462,19 @@ mod tests {
             ("http://x", "unknown scheme"),
             ("udp:x", "slashes"),
             ("udp://", "host is missing"),
-            ("udp://0.0.0.0", "0.0.0.0 is the address of no robot"),
-            ("udp://0", "0 is the address of no robot"),
-            ("udp://0x0.0:10040", "is the address of no robot"),
-            ("udp://[::]", ":: is the address of no robot"),
-            ("udp://[::ffff:0.0.0.0]", "is the address of no robot"),
+            ("udp://0.0.0.0", "0.0.0.0 is not a valid robot address"),
+            ("udp://0", "0 is not a valid robot address"),
+            ("udp://0x0.0:10040", "is not a valid robot address"),
+            ("udp://[::]", ":: is not a valid robot address"),
+            ("udp://[::ffff:0.0.0.0]", "is not a valid robot address"),
             ("udp://h:0", "1 to 65535"),
             ("udp://h:70000", "1 to 65535"),
             ("udp://h?modle=fs100", "modle"),
-            ("udp://h?model=xrc", "there are auto, fs100, dx100, dx200 and yrc1000"),
+            ("udp://h?model=xrc", "known: auto, fs100, dx100, dx200 and yrc1000"),
             ("udp://h?model=fs100&model=dx200", "twice"),
-            ("sim:dx200", "means nothing"),
-            ("sim:?fault=%4", "damaged"),
-            ("sim:?axes=5", "axes is a number from 1 to 4"),
+            ("sim:dx200", "has no meaning"),
+            ("sim:?fault=%4", "invalid %"),
+            ("sim:?axes=5", "axes must be a number from 1 to 4"),
             ("sim:?bus=can", "devicenet-compact or profibus or profinet, not 'can'"),
             ("sim:?baud=fast", "50 to 4000000"),
             ("serial:COM3", "slashes"),
@@ -482,16 +482,16 @@ mod tests {
             ("serial://dev/ttyUSB0", "third slash"),
             ("serial://COM3?baud=0", "50 to 4000000, not '0'"),
             ("serial://COM3?baud=5000000", "50 to 4000000"),
-            ("serial://COM3?parity=mark", "parity is even or odd or none, not 'mark'"),
-            ("serial://COM3?data_bits=5", "data_bits is 8 or 7, not '5'"),
-            ("serial://COM3?stop_bits=1.5", "stop_bits is 1 or 2, not '1.5'"),
+            ("serial://COM3?parity=mark", "parity must be even or odd or none, not 'mark'"),
+            ("serial://COM3?data_bits=5", "data_bits must be 8 or 7, not '5'"),
+            ("serial://COM3?stop_bits=1.5", "stop_bits must be 1 or 2, not '1.5'"),
             ("serial://COM3?flow=rts", "unknown parameter 'flow'"),
             ("tcp:h:1", "slashes"),
             ("tcp://h", "port is missing"),
             ("tcp://:4001", "host is missing"),
-            ("tcp://0.0.0.0:4001", "is the address of no robot"),
+            ("tcp://0.0.0.0:4001", "is not a valid robot address"),
             ("tcp://h:0", "1 to 65535"),
-            ("tcp://h:4001?parity=odd", "unknown parameter 'parity'; there are baud"),
+            ("tcp://h:4001?parity=odd", "unknown parameter 'parity'; known: baud"),
         ] {
             let failure = url.parse::<Target>().unwrap_err();
             assert!(failure.message.contains(part), "{url}: {}", failure.message);
@@ -546,8 +546,8 @@ mod tests {
             ("sim:?baud=9600", Family::Yerc, Some("'baud' in a sim: URL is for toyo, not for yerc")),
             ("sim:?model=fs100", Family::Toyo, Some("'model' in a sim: URL is for yerc, not for toyo")),
             ("sim:?move_words=25", Family::Toyo, Some("'move_words' in a sim: URL is for yerc, not for toyo")),
-            ("tcp://h:1", Family::Yerc, Some("yerc is not reached over tcp:")),
-            ("udp://h", Family::Toyo, Some("toyo is not reached over udp:")),
+            ("tcp://h:1", Family::Yerc, Some("a yerc robot has no tcp: URL")),
+            ("udp://h", Family::Toyo, Some("a toyo robot has no udp: URL")),
         ] {
             assert_eq!(target(url).check(family).err().as_deref(), why, "{url}");
         }

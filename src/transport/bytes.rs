@@ -18,7 +18,7 @@ pub struct WireError {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Problem {
     /// The message ends inside the field.
-    #[error("needs {needed} bytes, {present} are there")]
+    #[error("needs {needed} bytes, but only {present} are present")]
     Short {
         /// Length of the field.
         needed: usize,

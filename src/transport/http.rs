@@ -254,7 +254,7 @@ async fn asked(stream: &mut TcpStream, answer: &impl Fn(&Request<'_>) -> Answer)
             Ok(httparse::Status::Partial) | Err(httparse::Error::TooManyHeaders) => {
                 Asked::Text(Answer::text(Status::TooLong, "the request is too long"), false)
             }
-            Err(_) => Asked::Text(Answer::text(Status::BadRequest, "this is no HTTP request"), false),
+            Err(_) => Asked::Text(Answer::text(Status::BadRequest, "this is not an HTTP request"), false),
         });
     }
 }
@@ -267,7 +267,7 @@ fn answered(request: &httparse::Request<'_, '_>, answer: &impl Fn(&Request<'_>) 
     let accept = accept.and_then(|line| std::str::from_utf8(line.value).ok());
     let answer = answer(&Request { path, accept });
     if answer.status == Status::Ok && !is_head && request.method != Some("GET") {
-        return Asked::Text(Answer::text(Status::MethodNotAllowed, "this can only be read"), false);
+        return Asked::Text(Answer::text(Status::MethodNotAllowed, "only GET and HEAD are possible"), false);
     }
     Asked::Text(answer, is_head)
 }

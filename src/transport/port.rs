@@ -105,7 +105,7 @@ impl Threaded {
     async fn settle(&mut self) -> io::Result<()> {
         match &mut self.state {
             State::Idle(_) => Ok(()),
-            State::Lost => Err(vanished("the thread that had it ended")),
+            State::Lost => Err(vanished("its thread has ended")),
             State::Busy { job, is_stale } => {
                 let done = job.await;
                 let is_stale = *is_stale;
@@ -131,7 +131,7 @@ impl Threaded {
 fn read(port: &mut Port) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; PIECE];
     match port.read(&mut bytes) {
-        Ok(0) => Err(vanished("its end was reached")),
+        Ok(0) => Err(vanished("it has ended")),
         Ok(len) => {
             bytes.truncate(len);
             Ok(bytes)
@@ -151,7 +151,7 @@ fn write(port: &mut Port, mut bytes: &[u8], longest: Duration) -> io::Result<()>
             Err(error) => return Err(vanished(error)),
         }
         if !bytes.is_empty() && start.elapsed() > longest {
-            return Err(io::Error::new(io::ErrorKind::TimedOut, "the port takes no bytes"));
+            return Err(io::Error::new(io::ErrorKind::TimedOut, "the port accepts no bytes"));
         }
     }
     Ok(())

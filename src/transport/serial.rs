@@ -49,19 +49,19 @@ impl Line {
 #[derive(Debug, Error)]
 pub enum OpenError {
     /// The device or its hardware does not exist.
-    #[error("there is no such port")]
+    #[error("no such port")]
     Absent,
     /// Another program has it open.
     #[error("another program uses the port")]
     Busy,
     /// No permission.
-    #[error("this user may not open the port")]
+    #[error("no permission to open the port")]
     Forbidden,
     /// Not a serial port, for example a file.
     #[error("this is not a serial port")]
     NotSerial,
     /// The port does not support the settings.
-    #[error("the port does not take these settings: {0}")]
+    #[error("the port does not support these settings: {0}")]
     Unsupported(String),
     /// Another error.
     #[error("{0}")]
@@ -274,11 +274,15 @@ mod tests {
     #[test]
     fn errors_of_opening_are_told_apart() {
         for (kind, text, message) in [
-            (ErrorKind::Io(io::ErrorKind::NotFound), "", "there is no such port"),
-            (ErrorKind::Unknown, "No such device or address", "there is no such port"),
+            (ErrorKind::Io(io::ErrorKind::NotFound), "", "no such port"),
+            (ErrorKind::Unknown, "No such device or address", "no such port"),
             (ErrorKind::NoDevice, "Device or resource busy", "another program uses the port"),
-            (ErrorKind::Io(io::ErrorKind::PermissionDenied), "", "this user may not open the port"),
-            (ErrorKind::Unknown, "Invalid argument", "the port does not take these settings: the driver refuses them"),
+            (ErrorKind::Io(io::ErrorKind::PermissionDenied), "", "no permission to open the port"),
+            (
+                ErrorKind::Unknown,
+                "Invalid argument",
+                "the port does not support these settings: the driver refuses them",
+            ),
             (ErrorKind::Unknown, "Out of memory", "Out of memory"),
         ] {
             let error = open_error(&serialport::Error::new(kind, text), "/dev/ttyUSB0");
@@ -298,7 +302,7 @@ mod tests {
             (Line { data_bits: DataBits::Seven, baud: 38_400, ..usual.clone() }, "7 data bits"),
             (Line { stop_bits: StopBits::Two, baud: 38_400, ..usual }, "2 stop bits"),
         ] {
-            assert_eq!(settings(line), Some(format!("the port does not take these settings: {what}")));
+            assert_eq!(settings(line), Some(format!("the port does not support these settings: {what}")));
         }
         // Close enough for one bus, but not for the other.
         let near = Line { parity: Parity::None, baud: 38_600, ..line("/dev/ttyUSB0") };

@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(heard(), "WATCHDOG=1\nSTATUS=2 answer");
         supervisor.stopping().unwrap();
         assert_eq!(heard(), "STOPPING=1");
-        assert!(Supervisor::default().ready("nobody wants to know").is_ok());
+        assert!(Supervisor::default().ready("no supervisor").is_ok());
     }
 
     #[cfg(target_os = "linux")]

@@ -17,10 +17,10 @@ pub enum ConnectError {
     #[error("the name has no address")]
     NotFound,
     /// No program listens on the port.
-    #[error("nobody listens there")]
+    #[error("no program listens on this port")]
     Refused,
     /// The host or its network is unreachable.
-    #[error("no way leads there")]
+    #[error("no route to the host")]
     Unreachable,
     /// Timeout.
     #[error("no answer")]
@@ -189,6 +189,9 @@ mod tests {
 
         let texts = [ConnectionRefused, HostUnreachable, NetworkUnreachable, TimedOut, Other]
             .map(|kind| connect_error(io::Error::new(kind, "other")).to_string());
-        assert_eq!(texts, ["nobody listens there", "no way leads there", "no way leads there", "no answer", "other"]);
+        assert_eq!(
+            texts,
+            ["no program listens on this port", "no route to the host", "no route to the host", "no answer", "other"]
+        );
     }
 }

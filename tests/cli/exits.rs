@@ -75,7 +75,7 @@ fn five_a_host_that_answers_garbage() {
             .replace(&target, "udp://127.0.0.1:10040"),
         snapbox::str![[r#"
 5 "malformed"
-"udp://127.0.0.1:10040: no answer of the protocol within 200ms, but 1 truncated"
+"udp://127.0.0.1:10040: no valid answer within 200ms, but 1 truncated"
 
 "#]]
     );
@@ -123,9 +123,9 @@ fn six_in_words() {
     snapbox::assert_data_eq!(
         stderr,
         snapbox::str![[r#"
-error: udp://127.0.0.1:10040: sent once, no answer within 100ms: it may or may not have been done
+error: udp://127.0.0.1:10040: sent once, no answer within 100ms: the result is unknown
 
-hint: ask before you repeat it: `yerc status` tells
+hint: check before you repeat it: `yerc status` shows the state
 
 "#]]
     );

@@ -112,8 +112,11 @@ async fn ciplink_refuses_what_does_not_fit() {
     let adapter = ciplink(address);
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
     let cases = [
-        (Settings { output_size: 40, resting: vec![0; 40], ..patient() }, "(0x01/0x0109), the right one is 54 bytes"),
-        (Settings { input_size: 600, ..patient() }, "(0x01/0x0109), the right one is 50 bytes"),
+        (
+            Settings { output_size: 40, resting: vec![0; 40], ..patient() },
+            "(0x01/0x0109), the correct size is 54 bytes",
+        ),
+        (Settings { input_size: 600, ..patient() }, "(0x01/0x0109), the correct size is 50 bytes"),
         (Settings { output: 100, input: 150, ..patient() }, "(0x01/0x0117)"),
         (Settings { rpi: MS, ..patient() }, "(0x01/0x0111)"),
     ];

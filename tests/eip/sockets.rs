@@ -141,7 +141,7 @@ async fn refusals_come_back_from_open() {
     let refused = scanner.open(server.address(), wrong, Tap::default()).await.unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 50 bytes"
+        "ForwardOpen was refused: invalid connection size (0x01/0x0109), the correct size is 50 bytes"
     );
     let first = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     let second = scanner.open(server.address(), quick(), Tap::default()).await.unwrap_err();

@@ -107,7 +107,7 @@ fn who_sends_without_end_or_little_by_little_holds_up_no_command() {
     for manner in MANNERS {
         check(
             &format!("udp://127.0.0.1:{}", udp(manner)),
-            &[("yerc status", 5, "within 1.8s"), ("yerc hold on", 6, "nothing tells that the robot is held")],
+            &[("yerc status", 5, "within 1.8s"), ("yerc hold on", 6, "armctl cannot confirm that the robot is held")],
         );
         for text in [&b"\0"[..], b"\x6f\0\xff\0"] {
             let silent = [("yrcx status", 4, "within 500 ms"), ("yrcx stop", 4, "within 500 ms")];
@@ -145,6 +145,6 @@ fn what_answers_something_else_is_asked_one_question() {
     });
     let desk = Desk::new("");
     let came = run(&desk, &format!("tcp://127.0.0.1:{port}"), "--retries 2 toyo position");
-    assert!(came.exit == Some(5) && came.stderr.contains("it answers something else"), "{came:?}");
+    assert!(came.exit == Some(5) && came.stderr.contains("it answers another request"), "{came:?}");
     assert_eq!(*asked.lock().unwrap(), ["@SYSP", "@SYSP", "@SYSP"]);
 }

@@ -71,7 +71,7 @@ fn read_only_holds_in_a_session_that_is_open_already() {
         for change in changes {
             let refused = around(change);
             assert_eq!(refused.exit, Some(7), "{family} {change}: {refused:?}");
-            assert!(refused.stderr.contains("is read-only: its session passed nothing on"), "{change}: {refused:?}");
+            assert!(refused.stderr.contains("is read-only: the session sent nothing"), "{change}: {refused:?}");
         }
         assert_eq!(around(read).exit, Some(0), "{family}: {:?}", around(read));
         // It never relaxes.
@@ -89,7 +89,7 @@ fn the_command_connection_of_a_yrcx_is_a_motion_outside_a_session() {
     let desk = Desk::new(&inventory.concat());
     desk.fails("-r free yrcx info version", 7, "stops the robot");
     desk.fails("-r kept yrcx info version --yes", 7, "is read-only");
-    desk.fails("-r kept session open", 7, "a session commands the controller");
+    desk.fails("-r kept session open", 7, "a session takes control of the controller");
     assert_eq!(desk.run("-r free yrcx status").exit, Some(0), "what only looks takes no connection");
     assert_eq!(desk.run("-r free yrcx info version --yes").exit, Some(0));
     assert_eq!(desk.run("-r free session open --background").exit, Some(0));
@@ -102,7 +102,7 @@ fn a_robot_that_wants_it_has_its_session_opened() {
     let controller = Simulator::start("yrcx");
     let desk = Desk::new(&entry("cell", &controller.url, "hold = true"));
     let first = desk.run("-r cell yrcx info version");
-    assert!(first.exit == Some(0) && first.stderr.contains("a session was opened"), "{first:?}");
+    assert!(first.exit == Some(0) && first.stderr.contains("session opened"), "{first:?}");
     let second = desk.run("-r cell yrcx info version");
     assert!(second.exit == Some(0) && !second.stderr.contains("session"), "{second:?}");
     assert_eq!(desk.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");
@@ -132,7 +132,7 @@ fn a_flag_that_means_nothing_is_a_mistake() {
     let desk = Desk::new("");
     for (line, part) in [
         ("robots add foo udp://127.0.0.1 --tag line1", "--tag has no effect"),
-        ("robots list --sim", "--sim and -t select no robots of the inventory"),
+        ("robots list --sim", "--sim and -t cannot select robots in the inventory"),
         ("robots path --tag line1", "--tag has no effect"),
         ("robots remove foo --dry-run", "--dry-run has no effect"),
         ("decode toyo @STOP --all", "--all has no effect"),

@@ -46,12 +46,12 @@ fn files_are_overwritten_and_deleted_only_after_a_yes() {
     desk.fails(
         "-r cell yerc file put HOME.JBI --replace",
         7,
-        "would overwrite 1 file on the controller (HOME.JBI, by ",
+        "would overwrite 1 file on the controller (HOME.JBI, with the ",
     );
     assert_eq!(jobs(&desk), before, "nothing was done");
 
     // What is not there is said, and what is new overwrites nothing.
-    desk.fails("-r cell yerc file delete NONE.JBI", 3, "lists no such file");
+    desk.fails("-r cell yerc file delete NONE.JBI", 3, "the file does not exist on the controller");
     assert_eq!(desk.run("-r cell yerc file put NEW.JBI").exit, Some(0));
     assert_eq!(desk.run("-r cell yerc file put HOME.JBI --replace --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell yerc file delete NEW.JBI --yes").exit, Some(0));
@@ -68,7 +68,7 @@ fn a_restore_asks_for_what_differs_alone() {
     }
     assert_eq!(desk.run("-r cell yerc file put HOME.JBI --replace --yes").exit, Some(0));
     for restore in ["-r cell restore saved", "-r cell restore saved --machine", "-r cell yerc restore saved"] {
-        desk.fails(restore, 7, "would overwrite 1 file on the controller (HOME.JBI, by ");
+        desk.fails(restore, 7, "would overwrite 1 file on the controller (HOME.JBI, with the ");
     }
     desk.fails("-r cell yerc restore saved --machine", 7, "would overwrite ");
     assert_eq!(desk.run("-r cell restore saved --yes").exit, Some(0));

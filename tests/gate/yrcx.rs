@@ -24,7 +24,7 @@ fn a_motion_through_a_session_is_asked_about_in_numbers() {
     for (line, said) in [
         ("move --point 19 --speed 20", &["axis 1: 0.000 -> 30.000 mm", "The target is 50.000 mm away."][..]),
         ("drive --axis 3 --to 10.5", &["axis 3: 0.000 -> 10.500 mm"]),
-        ("move --point 77", &["Where the point is could not be read."]),
+        ("move --point 77", &["The point could not be read."]),
         ("movei --by 1,2,3,4", &["This will move robot 1 by axis 1: 1 mm, axis 2: 2 mm"]),
     ] {
         desk.fails(&format!("-r cell yrcx {line}"), 7, "would move ");
@@ -88,7 +88,8 @@ fn what_wants_a_word_wants_it_with_its_connection_too() {
     let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
     let refused = desk.run("-r cell yrcx abs-reset --axis 2");
     assert_eq!(refused.exit, Some(7));
-    for part in ["make the place where axis 2 of robot 1 stands its reset position", "and take the command connection"]
+    for part in
+        ["set the current position of axis 2 of robot 1 as its reset position", "and open the command connection"]
     {
         assert!(refused.stderr.contains(part), "{refused:?}");
     }
@@ -105,7 +106,7 @@ fn a_restore_asks_once_with_old_and_new() {
     for restore in ["yrcx restore saved", "restore saved"] {
         desk.fails(&format!("-r cell {restore}"), 7, "this would overwrite ");
     }
-    desk.fails("-r cell yrcx restore saved", 7, "overwrite 2 values by those of saved (shifts 4: 1.000 ");
+    desk.fails("-r cell yrcx restore saved", 7, "overwrite 2 values with those of saved (shifts 4: 1.000 ");
     let restored = desk.data("-r cell yrcx restore saved --yes");
     let written: Vec<u64> =
         restored["files"].as_array().unwrap().iter().map(|item| item["written"].as_u64().unwrap()).collect();
@@ -159,7 +160,7 @@ fn dry_runs_go_to_their_end() {
     let codes: Vec<&str> =
         set["frames"].as_array().unwrap().iter().map(|frame| frame["wi"][0].as_str().unwrap()).collect();
     assert_eq!(codes, ["0x0101", "0x0100"]);
-    assert!(set["frames"][1]["depends_on"].as_str().unwrap().contains("if that is something else"));
+    assert!(set["frames"][1]["depends_on"].as_str().unwrap().contains("sent if different"));
     let run = desk.data("-r cell yrcx recover --dry-run");
     let edges: Vec<&str> =
         run["frames"].as_array().unwrap().iter().map(|frame| frame["about"].as_str().unwrap()).collect();

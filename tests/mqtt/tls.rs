@@ -65,8 +65,8 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
     let (code, said) = publish(&desk, &broker, &["--ca", "ca.pem"]);
     assert_eq!(code, Some(0), "{said}");
     for (words, why) in [
-        (&["--ca", "stranger.pem"][..], "issued by nobody who is trusted here"),
-        (&[], "issued by nobody who is trusted here"),
+        (&["--ca", "stranger.pem"][..], "does not trust the issuer"),
+        (&[], "does not trust the issuer"),
         (&["--ca", "ca.key"], "not a certificate in PEM"),
         (&["--ca", "ca.pem", "--cert", "client.pem", "--key", "ca.pem"], "not a private key in PEM"),
     ] {
@@ -84,14 +84,14 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
     assert!(code == Some(0) && !said.contains("can read"), "{said}");
     std::fs::set_permissions(strict.folder().join("client.key"), Permissions::from_mode(0o640)).unwrap();
     let (code, said) = publish(&desk, &strict, &client);
-    assert!(code == Some(0) && said.matches("users of this machine can read this private key").count() == 1, "{said}");
+    assert!(code == Some(0) && said.matches("users of this computer can read this private key").count() == 1, "{said}");
     let (code, said) = publish(&desk, &strict, &["--ca", "ca.pem"]);
     assert!(code == Some(2) && said.contains("does not accept this client's certificate"), "{code:?} {said}");
 
     // A port without TLS, and one with it that is talked to without.
     let plain = Mosquitto::start();
     let (code, said) = publish(&desk, &plain, &[]);
-    assert!(code == Some(2) && said.contains("does not speak TLS"), "{code:?} {said}");
+    assert!(code == Some(2) && said.contains("does not use TLS"), "{code:?} {said}");
     let output = desk.run(&["publish", &broker.url(), "--count", "1", "--kinds", "status"]);
     assert!(output.status.code() == Some(4) && stderr(&output).contains("mqtts://"), "{}", stderr(&output));
 }
@@ -115,7 +115,7 @@ fn a_service_waits_for_a_broker_to_get_the_right_certificate() {
     let url = broker.url().replace("mqtt:", "mqtts:");
     let mut publisher = Publisher::start(desk.command(&["publish", &url, "--ca", &ca, "--json"]));
     publisher
-        .says("its certificate is for another name (write the name that is in the certificate into the URL); trying");
+        .says("its certificate is for another name (use the name in the certificate as the host of the URL); next try");
     broker.kill();
     put(broker.folder(), "broker");
     broker.start_again();

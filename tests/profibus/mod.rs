@@ -183,7 +183,7 @@ fn a_listener_sees_the_images_of_a_live_exchange_and_sends_nothing() {
         assert!(seen.0.contains(expected) && seen.1 == Some(0), "{seen:?}");
     }
     let checked = run(&listens, &["robots", "check"]);
-    assert!(checked.0.contains("nothing is sent") && checked.0.contains("heard in the answers"), "{checked:?}");
+    assert!(checked.0.contains("nothing is sent") && checked.0.contains("received from its answers"), "{checked:?}");
     let refused = run(&listens, &["--yes", "yrcx", "info", "servo"]);
     assert!(refused.0.contains("needs a connection that commands") && refused.1 == Some(2), "{refused:?}");
     let closed = run(&owner, &["session", "close"]);

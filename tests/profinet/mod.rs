@@ -61,7 +61,11 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
     };
     let trace = format!("--yes --trace {place}/trace.pcapng yrcx info version");
     for (typed, exit, parts) in [
-        ("robots check", "0", &["station ok 'yrcx-sim'", "RPC ok", "modules ok", "only to the controller it is"][..]),
+        (
+            "robots check",
+            "0",
+            &["station ok 'yrcx-sim'", "RPC ok", "modules ok", "only to the controller that owns"][..],
+        ),
         (&trace, "0", &["host V1.08"]),
         (
             "decode",
@@ -74,7 +78,7 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
         ("yrcx io get", "0", &["CPU_OK"]),
         ("yrcx position", "0", &["mm"]),
         ("yrcx io get servo-on", "0", &["servo-on on"]),
-        ("--yes session open", "4", &["a session is open already"]),
+        ("--yes session open", "4", &["a session is already open"]),
         ("--yes yrcx info system", "4", &["UDP port 34964", "ss -lunp"]),
         ("session close", "0", &["closed"]),
         ("--yes yrcx recover", "7", &["read-only", "its address is that of 'line3'"]),
@@ -82,7 +86,7 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
         ("session open", "7", &["read-only"]),
         ("--yes yrcx alarm reset", "4", &["02:00:00:00:00:09 was not found"]),
         ("--yes yrcx info tasks", "4", &["station 'other' was not found"]),
-        ("--yes yrcx info slots", "2", &["no network interface 'pc9'", "there are pc0"]),
+        ("--yes yrcx info slots", "2", &["has no network interface 'pc9'", "use one of pc0"]),
         ("--yes yrcx info speed", "3", &["Connect was refused"]),
         ("unprivileged", "1", &["CAP_NET_RAW", "setcap cap_net_raw+ep"]),
     ] {

@@ -194,7 +194,7 @@ fn stops(motion: &Motion, signals: &[&str], ways: &[(Way, bool)]) {
             let said = moving.ends(&desk, session.as_ref());
             assert_eq!(*signal == "STOP", said.contains("did not respond for 2 s"), "{way:?}: {said}");
             if let Some(mut session) = session {
-                session.says("it was moving the robot");
+                session.says("it moved the robot");
                 session.says("the robot was stopped");
                 if motion.family == "yrcx" {
                     desk.until(|session| session["under_way"] == false);
@@ -344,7 +344,7 @@ fn a_move_that_is_to_be_left_goes_on_when_its_process_is_killed() {
         moving.signal("KILL");
         assert_eq!(moving.end().0, None);
         if let Some(session) = &mut session {
-            session.says("it was moving the robot");
+            session.says("it moved the robot");
         }
         let status = desk.data("-r a yerc status");
         assert_eq!((&status["held"], &status["running"]), (&false.into(), &true.into()), "{status}");
@@ -391,7 +391,7 @@ fn a_stop_goes_around_a_session_that_does_not_respond() {
         let stopped = desk.run(&format!("-r a {stop}"));
         if motion.family == "yerc" {
             assert!(stopped.status.success(), "{}", stderr(&stopped));
-            assert!(stderr(&stopped).contains("so the stop goes without it"), "{}", stderr(&stopped));
+            assert!(stderr(&stopped).contains("so the stop is sent directly"), "{}", stderr(&stopped));
             assert_eq!(desk.data("-r a --no-session yerc status")["held"], true);
         } else {
             assert_eq!(stopped.status.code(), Some(4), "{}", stderr(&stopped));

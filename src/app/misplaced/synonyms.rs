@@ -61,11 +61,11 @@ pub const LINES: &[(&str, &[&str])] = &[
 #[rustfmt::skip]
 pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc", &["homing", "origin"],
-        "the protocol has no return to origin; a job that leads there has it (see `armctl yerc job -h`), and the mechanical \
-         origin is set at the pendant"),
-    ("yrcx", &["jobs"], "a YRCX has programs: see `armctl yrcx program -h`"),
-    ("toyo", &["jobs"], "a Toyo controller has programs: `armctl toyo program list`"),
-    ("yrcx run", &["point"], "a YRCX moves to a point with `armctl yrcx move`: see its -h"),
+        "the protocol has no return to origin: start a job that moves there (see `armctl yerc job -h`). Set the \
+         mechanical origin at the pendant"),
+    ("yrcx", &["jobs"], "a YRCX has programs, not jobs: see `armctl yrcx program -h`"),
+    ("toyo", &["jobs"], "a Toyo controller has programs, not jobs: see `armctl toyo program list`"),
+    ("yrcx run", &["point"], "move to a point with `armctl yrcx move`; see `armctl yrcx move -h`"),
     ("toyo io", &["in", "out", "internal"], "the command is `armctl toyo io list`"),
     ("robots", &["names"], "the command is `armctl names list -r ROBOT`"),
     ("yerc names", &["list"], "the command is `armctl names list -r ROBOT`"),

@@ -129,7 +129,10 @@ impl History {
             .map_err(ReadlineError::Io)
             .and_then(|()| if path.exists() { editor.load_history(&path) } else { Ok(()) });
         if let Err(error) = found {
-            screen.detail(1, &format!("{}: {error}; the history is kept only until you leave", path.display()));
+            screen.detail(
+                1,
+                &format!("{}: {error}; armctl keeps the history only until the prompt ends", path.display()),
+            );
             return None;
         }
         Some(Self(path))

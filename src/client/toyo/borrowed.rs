@@ -83,7 +83,7 @@ impl Client {
         let asked = match (self.host, on) {
             (Host::Taken | Host::Found, _) => return,
             (_, Some(on)) => asked.depending_on(on),
-            (Host::Perhaps, None) => asked.depending_on("whether it was asked before"),
+            (Host::Perhaps, None) => asked.depending_on("whether the host state was read before"),
             (Host::Unknown, None) => asked,
         };
         self.note(&status_page(HOST_PAGE), asked);
@@ -184,8 +184,8 @@ impl Client {
     fn plan_put_back(&mut self) {
         while let Some(back) = self.owed.pop() {
             self.plan_fence();
-            let reason = Reason::about("to put back what was found");
-            self.plan_depending(&back, reason.depending_on("what was found"));
+            let reason = Reason::about("restore the earlier setting");
+            self.plan_depending(&back, reason.depending_on("the earlier setting"));
         }
     }
 

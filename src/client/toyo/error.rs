@@ -22,22 +22,22 @@ pub enum Error {
     #[error(transparent)]
     Refused(#[from] Refusal),
     /// The controller refused even a status or position request (`@NG`): it is busy.
-    #[error("the controller refuses even to tell its status (@NG)")]
+    #[error("the controller refused to report its status (@NG)")]
     Mute,
     /// The host has no control: the teach pendant is ON (TO 2-2).
-    #[error("the controller refused: the teach pendant is ON, and the host cannot take over")]
+    #[error("the controller refused: the teach pendant is ON, so the host cannot take control")]
     PendantOn,
     /// A read has no valid answer.
     #[error("{0}")]
     NoAnswer(Box<Unanswered>),
     /// An order has no valid answer: it may or may not have been carried out. It was sent once.
-    #[error("the order was sent, but whether it was carried out is unknown: {0}")]
+    #[error("the command was sent, and may or may not have been carried out: {0}")]
     OutcomeUnknown(Box<Unanswered>),
     /// The line was lost after an order was sent and before its answer.
-    #[error("{0}; whether the order was carried out is unknown")]
+    #[error("{0}; the command was sent, and may or may not have been carried out")]
     CutShort(Box<Self>),
     /// An order was not sent, because the check of the line before it failed.
-    #[error("the order was not sent: {0}")]
+    #[error("the command was not sent: {0}")]
     NotSent(Box<Self>),
     /// An answer without the requested content.
     #[error("unexpected answer '{block}': {why}")]
@@ -48,7 +48,7 @@ pub enum Error {
         why: String,
     },
     /// One exchange brought more characters than a controller sends.
-    #[error("{received} characters came, and no answer among them")]
+    #[error("received {received} characters, but no answer")]
     Flooded {
         /// Characters received.
         received: usize,
@@ -57,7 +57,7 @@ pub enum Error {
     #[error("{0}")]
     Unsendable(#[from] BlockError),
     /// A temporary change was not undone.
-    #[error("what was changed for a while was not put back by {block}: {}", why(.cause.as_deref()))]
+    #[error("a temporary change was not undone by {block}: {}", why(.cause.as_deref()))]
     NotPutBack {
         /// The block that undoes it.
         block: String,
@@ -65,16 +65,16 @@ pub enum Error {
         cause: Option<Box<Self>>,
     },
     /// The host is still ON; this client had switched it ON.
-    #[error("the host was switched ON and could not be switched OFF again: {}", why(.0.as_deref()))]
+    #[error("armctl switched host control ON and could not switch it OFF again: {}", why(.0.as_deref()))]
     HostKept(Option<Box<Self>>),
     /// The robot still moves after a stop.
-    #[error("the controller {}", if *.is_refused { "refuses to stop (@NG)" } else { "moves on although it said @OK" })]
+    #[error("the controller {}", stop_answer(*.is_refused))]
     MovesOn {
         /// Whether the controller refused the stop.
         is_refused: bool,
     },
     /// No answer confirms that the robot stands still.
-    #[error("nothing tells that it stands: {0}")]
+    #[error("armctl cannot confirm that the robot stands still: {0}")]
     StandUnseen(Box<Self>),
     /// The request is above the authorized risk.
     #[error(transparent)]
@@ -122,6 +122,10 @@ pub enum Error {
     NotKnown,
 }
 
+const fn stop_answer(is_refused: bool) -> &'static str {
+    if is_refused { "refuses to stop (@NG)" } else { "answered @OK, but the robot still moves" }
+}
+
 fn why(cause: Option<&Error>) -> String {
     cause.map_or("@NG".to_owned(), ToString::to_string)
 }
@@ -160,7 +164,7 @@ impl fmt::Display for Unanswered {
         let Counters { received, noise, echoes, .. } = self.counters;
         match &self.unfitting {
             Some((block, why)) => write!(f, "unexpected answer '{block}': {why}")?,
-            None if received == echoes && echoes > 0 => f.write_str("only what was sent came back")?,
+            None if received == echoes && echoes > 0 => f.write_str("received only an echo of the sent bytes")?,
             None if received == 0 && noise > 0 => write!(f, "no answer, but {noise} stray characters")?,
             None => write!(f, "no answer within {:.1?}", self.waited)?,
         }
@@ -181,17 +185,20 @@ mod tests {
         let silence = Unanswered { request, waited: Duration::from_secs(1), counters, unfitting: None };
         let silent = Error::NoAnswer(Box::new(silence.clone()));
         assert_eq!(silent.to_string(), "no answer within 1.0s (@MPST)");
-        let unfitting = Some(("@M".to_owned(), "there is no command 'M'".to_owned()));
+        let unfitting = Some(("@M".to_owned(), "unknown command 'M'".to_owned()));
         let noise = Unanswered { counters: Counters { noise: 7, ..counters }, request: None, ..silence };
         assert_eq!(noise.to_string(), "no answer, but 7 stray characters");
         let odd = Error::NoAnswer(Box::new(Unanswered { unfitting, ..noise }));
         assert!(odd.is_malformed() && !silent.is_malformed());
-        assert_eq!(odd.to_string(), "unexpected answer '@M': there is no command 'M'");
+        assert_eq!(odd.to_string(), "unexpected answer '@M': unknown command 'M'");
         let kept = Error::HostKept(None).to_string();
-        assert_eq!(kept, "the host was switched ON and could not be switched OFF again: @NG");
+        assert_eq!(kept, "armctl switched host control ON and could not switch it OFF again: @NG");
         let refusal = Error::from(Refusal(Request::bare(Command::Home)));
         assert_eq!(refusal.to_string(), "the controller refused HOME (@NG)");
         let unseen = Error::StandUnseen(Box::new(Error::Mute)).to_string();
-        assert!(unseen.starts_with("nothing tells that it stands: the controller refuses"), "{unseen}");
+        assert!(
+            unseen.starts_with("armctl cannot confirm that the robot stands still: the controller refused"),
+            "{unseen}"
+        );
     }
 }

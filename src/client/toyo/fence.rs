@@ -11,7 +11,7 @@ use super::{Client, Error, Event, Transport, status_page};
 use crate::Reason;
 
 /// Purpose of the fence in a plan.
-pub const FENCE: &str = "whether the line is at peace";
+pub const FENCE: &str = "check that the line is quiet";
 
 impl Client {
     /// Sends a harmless read before an order, unless the last exchange was an answered read.

@@ -70,8 +70,8 @@ impl Client {
         }
         let system = Request::bare(Command::Sysp);
         if self.is_dry() {
-            self.plan(&system, "the letters of the axes; what follows is for X, Y, Z and R");
-            self.plan_if(&letters_request(), "whether that is refused");
+            self.plan(&system, "the letters of the axes; later lines assume X, Y, Z and R");
+            self.plan_if(&letters_request(), "whether the controller refuses that");
             self.letters = Some(Letters::USUAL);
             return Ok(Letters::USUAL);
         }

@@ -311,7 +311,7 @@ impl Client {
         for page in pages {
             let record = self.ask_now(&status_page(*page)).await?.map_err(|_| Error::Mute)?;
             let byte = record.byte("st1");
-            status = status.with(*page, byte.ok_or_else(|| malformed(&record.written(), "there is no status in it"))?);
+            status = status.with(*page, byte.ok_or_else(|| malformed(&record.written(), "it contains no status"))?);
         }
         if pages.contains(&HOST_PAGE) {
             self.watcher.event(Event::Host { status, is_taken: self.host == Host::Taken });

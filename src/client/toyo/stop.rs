@@ -54,15 +54,15 @@ impl Client {
     /// [`Error::StandUnseen`] if no answer confirms it, [`Error::MovesOn`] if the robot still moves.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Error> {
         if self.is_dry() {
-            self.plan(&moving.stop(), "until it stands");
-            self.plan(&status_page(0), "until it stands: whether something is executed");
+            self.plan(&moving.stop(), "repeated until the robot stands still");
+            self.plan(&status_page(0), "repeated until the robot stands still: does something run?");
             if moving == Moving::Program {
-                self.plan_if(&Moving::Jog.stop(), "whether something is executed on: an axis may be jogged");
-                self.plan_if(&status_page(0), "whether something is executed on");
+                self.plan_if(&Moving::Jog.stop(), "whether something still runs: an axis may be jogging");
+                self.plan_if(&status_page(0), "whether something still runs");
             }
-            self.plan(&Request::bare(Command::Mpst), "until it stands: where");
+            self.plan(&Request::bare(Command::Mpst), "repeated until the robot stands still: position");
             if self.host == Host::Unknown {
-                let on = "whether the stop of a jog is refused, as it may be while the host is OFF";
+                let on = "whether the controller refuses the stop of a jog, for example while the host is OFF";
                 self.plan_to_take_host(Some(on));
                 self.plan_if(&Moving::Jog.stop(), on);
             }

@@ -58,8 +58,8 @@ impl Client {
         let is_noted = self.fitted.iter().any(|known| (known.0, known.1) == (group, coordinates));
         let Ok(question) = ReadAxes::new(self.model_to_show(), group, coordinates) else { return };
         if !is_noted {
-            let reason = Reason::about("which axes exist, if all eight are answered");
-            self.plan_if(&question.request(), reason.depending_on("how many axes the answer before has"));
+            let reason = Reason::about("which axes exist, if the answer has all eight");
+            self.plan_if(&question.request(), reason.depending_on("the number of axes in the answer before"));
             self.fitted.push((group, coordinates, Fitted::ALL));
         }
     }

@@ -33,7 +33,7 @@ pub enum Error {
         counters: Counters,
     },
     /// Data was received, but no valid frame.
-    #[error("no answer of the protocol within {waited:?}, but {counters}")]
+    #[error("no valid answer within {waited:?}, but {counters}")]
     Garbage {
         /// Total wait.
         waited: Duration,
@@ -44,7 +44,7 @@ pub enum Error {
     #[error("unexpected answer: {0}")]
     Unexpected(#[from] PayloadError),
     /// A change without an answer: it may or may not have been carried out. It was sent once.
-    #[error("sent once, no answer within {waited:?}: it may or may not have been done")]
+    #[error("no answer within {waited:?}: the command was sent once, and may or may not have been carried out")]
     OutcomeUnknown {
         /// The request.
         request: Request,
@@ -54,13 +54,13 @@ pub enum Error {
         counters: Counters,
     },
     /// No answer to the stop, which was sent repeatedly.
-    #[error("the stop was sent again and again, no answer within {waited:?}: nothing tells that the robot is held")]
+    #[error("the stop was sent repeatedly, no answer within {waited:?}: armctl cannot confirm that the robot is held")]
     Unconfirmed {
         /// Total wait.
         waited: Duration,
     },
     /// The link was lost after a change was sent and before its answer.
-    #[error("{cause}; it was sent, and may or may not have been done")]
+    #[error("{cause}; the command was sent, and may or may not have been carried out")]
     CutShort {
         /// The request.
         request: Request,
@@ -92,16 +92,16 @@ pub enum Error {
         error: Arc<io::Error>,
     },
     /// The controller refused to report its model, which the request depends on. Nothing else was sent.
-    #[error("the controller did not tell its model: it refused {}: {}", .0.to, status::explain(.0.status).name)]
+    #[error("the controller did not report its model: it refused {}: {}", .0.to, status::explain(.0.status).name)]
     ModelRefused(Refusal),
     /// The software version belongs to no known model, and the request depends on the model. Nothing else was sent.
-    #[error("the system software '{version}' is of no model that armctl knows")]
+    #[error("armctl supports no model with system software '{version}'")]
     UnknownSoftware {
         /// Software version, with unusual characters escaped.
         version: String,
     },
     /// The controller is not the remembered model. It refused a request that the remembered model accepts.
-    #[error("it was a {remembered}, and is a {found} now, which refused this")]
+    #[error("the controller was a {remembered} and is now a {found}, which refused this request")]
     AnotherModel {
         /// The remembered model.
         remembered: Model,
@@ -235,10 +235,16 @@ mod tests {
         assert!(refused.to_string().starts_with("the controller refused 0x7A (instance 300): "), "{refused}");
         let waited = Duration::from_secs(3);
         let unknown = Error::OutcomeUnknown { request: request.clone(), waited, counters: Counters::default() };
-        assert_eq!(unknown.to_string(), "sent once, no answer within 3s: it may or may not have been done");
+        assert_eq!(
+            unknown.to_string(),
+            "no answer within 3s: the command was sent once, and may or may not have been carried out"
+        );
         let ended = Error::Session(SessionBusy::Ended("the session is gone".to_owned()));
         assert!(ended.is_silence() && !ended.is_malformed());
         let cut = Error::CutShort { request, cause: Box::new(ended) };
-        assert_eq!(cut.to_string(), "the session is gone; it was sent, and may or may not have been done");
+        assert_eq!(
+            cut.to_string(),
+            "the session is gone; the command was sent, and may or may not have been carried out"
+        );
     }
 }

@@ -315,6 +315,6 @@ mod tests {
         assert!(frames[0]["depends_on"].is_null());
         assert_eq!(frames[1]["about"], "which model the controller is");
         assert!(frames[1]["depends_on"].is_null(), "{}", frames[1]);
-        assert_eq!(frames[2]["depends_on"], "which model it is; shown as for a dx200");
+        assert_eq!(frames[2]["depends_on"], "the model of the controller; shown for a dx200");
     }
 }

@@ -88,7 +88,7 @@ impl Client {
     pub fn plan_download(&mut self, request: &Request, reason: Reason<'_>) -> Result<(), NotAuthorized> {
         self.authorize(request)?;
         let id = self.note(request, reason);
-        let answered = "which blocks come";
+        let answered = "the received blocks";
         let depends_on = reason.depends_on.map_or(answered.to_owned(), |before| format!("{before}, and {answered}"));
         let reason = Reason::about("acknowledges block 1; likewise for each block until the last one");
         let [first, last] = [1, LAST_BLOCK].map(|block| ack_frame(id, request.service, block));
@@ -130,7 +130,7 @@ impl Client {
 
     /// The dependency of a frame, with the model if that is unknown.
     fn depends_on(&self, reason: Reason<'_>) -> Option<String> {
-        let model = self.shown_for.map(|model| format!("which model it is; shown as for a {model}"));
+        let model = self.shown_for.map(|model| format!("the model of the controller; shown for a {model}"));
         match (reason.depends_on, model) {
             (Some(before), Some(model)) => Some(format!("{before}, and {model}")),
             (before, model) => model.or(before.map(ToOwned::to_owned)),

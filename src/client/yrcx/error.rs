@@ -38,7 +38,7 @@ pub enum Error {
     },
     /// No confirmation of a command that changes something: it may or may not have been carried out, or may still run.
     /// It was sent once.
-    #[error("{} was sent, and may or may not have been done: {why}", .command.row().id)]
+    #[error("{} was sent, and may or may not have been carried out: {why}", .command.row().id)]
     OutcomeUnknown {
         /// The command.
         command: Command,
@@ -60,7 +60,7 @@ pub enum Error {
         outcome: sequence::Outcome,
     },
     /// A jog ended before its time.
-    #[error("{by}; the jog was ended for that")]
+    #[error("{by}; armctl stopped the jog for this reason")]
     Cut {
         /// The cause.
         by: Box<Error>,
@@ -70,31 +70,31 @@ pub enum Error {
         ended: Result<Values, Box<Self>>,
     },
     /// The end of a jog was not observed, and the link is lost: the axis may still move.
-    #[error("the axis may still move: nothing reaches the controller any more")]
+    #[error("the axis may still move: armctl cannot reach the controller any more")]
     StillMoving {
         /// The cause, if the jog ended before its time.
         cut: Option<Box<Error>>,
     },
     /// An earlier command of this client still runs; the controller takes one at a time.
-    #[error("{} is still under way", .command.row().id)]
+    #[error("{} still runs", .command.row().id)]
     UnderWay {
         /// The command.
         command: Command,
     },
     /// An earlier command of another client of the session still runs.
-    #[error("another client's command is still under way")]
+    #[error("a command of another client still runs")]
     OthersUnderWay {
         /// Its words WI0 to WI15.
         words: Box<Words>,
     },
     /// Another signal procedure still runs.
-    #[error("other signals are being switched")]
+    #[error("another procedure is switching signals")]
     SignalsUnderWay,
     /// Words were not sent in time.
-    #[error("the words did not leave")]
+    #[error("the words were not sent in time")]
     WordsNotSent,
     /// The fieldbus carries only signals, not the words of remote commands.
-    #[error("{} is a remote command, and the fieldbus carries signals alone", .command.row().id)]
+    #[error("{} is a remote command, but this fieldbus connection carries only signals", .command.row().id)]
     SignalsAlone {
         /// The command.
         command: Command,
@@ -107,13 +107,13 @@ pub enum Error {
     },
     /// The connection ends with the client, and the robot stops with it
     /// ([`Options::is_held`](super::Options::is_held)).
-    #[error("the connection would end now, and the controller stop the robot")]
+    #[error("the connection would end now, and the controller would stop the robot")]
     NotHeld,
     /// The link is up, but the controller sends no data.
-    #[error("the controller shows nothing")]
+    #[error("the controller sends no data")]
     Silent,
     /// The data of the controller is too short for an image.
-    #[error("the controller shows {bytes} bytes, fewer than an image")]
+    #[error("the controller sends {bytes} bytes, fewer than an image")]
     NoImage {
         /// Bytes received.
         bytes: usize,
@@ -131,7 +131,7 @@ pub enum Error {
     #[error("a dry run has no answer")]
     NotKnown,
     /// An internal error: an exchange ended without an outcome.
-    #[error("{what} ended without a report")]
+    #[error("internal error: {what} ended without a result")]
     NoReport {
         /// The command or procedure.
         what: &'static str,
@@ -170,11 +170,14 @@ mod tests {
             is_stop_held: false,
             ended: None,
         };
-        assert_eq!(lost.to_string(), "move-ptp was sent, and may or may not have been done: the link went down");
+        assert_eq!(
+            lost.to_string(),
+            "move-ptp was sent, and may or may not have been carried out: the connection was lost"
+        );
         let outcome = sequence::Outcome::Broken { signal: output::ALARM };
         let broken = Error::Unfinished { name: "run", outcome };
-        assert_eq!(broken.to_string(), "run: alarm (SO(03)) came on meanwhile");
+        assert_eq!(broken.to_string(), "run: alarm (SO(03)) went on during the procedure");
         let busy = Error::Session(SessionBusy::Busy(None));
-        assert_eq!(busy.to_string(), "the line is in use by another client");
+        assert_eq!(busy.to_string(), "another client uses the connection");
     }
 }

@@ -46,7 +46,7 @@ use crate::{Grant, Plan, STOP_WITHIN, Watcher};
 
 /// A connection to one controller. It belongs to one thread, as fieldbus links do.
 #[derive(Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub struct Client {
     transport: Transport,
     /// Size of the output image in bytes; 0 without one.

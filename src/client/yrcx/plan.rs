@@ -96,7 +96,7 @@ impl Client {
             signal.set(image, on);
             let [now, before] = if on { ["on", "off"] } else { ["off", "on"] };
             let about = format!("{} {now}", signal.named());
-            let depends_on = format!("what is shown before it: it is sent if {} is {before}", signal.name());
+            let depends_on = format!("the earlier signals: sent only if {} is {before}", signal.name());
             let reason = Reason::about(&about);
             let reason = if is_there { reason.depending_on(&depends_on) } else { reason };
             plan.note(json!({ "bits": hex(&image.0[COMMAND_WORDS..]) }), reason);

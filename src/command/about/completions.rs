@@ -28,14 +28,14 @@ pub enum Shell {
 }
 
 impl Completions {
-    /// Does it.
+    /// Prints the script.
     pub fn run(self, run: &Run) -> Result<(), Failure> {
         run.screen.data(self.shell.script())
     }
 }
 
 impl Shell {
-    /// What makes the shell ask this program; `src/app/complete/shell.rs` answers.
+    /// Script that makes the shell call this program; `src/app/complete/shell.rs` answers.
     pub fn script(self) -> &'static str {
         match self {
             Self::Bash => include_str!("../../../completions/armctl.bash"),

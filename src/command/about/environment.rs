@@ -1,12 +1,12 @@
 //! `armctl help environment`, and the section of the man page.
 
-/// Variables of the environment, and what each says.
+/// Environment variables and their meaning.
 pub const VARIABLES: [(&str, &str); 13] = [
     ("ARMCTL_TARGET", "URL or address of the controller, as -t"),
     ("ARMCTL_ROBOT", "robots of the inventory, as -r: NAME, or NAME,NAME"),
     ("ARMCTL_CONFIG", "the inventory, as --config"),
     ("ARMCTL_OUTPUT", "output format, as -o: table, json, jsonl, csv or value"),
-    ("ARMCTL_TIMEOUT", "longest wait for an answer, for each try, as --timeout"),
+    ("ARMCTL_TIMEOUT", "maximum wait for an answer, for each try, as --timeout"),
     ("ARMCTL_RETRIES", "more tries of a read without an answer, as --retries"),
     ("ARMCTL_ENCODING", "encoding of names and texts on the controller, as --encoding"),
     ("NO_COLOR", "no color, unless --color is given"),
@@ -17,14 +17,14 @@ pub const VARIABLES: [(&str, &str); 13] = [
     ("XDG_RUNTIME_DIR", "folder of the session sockets"),
 ];
 
-/// What counts before and after them.
+/// Priority of the variables.
 pub const ORDER: &str = "A flag has priority over the environment, the environment over robots.toml.
 An empty variable has no effect. A wrong value is an error that names the
 variable (exit code 2). ARMCTL_TARGET and ARMCTL_ROBOT together are an error,
 unless a flag selects the robot. For several robots, commands that move, delete
 or overwrite accept only -r.";
 
-/// The topic.
+/// Text of the topic.
 pub fn text() -> String {
     let line = |(name, what): &(&str, &str)| format!("  {name:<16} {what}\n");
     format!("Environment\n\n{}\n{ORDER}\n", VARIABLES.iter().map(line).collect::<String>())

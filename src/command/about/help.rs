@@ -20,7 +20,7 @@ pub struct Help {
     words: Vec<String>,
 }
 
-/// Topics with a line about each and their text.
+/// Topics with summary and text.
 const TOPICS: [(&str, &str, &str); 13] = [
     ("targets", "select a robot; URLs", include_str!("topics/targets.txt")),
     ("devicenet", "adapters, first contact, lamps", include_str!("topics/devicenet.txt")),
@@ -37,26 +37,26 @@ const TOPICS: [(&str, &str, &str); 13] = [
     (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
 ];
 
-/// The topic that ends with the examples that the simulators' own tests read.
+/// Topic that ends with the start state examples, which are also tested.
 const SIMULATOR: &str = "simulator";
 
-/// The topic that is made from the table of failures.
+/// Topic that is generated from the table of failures.
 const EXIT_CODES: &str = "exit-codes";
 
-/// The topic that is made from the table of variables.
+/// Topic that is generated from the table of variables.
 const ENVIRONMENT: &str = "environment";
 
-/// The topic that is made from the flags of every command.
+/// Topic that is generated from the options of every command.
 const OPTIONS: &str = "options";
 
 impl Help {
-    /// Does it; `root` makes the whole command line.
+    /// Prints the help; `root` creates the whole command line.
     pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
         run.screen.read(&text(&self.words, run.screen.stdout_color(), root)?)
     }
 }
 
-/// Every topic with a line about it.
+/// Every topic with its summary.
 pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
     let made = [
         (OPTIONS, "options of every command"),
@@ -69,12 +69,12 @@ pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
     made.chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about))).chain(more)
 }
 
-/// Further topics of the families.
+/// Additional topics of the families.
 fn more() -> Vec<(&'static str, &'static str, String)> {
     FAMILIES.iter().flat_map(|face| face.topics()).collect()
 }
 
-/// The topics of the families.
+/// Setup topics of the families.
 fn setups() -> Vec<(String, &'static str, &'static str)> {
     let mut setups = FAMILIES.map(|face| {
         let (about, text) = face.setup();
@@ -84,7 +84,7 @@ fn setups() -> Vec<(String, &'static str, &'static str)> {
     setups.into()
 }
 
-/// The help on some words; on none, that of the whole tool and the list of topics.
+/// Help for these words; without words, the help of armctl and the list of topics.
 pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<String, Failure> {
     if let [word] = words {
         if word == EXIT_CODES {
@@ -148,10 +148,10 @@ Keys of {}:
     FAMILIES.iter().map(example).collect()
 }
 
-/// Columns that a topic has.
+/// Width of a topic.
 const COLUMNS: usize = 80;
 
-/// The comment of a line that is too long stands above it.
+/// Moves the comment of a long line above the line.
 fn comments_above(toml: &str) -> String {
     let fitted = |line: &str| match line.rsplit_once("  # ") {
         Some((code, comment)) if line.chars().count() > COLUMNS => format!("# {comment}\n{}\n", code.trim_end()),
@@ -175,7 +175,7 @@ mod tests {
     fn topics_fit_80_columns() {
         for (name, _) in topics().filter(|(name, _)| name != OPTIONS) {
             let text = text(std::slice::from_ref(&name), false, Cli::command).unwrap();
-            // A table of TOML stands in one line.
+            // A TOML table is in one line.
             let may_be_long = |line: &&str| line.contains(" = ") && !line.contains("  # ");
             let long = text.lines().filter(|line| line.chars().count() > COLUMNS && !may_be_long(line));
             let long: Vec<&str> = long.collect();

@@ -1,4 +1,4 @@
-//! `armctl man`: the man pages, one a command.
+//! `armctl man`: man pages, one per command.
 
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -14,13 +14,13 @@ use crate::failure::{Failure, Kind};
 /// Write the man pages into a folder, or print the man page of `armctl`.
 #[derive(Debug, Args)]
 pub struct Man {
-    /// The folder, such as /usr/local/share/man/man1; it must exist
+    /// Folder, such as /usr/local/share/man/man1; it must exist
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 }
 
 impl Man {
-    /// Does it; `root` makes the whole command line.
+    /// Writes the pages; `root` creates the whole command line.
     pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
         let pages = pages(root())?;
         let Some(dir) = self.dir else {
@@ -60,7 +60,7 @@ fn pages_below<'a>(root: &'a Command, path: &mut Vec<&'a str>, pages: &mut Vec<(
     Ok(())
 }
 
-/// Pages are named with hyphens.
+/// Page names have hyphens.
 fn name_of(path: &[&str]) -> String {
     [&["armctl"], path].concat().join("-")
 }
@@ -73,13 +73,13 @@ fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u
     let everywhere = page::everywhere(root);
     let mut own = command.clone().name(name_of(path)).mut_args(|argument| {
         let is_own = path.is_empty() || !argument.is_global_set() || !everywhere.contains(argument.get_id().as_str());
-        // What a short help leaves out belongs here.
+        // Man pages include options that the short help omits.
         argument.hide_short_help(false).hide(!is_own)
     });
     let usage = own.render_usage().to_string();
     let notes = own.get_after_help().map(ToString::to_string).unwrap_or_default();
     let mut text = Vec::new();
-    // The date is left out so that the committed pages depend on the text alone.
+    // No date, so that the committed pages depend only on the text.
     let man = clap_mangen::Man::new(own).date("").source("armctl").manual("armctl manual");
     man.render_title(&mut text)?;
     man.render_name_section(&mut text)?;
@@ -95,7 +95,8 @@ fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u
     if !path.is_empty() {
         writeln!(
             text,
-            ".SH \"GLOBAL OPTIONS\"\nOptions of every command, such as \\-r, \\-t, \\-\\-sim and \\-\\-json: see \\fBarmctl\\fR(1)."
+            ".SH \"GLOBAL OPTIONS\"\nOptions of every command, such as \\-r, \\-t, \\-\\-sim and \\-\\-json: see \
+             \\fBarmctl\\fR(1)."
         )?;
     }
     let examples: Vec<&str> = if command.has_subcommands() { Vec::new() } else { leaves::examples(path).collect() };
@@ -127,7 +128,7 @@ fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u
     Ok(text)
 }
 
-/// Pages of the commands below and above this one, and of those beside a verb.
+/// Pages of the commands above and below this one, and of related verbs.
 fn see_also(root: &Command, command: &Command, path: &[&str]) -> Vec<String> {
     let below = verbs(command).map(|verb| name_of(&[path, &[verb.get_name()]].concat()));
     let Some((last, above)) = path.split_last() else { return below.collect() };
@@ -137,7 +138,7 @@ fn see_also(root: &Command, command: &Command, path: &[&str]) -> Vec<String> {
     std::iter::once(name_of(above)).chain(beside).chain(below).collect()
 }
 
-/// Text in which nothing is an order to the formatter.
+/// Text with roff control characters escaped.
 fn escaped(text: &str) -> String {
     let text = text.replace('\\', "\\e").replace('-', "\\-").replace('\'', "\\(aq");
     if text.starts_with('.') { format!("\\&{text}") } else { text }

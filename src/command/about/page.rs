@@ -1,4 +1,4 @@
-//! The help of a command, as `-h` and `--help` show it.
+//! Help of a command for `-h` and `--help`.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -10,17 +10,17 @@ use crate::command::face::words::Headings;
 use crate::command::frame::setting::Pair;
 use crate::command::leaves;
 
-/// The line that stands for the options of every command.
+/// Line that replaces the options of every command.
 const EVERYWHERE: &str = "Options of every command (-r, -t, --sim, --json …): `armctl help options`.";
 
-/// The help of the command that `path` leads to. The short one has what is the command's own, and fits a small terminal
-/// where that does.
+/// Help of the command at `path`. The short form has only the command's own options, so that it fits a small terminal
+/// if possible.
 pub fn page(root: &Command, path: &[&str], is_long: bool) -> StyledStr {
     let mut command = root;
     let mut names = Vec::new();
     for word in path {
         let Some(below) = command.find_subcommand(word) else { return StyledStr::new() };
-        // Another word may lead there.
+        // `path` may contain an alias.
         names.push(below.get_name());
         command = below;
     }
@@ -31,7 +31,7 @@ pub fn page(root: &Command, path: &[&str], is_long: bool) -> StyledStr {
     if is_long { command.render_long_help() } else { command.render_help() }
 }
 
-/// The options of every command.
+/// Options of every command.
 pub fn options(root: &Command) -> StyledStr {
     let all = root.get_arguments().filter(|argument| argument.is_global_set()).cloned();
     Command::new("armctl")
@@ -50,7 +50,7 @@ pub fn everywhere(root: &Command) -> BTreeSet<&str> {
         .collect()
 }
 
-/// What can be typed, where that is too long for a line: what is its own stands on a second one.
+/// Usage in two lines if it is too long for one: the command's own part is on the second line.
 fn in_two_lines(usage: &StyledStr) -> Option<StyledStr> {
     const WIDTH: usize = 80;
     let is_long = usage.to_string().chars().count() > WIDTH;
@@ -60,7 +60,7 @@ fn in_two_lines(usage: &StyledStr) -> Option<StyledStr> {
     Some(format!("{before}[OPTIONS]\n       {own}").into())
 }
 
-/// With examples and headings; in short without what it shares with all others, and without its notes.
+/// Adds examples and headings; the short form omits common options and notes.
 fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool) -> Command {
     let style = *command.get_styles().get_header();
     if let Some(usage) = in_two_lines(&command.render_usage()) {
@@ -96,7 +96,7 @@ fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool)
     command.after_help(after.trim_end().to_owned())
 }
 
-/// A template with the subcommands below their headings; one without is below that of the one before.
+/// Template with the subcommands below their headings; one without a heading follows the previous one.
 fn grouped(command: &mut Command, headings: &[(Option<&'static str>, String)]) -> String {
     let (style, literal) = (*command.get_styles().get_header(), *command.get_styles().get_literal());
     let widest = command.get_subcommands().map(|word| word.get_name().len()).max().unwrap_or_default();
@@ -125,9 +125,9 @@ mod tests {
     use super::*;
     use crate::cli::Cli;
 
-    /// Lines of a small terminal.
+    /// Number of lines of a small terminal.
     const ROWS: usize = 24;
-    /// Lines that a command's own options may take before its help may be longer.
+    /// Number of lines of a command's own options, above which its help may be longer.
     const OWN: usize = 7;
 
     fn whole() -> Command {

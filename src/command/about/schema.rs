@@ -27,13 +27,13 @@ use crate::output::envelope::{Envelope, ErrorBody};
 /// data with --dry-run).
 #[derive(Debug, Args)]
 pub struct SchemaOf {
-    /// The command, such as yerc.status; without it, all names
+    /// Name of the report, such as yerc.status [default: list all names]
     #[arg(add = ValueKind::Schema)]
     id: Option<String>,
 }
 
 impl SchemaOf {
-    /// Does it.
+    /// Prints the schema.
     pub fn run(self, run: &Run) -> Result<(), Failure> {
         let all = all();
         let Some(id) = self.id else {
@@ -51,7 +51,7 @@ impl SchemaOf {
     }
 }
 
-/// The schemas of all reports, of the envelope and of what it holds when there is none.
+/// Schemas of all reports, of the envelope, and of its failure and dry-run data.
 pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
     all.extend(Overview::schemas());

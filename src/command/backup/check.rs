@@ -1,4 +1,4 @@
-//! `armctl backup --verify`: whether the files of a backup are still what was saved.
+//! `armctl backup --verify`: integrity check of the files of a backup.
 
 use std::path::Path;
 
@@ -12,10 +12,10 @@ use crate::command::backup::manifest::MANIFEST;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 
-/// What is left of backups.
+/// Result of the integrity check.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Checked {
-    /// Whether every file is what was saved, and none is missing.
+    /// Whether all files are present and unchanged.
     sound: bool,
     backups: Vec<Backup>,
 }
@@ -23,24 +23,24 @@ pub struct Checked {
 /// A backup.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Backup {
-    /// Its folder.
+    /// Folder of the backup.
     folder: String,
     family: String,
     robot: String,
-    /// Whether nothing was missing when it was made.
+    /// Whether the backup was complete when it was made.
     complete: bool,
-    /// How many files it has.
+    /// Number of files.
     #[serde(rename = "file_count")]
     files: usize,
-    /// Which of them are not what was saved.
+    /// Missing or changed files.
     damaged: Vec<Failure>,
 }
 
 impl Checked {
-    /// The backup in a folder, or those in the folders in it, one a robot.
+    /// The backup in a folder, or those in its subfolders, one per robot.
     pub fn of(folder: &Path) -> Result<Self, Failure> {
         let several = if folder.join(MANIFEST).exists() { Vec::new() } else { manifest::folders_in(folder) };
-        // Without any, the folder itself is asked for its list, and says that it has none.
+        // Without a backup, the read of the folder's manifest reports the error.
         let folders = if several.is_empty() { vec![folder.to_owned()] } else { several };
         let backups = folders.iter().map(|folder| Backup::of(folder)).collect::<Result<Vec<_>, _>>()?;
         Ok(Self { sound: backups.iter().all(|backup| backup.damaged.is_empty()), backups })
@@ -68,7 +68,7 @@ impl Report for Checked {
         for backup in &self.backups {
             let result = match (&backup.damaged[..], backup.complete) {
                 ([], true) => Cell::from("sound").tone(Tone::Good),
-                ([], false) => Cell::from("sound, but not whole: --resume completes it").tone(Tone::Warning),
+                ([], false) => Cell::from("valid but incomplete; complete it with --resume").tone(Tone::Warning),
                 ([first, ..], _) => {
                     let all = backup.damaged.len();
                     Cell::from(format!("{all} of {} damaged: {}", backup.files, first.message)).tone(Tone::Bad)

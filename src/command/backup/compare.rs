@@ -1,4 +1,4 @@
-//! Two backups of one family, file by file.
+//! Comparison of two backups of a family, file by file.
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -19,14 +19,14 @@ use crate::files;
 use crate::output::escape;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 
-/// One of the two.
+/// One side of a comparison.
 #[derive(Debug)]
 pub struct Side {
-    /// The folder.
+    /// Folder.
     pub folder: PathBuf,
-    /// Its list.
+    /// Manifest.
     pub manifest: Manifest,
-    /// Whether it was read for this alone.
+    /// Whether it was read from a controller for this comparison.
     pub is_controller: bool,
 }
 
@@ -34,7 +34,7 @@ pub struct Side {
 #[derive(Debug, Clone, Copy)]
 pub struct Manner {
     tolerance: Tolerance,
-    /// Whether every byte counts, the dates of jobs as well.
+    /// Whether every byte counts, including the dates of jobs.
     exact: bool,
 }
 
@@ -42,90 +42,90 @@ impl Manner {
     /// Every byte counts.
     pub const EXACT: Self = Self { tolerance: Tolerance::NONE, exact: true };
 
-    /// Neither near positions nor what controllers rewrite by themselves.
+    /// Ignores positions within the tolerance and lines that controllers rewrite.
     pub const fn usual(tolerance: Tolerance) -> Self {
         Self { tolerance, exact: false }
     }
 }
 
-/// How two backups, or a backup and a controller, differ.
+/// Differences between two backups, or a backup and a controller.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Differences {
     old: Of,
     new: Of,
-    /// Whether nothing differs by more than the tolerance and by what is ignored.
+    /// Whether nothing differs, apart from the tolerance and ignored lines.
     equal: bool,
     tolerance: Tolerance,
     files: Vec<FileDifference>,
 }
 
-/// One of the two.
+/// One side in the report.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Of {
-    /// The folder of the backup; null for the controller.
+    /// Folder of the backup; null for the controller.
     folder: Option<String>,
     robot: String,
-    /// When the backup began, or the controller was read.
+    /// Time when the backup started, or when the controller was read.
     taken_at: String,
 }
 
-/// How a file, or a part, differs.
+/// Difference of a file or part.
 #[derive(Debug, Serialize, JsonSchema)]
 struct FileDifference {
-    /// Its name on the controller, or the name of the part; `controller` for what the lists say of model and versions.
+    /// Name on the controller, or name of the part; `controller` for model and versions in the manifests.
     name: String,
     state: State,
-    /// Lines that differ and do not count: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
+    /// Differing lines that are ignored: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     ignored: Vec<&'static str>,
-    /// Changes from the old one to the new one; null if one of them is no text, too large or missing.
+    /// Changes from the old file to the new file; null if one of them is not text, is too large or is missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     hunks: Option<Vec<Hunk>>,
-    /// Whether nothing but ends of lines differs.
+    /// Whether only line endings differ.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     only_line_endings: bool,
-    /// Why it could not be compared.
+    /// Reason why it could not be compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Failure>,
     #[serde(skip)]
     file: String,
 }
 
-/// How two files stand to each other.
+/// Result of comparing two files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum State {
-    /// Byte for byte.
+    /// Equal in all bytes.
     Same,
-    /// But for the line `///DATE`.
+    /// Equal except for the line `///DATE`.
     SameButDate,
-    /// But for positions that are near each other.
+    /// Equal except for positions within the tolerance.
     WithinTolerance,
-    /// They differ.
+    /// Different.
     Changed,
-    /// The old one alone is there.
+    /// Only in the old backup.
     OnlyOld,
-    /// The new one alone is there.
+    /// Only in the new backup.
     OnlyNew,
-    /// It is not known: one of them was not saved, or was changed since.
+    /// Unknown: one of them was not saved, or was changed since then.
     Unknown,
 }
 
-/// What an entry holds that is a job, with a header.
+/// Content type of a job entry, which has a header.
 const JOB: &str = "jbi";
-/// The part that stands for what a list says of the controller itself.
+/// Name of the entry for the controller data of a manifest.
 const CONTROLLER: &str = "controller";
 
 impl Differences {
-    /// Compares.
+    /// Compares two sides.
     pub fn of(old: &Side, new: &Side, only: &Only, manner: Manner) -> Result<Self, Failure> {
         let (a, b) = (&old.manifest, &new.manifest);
         if a.family != b.family {
             return Err(Failure::usage(format!(
-                "one backup is of a {} controller, the other of {}",
+                "one backup is from a {} controller, the other from {}",
                 a.family, b.family
             ))
-            .hint("compare backups of one family"));
+            .hint("compare backups of the same family"));
         }
         let both = a.files.iter().chain(&b.files).map(|entry| entry.name.as_str());
         only.check(&both.chain([CONTROLLER]).collect::<Vec<_>>())?;
@@ -153,7 +153,7 @@ impl Differences {
         let named = [
             (self.count(&[State::Changed, State::OnlyOld, State::OnlyNew]), "different"),
             (self.count(&[State::Unknown]), "not compared"),
-            (self.count(&[State::SameButDate]), "the same but for ///DATE"),
+            (self.count(&[State::SameButDate]), "the same except ///DATE"),
             (self.count(&[State::WithinTolerance]), "the same within the tolerance"),
             (self.count(&[State::Same]), "the same"),
         ];
@@ -180,7 +180,7 @@ impl Of {
         Self { folder, robot: manifest.robot.clone(), taken_at: manifest.taken_at.to_string() }
     }
 
-    /// A file of it, as the head of a diff with another.
+    /// Heading of a file in the diff with the other side.
     fn of(&self, file: &str, other: &Self) -> String {
         match (&self.folder, &other.folder) {
             (Some(folder), _) => Path::new(folder).join(file).display().to_string(),
@@ -190,19 +190,19 @@ impl Of {
     }
 }
 
-/// What tells a file from the others.
+/// Key of an entry.
 fn key(entry: &Entry) -> String {
     entry.name_hex.as_ref().map_or_else(|| entry.name.clone(), |digits| digits.to_lowercase())
 }
 
-/// What the lists say of the controllers themselves, if it differs.
+/// Difference of the controller data, if any.
 fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<FileDifference>, Failure> {
     if old.controller == new.controller {
         return Ok(None);
     }
     let text = |manifest: &Manifest| {
         let text = escape::json_pretty(&manifest.controller);
-        text.map(|text| text + "\n").map_err(|error| Failure::local(format!("list as JSON: {error}")))
+        text.map(|text| text + "\n").map_err(|error| Failure::local(format!("manifest as JSON: {error}")))
     };
     let (old, new) = (text(old)?, text(new)?);
     let found = TextDifference::of(Encoding::Utf8, old.as_bytes(), new.as_bytes());
@@ -212,7 +212,7 @@ fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<FileDifferenc
     }))
 }
 
-/// Compares a file that one or both have.
+/// Compares a file that one or both sides have.
 fn of_files(old: &Side, new: &Side, entry: Option<&Entry>, partner: Option<&Entry>, manner: Manner) -> FileDifference {
     let name = entry.or(partner).map(|entry| entry.name.clone()).unwrap_or_default();
     let state = match (entry, partner) {
@@ -226,16 +226,17 @@ fn of_files(old: &Side, new: &Side, entry: Option<&Entry>, partner: Option<&Entr
         }
         _ => {
             let side = if entry.is_some() { new } else { old };
-            let why = if side.manifest.complete { "it was not asked for" } else { "the backup is not whole" };
-            let why = format!("{} does not have it: {why}", Of::new(side));
+            let why = if side.manifest.complete { "it was not selected" } else { "the backup is incomplete" };
+            let why = format!("{} does not contain it: {why}", Of::new(side));
             let failure = Failure::new(Kind::ConditionNotMet, why);
-            return FileDifference::unknown(name, failure.hint("`armctl backup --resume` completes a backup"));
+            return FileDifference::unknown(name, failure.hint("complete the backup with `armctl backup --resume`"));
         }
     };
     FileDifference::new(name, state)
 }
 
-/// Whether a file that is not in a backup was not on the controller: it would have been asked for.
+/// Whether a file that is missing in a backup was missing on the controller, because the backup would have included
+/// it.
 fn covers(backup: &Manifest, other: &Manifest, name: &str) -> bool {
     let is_common = |word: &String| Only::of_scope(std::slice::from_ref(word)) != Only::default();
     backup.complete
@@ -278,12 +279,12 @@ fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) 
     })
 }
 
-/// The copy of an entry, unless there is none or it was changed since.
+/// Copy of an entry, unless it is missing or was changed since the backup.
 fn copy<'e>(side: &Side, entry: &'e Entry) -> Result<&'e Saved, Failure> {
     let copy = entry.copy.as_ref().ok_or_else(|| {
-        let why = entry.error.as_ref().map_or("no reason is told", |reason| &reason.message);
-        Failure::new(Kind::ConditionNotMet, format!("{} does not have it: {why}", Of::new(side)))
-            .hint("look into manifest.json: what a controller refused is not in its backup")
+        let why = entry.error.as_ref().map_or("no reason recorded", |reason| &reason.message);
+        Failure::new(Kind::ConditionNotMet, format!("{} does not contain it: {why}", Of::new(side)))
+            .hint("see manifest.json: the backup does not contain data that the controller refused")
     })?;
     copy.check(&side.folder)?;
     Ok(copy)
@@ -328,7 +329,7 @@ impl FileDifference {
         };
         match (self.state, &self.error) {
             (State::Same, _) => Cell::from("the same").tone(Tone::Good),
-            (State::SameButDate, _) => Cell::from("the same but for ///DATE, which is ignored").tone(Tone::Good),
+            (State::SameButDate, _) => Cell::from("the same except ///DATE, which is ignored").tone(Tone::Good),
             (State::WithinTolerance, _) => Cell::from("the same within the tolerance").tone(Tone::Good),
             (State::OnlyOld, _) => only(old),
             (State::OnlyNew, _) => only(new),

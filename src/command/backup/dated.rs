@@ -1,35 +1,35 @@
-//! What a controller rewrites by itself in a file that nobody changed: the line `///DATE` of a job, as it stores it.
+//! Filter for the line `///DATE` of a job, which a controller rewrites each time it stores the job.
 
-/// The lines of a job without `///DATE`, which a controller writes anew when it stores a job.
+/// Filter that removes the line `///DATE` from a job.
 #[derive(Debug, Default)]
 pub struct WithoutDate {
     at: LineState,
     left_out: Vec<u8>,
     kept: u64,
     dropped: u64,
-    /// After so many bytes that stayed, the first line was left out.
+    /// Offset of the first removed line in the remaining bytes.
     cut: Option<u64>,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum LineState {
-    /// Before a line.
+    /// At the start of a line.
     #[default]
     Start,
-    /// After so many bytes of a line, which are those of the one left out.
+    /// Inside a line, after this number of bytes that match the prefix.
     Begun(usize),
     Kept,
     Dropped,
 }
 
-/// How the line begins that is left out.
+/// Prefix of the removed line.
 pub const DATE_LINE: &str = "///DATE";
 const DATE: &[u8] = DATE_LINE.as_bytes();
-/// As much is kept of what is left out as tells one date from another.
+/// Maximum number of removed bytes to keep, enough to distinguish dates.
 const MOST_LEFT_OUT: usize = 256;
 
 impl WithoutDate {
-    /// What stays of the next bytes.
+    /// Remaining bytes of the next piece.
     pub fn take(&mut self, piece: &[u8]) -> Vec<u8> {
         let mut kept = Vec::with_capacity(piece.len());
         for &byte in piece {
@@ -69,17 +69,17 @@ impl WithoutDate {
         kept
     }
 
-    /// How many bytes were left out so far.
+    /// Number of bytes removed so far.
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
 
-    /// Where in the whole a byte is that stayed, counted from 0.
+    /// Offset in the original of a remaining byte.
     pub fn in_whole(&self, at: u64) -> u64 {
         if self.cut.is_some_and(|cut| cut <= at) { at.saturating_add(self.dropped) } else { at }
     }
 
-    /// What stays at the end.
+    /// Remaining bytes at the end.
     pub fn rest(&mut self) -> &'static [u8] {
         match std::mem::take(&mut self.at) {
             LineState::Begun(count) => DATE.get(..count).unwrap_or_default(),
@@ -87,12 +87,12 @@ impl WithoutDate {
         }
     }
 
-    /// What was left out so far: the dates.
+    /// Removed bytes so far: the dates.
     pub fn left_out(&self) -> &[u8] {
         &self.left_out
     }
 
-    /// What stays of all of it.
+    /// Remaining bytes of a whole file.
     pub fn of(whole: &[u8]) -> Vec<u8> {
         let mut filter = Self::default();
         let mut kept = filter.take(whole);
@@ -101,8 +101,8 @@ impl WithoutDate {
     }
 }
 
-/// Two jobs with the date of the first in both, so that lines keep their numbers; and whether the dates differed. Where
-/// only one has a date, neither has one then.
+/// Both jobs with the date of the first, so that line numbers stay valid, and whether the dates differed. If only one
+/// has a date, it is removed from that one.
 pub fn aligned(old: Vec<u8>, new: Vec<u8>) -> ([Vec<u8>; 2], bool) {
     let dates = |text: &[u8]| -> Vec<Vec<u8>> {
         lines(text).filter(|line| line.starts_with(DATE)).map(<[u8]>::to_vec).collect()

@@ -1,4 +1,5 @@
-//! What two backups, or a backup and a controller, are compared by. A controller is read into a folder for a while.
+//! Options of a comparison of two backups, or a backup and a controller. A controller is read into a temporary
+//! folder.
 
 use std::path::{Path, PathBuf};
 
@@ -13,49 +14,49 @@ use crate::command::frame::dry_run::unknown;
 use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
 
-/// What is compared, and how exactly.
+/// Comparison options.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct DiffOptions {
     /// Folder of a backup
     #[arg(value_name = "FOLDER")]
     pub(super) old: Option<PathBuf>,
-    /// Folder of another one; without it, the controller
+    /// Folder of another backup [default: the controller]
     #[arg(value_name = "OTHER")]
     pub(super) new: Option<PathBuf>,
-    /// Files or parts whose names fit, such as '*.JBI' or 'points*' (repeatable)
+    /// Names of files or parts, such as '*.JBI' or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
-    /// How far apart positions may be: 0.05, or 0.1mm,0.05deg,5pulses
+    /// Tolerance of positions: 0.05, or 0.1mm,0.05deg,5pulses
     #[arg(long, value_name = "LIMIT", value_delimiter = ',', value_parser = Limit::parse)]
     tolerance: Vec<Limit>,
-    /// Compare byte for byte: no tolerance, and the line ///DATE of jobs counts
+    /// Compare all bytes, without tolerance and with the line ///DATE of jobs
     #[arg(long, conflicts_with = "tolerance")]
     exact: bool,
 }
 
 impl DiffOptions {
-    /// The folder that is compared.
+    /// Folder to compare.
     pub fn folder(&self) -> Result<&Path, Failure> {
         self.old.as_deref().ok_or_else(|| {
-            Failure::usage("no backup to compare with was named")
-                .hint("name the folder of one, or two robots: `armctl diff ROBOT ROBOT`")
+            Failure::usage("no backup to compare")
+                .hint("give the folder of a backup, or two robots: `armctl diff ROBOT ROBOT`")
         })
     }
 
-    /// Whether one of the names is that of a folder, or of a file.
+    /// Whether one of the names is that of a folder or a file.
     pub fn names_folder(&self) -> bool {
         [&self.old, &self.new].into_iter().flatten().any(|path| path.exists())
     }
 
-    /// Compares the folders.
+    /// Compares two folders.
     pub fn two_folders(&self) -> Result<Differences, Failure> {
         let old = self.folder()?;
         let new = self.new.as_deref().unwrap_or(old);
         self.compare(&side(old.to_owned())?, &side(new.to_owned())?)
     }
 
-    /// Compares two controllers, each of which was read into a folder.
+    /// Compares two controllers that were read into folders.
     pub fn two_controllers(&self, folders: [PathBuf; 2]) -> Result<Differences, Failure> {
         let read = |folder: PathBuf| {
             Ok::<_, Failure>(Side { manifest: manifest::existing(&folder)?, folder, is_controller: true })
@@ -64,12 +65,12 @@ impl DiffOptions {
         self.compare(&read(old)?, &read(new)?)
     }
 
-    /// What is read of two controllers.
+    /// Scope of the reads of two controllers.
     pub fn scope_of_controllers(&self) -> Vec<String> {
         Only(self.only.clone()).scope().collect()
     }
 
-    /// Compares a folder with what `read` saves of a controller.
+    /// Compares a folder with the data that `read` saves from a controller.
     pub async fn with_controller(
         &self,
         old: PathBuf,
@@ -78,17 +79,17 @@ impl DiffOptions {
     ) -> Result<Differences, Failure> {
         let old = side(old)?;
         manifest::check_origin(&old.manifest, robot, true)?;
-        let temporary = tempfile::tempdir().context("a folder for a while")?;
+        let temporary = tempfile::tempdir().context("the temporary folder")?;
         let folder = temporary.path().join("controller");
         let making = Making { folder: folder.clone(), scope: Some(self.scope(&old)), resume: false, force: false };
-        // What was read so far is of no use; but what a controller refuses to tell is a difference.
+        // An aborted read is not useful, but a refusal of the controller is a difference.
         let unread = match read(making).await {
             Ok(made) => made.gravest().filter(|failure| failure.kind != Kind::Refused),
             Err(failure) if failure.kind == Kind::Interrupted => Some(Failure::new(failure.kind, "interrupted")),
             Err(failure) => Some(failure),
         };
         if let Some(failure) = unread {
-            return Err(Failure { message: format!("nothing was compared: {}", failure.message), ..failure });
+            return Err(Failure { message: format!("not compared: {}", failure.message), ..failure });
         }
         // A dry run saves nothing.
         let Some(manifest) = manifest::read(&folder)? else { return Err(unknown()) };
@@ -100,7 +101,7 @@ impl DiffOptions {
         Differences::of(old, new, &Only(self.only.clone()), manner)
     }
 
-    /// What is read of the controller: what the backup was asked for, or of that what is asked for now.
+    /// Scope of the controller read: that of the backup, or the selection within it.
     fn scope(&self, old: &Side) -> Vec<String> {
         let scope = &old.manifest.scope;
         let only = Only(self.only.clone());

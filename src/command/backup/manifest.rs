@@ -1,5 +1,4 @@
-//! The list that a backup keeps of itself, the same for all families: of which robot it is, which files belong to it with
-//! size and hash, what is in them, and what did not come.
+//! Manifest of a backup, common to all families: robot, files with size and hash, their content, and missing data.
 
 use std::collections::HashSet;
 use std::fs;
@@ -22,85 +21,85 @@ use crate::output::escape;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
-/// Name of the list in the folder of a backup. No file of a controller has this ending.
+/// File name of the manifest. No file of a controller has this ending.
 pub const MANIFEST: &str = "manifest.json";
 
-/// What the folder holds, for programs that come across it.
+/// Format name, for programs that find the folder.
 const FORMAT: &str = "armctl backup";
-/// Raised when old programs would misread a new list.
+/// Incremented if older programs would misread a newer manifest.
 const VERSION: u32 = 1;
-/// Larger lists are not read: no controller has so many files.
+/// Maximum size of a manifest: no controller has that many files.
 const MAX_LIST: u64 = 64 << 20;
 
-/// The list of a backup; `C` tells what kind of controller it is.
+/// Manifest of a backup; `C` describes the controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest<C = Value> {
-    /// Always the same; see there.
+    /// Format name, always the same.
     format: String,
     version: u32,
-    /// The version of armctl that wrote it.
+    /// Version of armctl that wrote it.
     armctl: String,
     /// `yerc`, `yrcx` or `toyo`.
     pub family: String,
     /// Name of the robot.
     pub robot: String,
-    /// Its URL.
+    /// URL of the robot.
     pub target: String,
     /// Model and versions.
     pub controller: C,
-    /// What was asked for, where that is not everything: types of files, ranges of numbers, patterns of names.
+    /// Selection, if the backup does not include everything: file types, number ranges, name patterns.
     pub scope: Vec<String>,
-    /// When the backup began.
+    /// Start of the backup.
     pub taken_at: Timestamp,
-    /// When it was last worked on.
+    /// Last change of the backup.
     updated_at: Timestamp,
-    /// Whether nothing is missing of what was asked for.
+    /// Whether all selected data is present.
     pub complete: bool,
-    /// Everything that was asked for so far.
+    /// All entries requested so far.
     pub files: Vec<Entry>,
 }
 
-/// A file of the controller, or a part of what it stores.
+/// A file of the controller, or a part of its data.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Entry {
-    /// Its name on the controller, or the name of the part: `TESTJOB.JBI`, `points-1`.
+    /// Name on the controller, or name of the part: `TESTJOB.JBI`, `points-1`.
     pub name: String,
-    /// The name in bytes, where names have an encoding: this is the one that counts.
+    /// Name in bytes, if names have an encoding; it has priority.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub name_hex: Option<String>,
-    /// What it holds: `jbi`, `program`, `points 0..999`.
+    /// Content: `jbi`, `program`, `points 0..999`.
     pub holds: String,
-    /// The copy, if there is one.
+    /// Copy, if there is one.
     #[serde(flatten)]
     pub copy: Option<Saved>,
-    /// What is not in it.
+    /// Items that are not in the copy.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub left_out: Vec<LeftOut>,
-    /// Why there is no copy.
+    /// Reason why there is no copy.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub error: Option<Reason>,
 }
 
-/// Something that is not in a file, or not on a controller.
+/// An item that is not in a file, or not on a controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct LeftOut {
     /// `P05`, `T2.7`.
     pub key: String,
-    /// Why.
+    /// Reason.
     pub why: String,
 }
 
-/// What a list says of the controller, as its family knows it.
+/// Family-specific controller data of a manifest.
 pub trait About: Serialize + DeserializeOwned {
-    /// The family; `None` where it may be any.
+    /// Family; `None` for any family.
     const FAMILY: Option<Family>;
 
-    /// Whether what is said of the controller can be true.
+    /// Validates the controller data.
     fn check(&self) -> Result<(), String> {
         Ok(())
     }
 
-    /// Whether the family has such a file.
+    /// Validates an entry.
     fn check_entry(_entry: &Entry) -> Result<(), String> {
         Ok(())
     }
@@ -111,7 +110,7 @@ impl About for Value {
 }
 
 impl<C: About> Manifest<C> {
-    /// The list of a backup that begins.
+    /// Manifest of a new backup.
     pub fn new(robot: &Robot, controller: C, scope: Vec<String>) -> Self {
         let now = Timestamp::now();
         Self {
@@ -130,7 +129,7 @@ impl<C: About> Manifest<C> {
         }
     }
 
-    /// Writes the list into `folder`, whole or not at all.
+    /// Writes the manifest to `folder` atomically.
     pub fn write(&mut self, folder: &Path) -> Result<(), Failure> {
         self.updated_at = Timestamp::now();
         let mut text = escape::json_pretty(self).map_err(|error| Failure::local(format!("{MANIFEST}: {error}")))?;
@@ -140,12 +139,12 @@ impl<C: About> Manifest<C> {
         draft.commit()
     }
 
-    /// What it says of a name.
+    /// Entry for a name.
     pub fn entry(&self, name: &str) -> Option<&Entry> {
         self.files.iter().find(|entry| entry.name == name)
     }
 
-    /// What it says of a name in bytes.
+    /// Entry for a name in bytes.
     pub fn entry_of(&self, name: &[u8]) -> Option<&Entry> {
         let digits = hex(name);
         self.files.iter().find(|entry| entry.name_hex.as_ref().is_some_and(|own| own.eq_ignore_ascii_case(&digits)))
@@ -155,7 +154,7 @@ impl<C: About> Manifest<C> {
         if let Some(family) = C::FAMILY
             && family.name() != self.family
         {
-            return Err(format!("it is of family {}, not {}", self.family, family.name()));
+            return Err(format!("its family is {}, not {}", self.family, family.name()));
         }
         let (mut names, mut copies) = (HashSet::new(), HashSet::new());
         for entry in &self.files {
@@ -164,14 +163,14 @@ impl<C: About> Manifest<C> {
                 return Err(format!("the name_hex of '{name}' is not a valid name"));
             }
             if !names.insert(name_hex.as_ref().unwrap_or(name).to_lowercase()) {
-                return Err(format!("'{name}' is there twice"));
+                return Err(format!("'{name}' is listed twice"));
             }
             match copy {
                 Some(copy) if !is_plain_file_name(&copy.file) || copy.file == MANIFEST => {
                     return Err(format!("'{}' is not a file of a backup in this folder", copy.file));
                 }
                 Some(copy) if !copies.insert(copy.file.to_lowercase()) => {
-                    return Err(format!("'{}' is there for two names", copy.file));
+                    return Err(format!("'{}' is used for two names", copy.file));
                 }
                 None if error.is_none() => {
                     return Err(format!("'{name}' has neither file, bytes and sha256 nor an error"));
@@ -184,9 +183,9 @@ impl<C: About> Manifest<C> {
     }
 }
 
-/// Reads the list in `folder`; `None` if there is none.
+/// Reads the manifest in `folder`; `None` if there is none.
 pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
-    /// What every list begins with.
+    /// Common first fields of every manifest.
     #[derive(Deserialize)]
     struct Head {
         format: String,
@@ -201,20 +200,19 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
         text => text.with_context(|| path.display().to_string())?,
     };
     let wrong = |why: String| {
-        Failure::local(format!("{}: {why}", path.display()))
-            .hint("this is not a whole list of a backup; make a new one")
+        Failure::local(format!("{}: {why}", path.display())).hint("the manifest is damaged; create a new backup")
     };
     match serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))? {
         Head { format, .. } if format != FORMAT => {
-            return Err(wrong(format!("it says to be of '{format}', not '{FORMAT}'")));
+            return Err(wrong(format!("its format is '{format}', not '{FORMAT}'")));
         }
         Head { version, .. } if version > VERSION => {
-            return Err(wrong(format!("it has version {version}, and this program reads up to {VERSION}")));
+            return Err(wrong(format!("its version is {version}; this armctl supports up to {VERSION}")));
         }
         Head { family: Some(family), .. } if C::FAMILY.is_some_and(|own| own.name() != family) => {
             let own = C::FAMILY.map_or("this", Family::name);
             let message = format!("{} is a backup of a {family} controller, not of a {own} one", folder.display());
-            return Err(Failure::usage(message).hint(format!("name a backup of a {own} controller")));
+            return Err(Failure::usage(message).hint(format!("use a backup of a {own} controller")));
         }
         Head { .. } => {}
     }
@@ -223,18 +221,20 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
     Ok(Some(list))
 }
 
-/// Reads the list in `folder`, which must be there.
+/// Reads the manifest in `folder`, which must exist.
 pub fn existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
     read(folder)?.ok_or_else(|| {
         let failure = Failure::local(format!("{} holds no {MANIFEST}", folder.display()));
         match folders_in(folder).first() {
-            Some(one) => failure.hint(format!("the backups are in its folders: name one, as in {}", one.display())),
-            None => failure.hint("name the folder of a backup; `armctl backup` makes one"),
+            Some(one) => {
+                failure.hint(format!("the backups are in its subfolders: select one, as in {}", one.display()))
+            }
+            None => failure.hint("use the folder of a backup; create one with `armctl backup`"),
         }
     })
 }
 
-/// The folders of backups in a folder, one a robot.
+/// Backup subfolders of a folder, one per robot.
 pub fn folders_in(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut found: Vec<PathBuf> = entries.filter(|path| path.join(MANIFEST).exists()).collect();
@@ -242,10 +242,9 @@ pub fn folders_in(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Looks into a folder that a backup shall go to: the backup that it holds, if it holds one. Anything else must not be
-/// mixed with a backup.
+/// Reads the existing backup in a target folder, if any. Other files must not be mixed with a backup.
 pub fn look<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
-    // Of a backup that was killed.
+    // Leftovers of a killed backup.
     files::sweep(folder);
     let mut entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -256,13 +255,14 @@ pub fn look<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
     }
     match entries.next() {
         None => Ok(None),
-        Some(_) => Err(Failure::local(format!("{} holds other files", folder.display()))
-            .hint("a backup takes an empty folder, or makes a new one")),
+        Some(_) => {
+            Err(Failure::local(format!("{} holds other files", folder.display())).hint("use an empty or a new folder"))
+        }
     }
 }
 
-/// The backup in a folder that a new one goes on with, if any: with `resume`, one of the same target and of what was asked
-/// for then; `scope` is what is asked for now, nothing if nobody says. With `force` a new one takes its place.
+/// Earlier backup in a folder that a new one continues, if any: with `resume`, one of the same target and scope;
+/// `scope` is the new selection, `None` if not given. With `force`, the new backup replaces it.
 pub fn earlier<C: About>(
     folder: &Path,
     robot: &Robot,
@@ -273,61 +273,61 @@ pub fn earlier<C: About>(
     let Some(earlier) = look::<Value>(folder)?.filter(|_| !force) else { return Ok(None) };
     let name = &earlier.robot;
     if !resume {
-        let state = if earlier.complete { "a backup" } else { "a backup that is not whole" };
+        let state = if earlier.complete { "a backup" } else { "an incomplete backup" };
         return Err(Failure::local(format!("{} holds {state} of {name}", folder.display()))
-            .hint("--resume goes on with it, --force makes a new one over it; or choose another folder"));
+            .hint("add --resume to continue it or --force to replace it, or use another folder"));
     }
     if earlier.target != robot.target.value.url() || earlier.family != robot.family.name() {
         return Err(Failure::usage(format!("{} is a backup of {name} ({})", folder.display(), earlier.target))
-            .hint("choose another folder for this robot"));
+            .hint("use another folder for this robot"));
     }
     if scope.is_some_and(|scope| scope != earlier.scope) {
         let asked = if earlier.scope.is_empty() { "everything".to_owned() } else { earlier.scope.join(", ") };
         return Err(Failure::usage(format!(
-            "{} is a backup of {asked}, and this asks for something else",
+            "{} is a backup of {asked}, which differs from the selection",
             folder.display()
         ))
-        .hint("--resume alone goes on with what was asked for; choose another folder for something else"));
+        .hint("use only --resume to continue the earlier selection, or use another folder"));
     }
     read(folder)
 }
 
-/// Whether what a backup is of may be written to this robot: unless `force`, to the robot it is of, or to a simulator.
+/// Checks whether a backup may be written to this robot: to the same robot or to a simulator, unless `force` is set.
 pub fn check_origin(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(), Failure> {
     let Manifest { family, robot: name, target, .. } = manifest;
     if *family != robot.family.name() {
         return Err(Failure::usage(format!(
-            "the backup is of a {family} controller, {} is {}",
+            "the backup is from a {family} controller, {} is {}",
             robot.label(),
             robot.family
         ))
-        .hint("name the robot that the backup is of"));
+        .hint("select the robot of the backup"));
     }
     if force || robot.target.value.is_simulated() || *target == robot.target.value.url() {
         return Ok(());
     }
-    Err(Failure::new(Kind::Rejected, format!("the backup is of {name} ({target}), not of {}", robot.label()))
-        .hint("name the robot that the backup is of; --force takes it for this one all the same"))
+    Err(Failure::new(Kind::Rejected, format!("the backup is from {name} ({target}), not from {}", robot.label()))
+        .hint("select the robot of the backup, or add --force to use this robot anyway"))
 }
 
-/// How far one part of a backup, or a transfer of many files, got.
+/// Progress of a part of a backup, or of a file transfer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
-    /// It was done now.
+    /// Done now.
     Done,
-    /// It had been done before.
+    /// Done earlier.
     Kept,
-    /// It failed; see `error`.
+    /// Failed; see `error`.
     Failed,
-    /// An earlier failure ended the work.
+    /// Not tried because of an earlier failure.
     NotTried,
 }
 
 /// A file in the folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Saved {
-    /// Its name in the folder.
+    /// Name in the folder.
     pub file: String,
     /// Its size.
     pub bytes: u64,
@@ -335,13 +335,13 @@ pub struct Saved {
     pub sha256: String,
 }
 
-/// Why a file did not come.
+/// Reason why a file is missing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Reason {
-    /// The controller's code.
+    /// Error code of the controller.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub code: Option<String>,
-    /// In words.
+    /// Message.
     pub message: String,
 }
 
@@ -352,15 +352,15 @@ impl From<&Failure> for Reason {
 }
 
 impl Saved {
-    /// Whether the file in `folder` is what was fetched; otherwise says what is wrong with it.
+    /// Checks that the file in `folder` is unchanged since the backup.
     pub fn check(&self, folder: &Path) -> Result<(), Failure> {
         let path = folder.join(&self.file);
         let damaged = |why: String| {
             Err(Failure::local(format!("{}: {why}", path.display()))
-                .hint("the file is not what was backed up; take it from another copy of the backup, or leave it out"))
+                .hint("the file has changed since the backup; use another copy of the backup, or exclude the file"))
         };
         let mut file = match files::open(&path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => return damaged("it is missing".to_owned()),
+            Err(error) if error.kind() == ErrorKind::NotFound => return damaged("file missing".to_owned()),
             file => file.with_context(|| path.display().to_string())?,
         };
         let mut hash = Hash::default();
@@ -375,31 +375,31 @@ impl Saved {
             }
         }
         if hash.bytes != self.bytes {
-            return damaged(format!("it has {} bytes instead of {}", hash.bytes, self.bytes));
+            return damaged(format!("{} bytes instead of {}", hash.bytes, self.bytes));
         }
         if !hash.hex().eq_ignore_ascii_case(&self.sha256) {
-            return damaged("its content was changed (SHA-256)".to_owned());
+            return damaged("content changed (SHA-256)".to_owned());
         }
         Ok(())
     }
 }
 
-/// Size and SHA-256 of what passes by.
+/// Size and SHA-256 of a stream.
 #[derive(Debug, Default)]
 pub struct Hash {
     sha256: Sha256,
-    /// Bytes so far.
+    /// Number of bytes so far.
     pub bytes: u64,
 }
 
 impl Hash {
-    /// The next bytes.
+    /// Adds bytes.
     pub fn take(&mut self, bytes: &[u8]) {
         self.sha256.update(bytes);
         self.bytes = self.bytes.saturating_add(bytes.len() as u64);
     }
 
-    /// The hash in lower-case hexadecimal.
+    /// Hash in lower-case hexadecimal.
     pub fn hex(self) -> String {
         hex(&self.sha256.finalize())
     }
@@ -481,11 +481,11 @@ mod tests {
         };
         let path = folder.path().join("A.JBI");
         let problem = || copy.check(folder.path()).unwrap_err().message;
-        assert!(problem().ends_with("it is missing"));
+        assert!(problem().ends_with("file missing"));
         fs::write(&path, "abd").unwrap();
         assert!(problem().ends_with("(SHA-256)"));
         fs::write(&path, "abcd").unwrap();
-        assert!(problem().ends_with("it has 4 bytes instead of 3"));
+        assert!(problem().ends_with("4 bytes instead of 3"));
         fs::write(&path, "abc").unwrap();
         copy.check(folder.path()).unwrap();
     }

@@ -1,4 +1,4 @@
-//! Backups as all families make and restore them: what is asked for, and what became of each file or part.
+//! Backup and restore for all families: options, and results of files and parts.
 
 pub mod check;
 mod compare;
@@ -25,107 +25,106 @@ use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::inventory::fits;
 
-/// Which files or parts, by patterns of their names; without any, all.
+/// Selection of files or parts by name patterns; empty selects all.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Only(pub Vec<String>);
 
 impl Only {
-    /// Whether a name is meant.
+    /// Whether a name is selected.
     pub fn has(&self, name: &str) -> bool {
         self.0.is_empty() || self.0.iter().any(|pattern| fits(pattern, name))
     }
 
-    /// Whether a thing with several names is meant.
+    /// Whether an item with several names is selected.
     pub fn has_any<S: AsRef<str>>(&self, names: &[S]) -> bool {
         names.iter().any(|name| self.has(name.as_ref()))
     }
 
-    /// As it stands in the scope of a backup.
+    /// Notation in the scope of a backup.
     pub fn scope(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(|pattern| format!("{ONLY}{pattern}"))
     }
 
-    /// As it was put into the scope of a backup.
+    /// Parses the scope of a backup.
     pub fn of_scope(scope: &[String]) -> Self {
         Self(scope.iter().filter_map(|word| word.strip_prefix(ONLY)).map(ToOwned::to_owned).collect())
     }
 
-    /// Refuses patterns that fit nothing, as mistyped ones do.
+    /// Rejects patterns without a match, such as mistyped ones.
     pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<(), Failure> {
         let unknown = self.0.iter().find(|pattern| !names.iter().any(|name| fits(pattern, name.as_ref())));
         let Some(pattern) = unknown else { return Ok(()) };
         let near = nearest(pattern, names.iter().map(AsRef::as_ref));
         let near = near.map_or(String::new(), |near| format!("did you mean {near}? "));
-        Err(Failure::usage(format!("nothing is called '{pattern}'")).hint(format!(
-            "{near}--only takes names as the backup lists them, with * and ?, such as 'points*' or '*.JBI'"
-        )))
+        Err(Failure::usage(format!("no name matches '{pattern}'"))
+            .hint(format!("{near}use names from the backup, with * and ?, such as 'points*' or '*.JBI'")))
     }
 }
 
-/// Before a pattern, in the scope of a backup.
+/// Prefix of a pattern in the scope of a backup.
 const ONLY: &str = "only ";
 
-/// What is asked for of a backup that is made.
+/// Options of a backup.
 #[derive(Debug, Clone, Default)]
 pub struct Making {
-    /// Where it goes.
+    /// Target folder.
     pub folder: PathBuf,
-    /// What goes into it, in the words of its list: patterns as in `only points*`, and what a family has beside, such as
-    /// `points 0..999`. Nothing is everything; `None` if nobody says.
+    /// Selection in the notation of the manifest: patterns as in `only points*`, and family selections such as
+    /// `points 0..999`. Empty selects everything; `None` if not given.
     pub scope: Option<Vec<String>>,
-    /// Go on with the one that is there.
+    /// Continue an existing backup.
     pub resume: bool,
-    /// Replace the one that is there.
+    /// Replace an existing backup.
     pub force: bool,
 }
 
-/// What is asked for of a backup that is restored.
+/// Options of a restore.
 #[derive(Debug, Clone, Default)]
 pub struct Restoring {
-    /// Where it is.
+    /// Folder of the backup.
     pub folder: PathBuf,
-    /// What of it.
+    /// Selection.
     pub only: Only,
-    /// What makes the controller another machine as well.
+    /// Include data that changes the machine itself.
     pub machine: bool,
-    /// To another model or robot than it is of.
+    /// Allow another model or robot.
     pub force: bool,
 }
 
 /// Result of a file or part.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Item {
-    /// Its name on the controller, or the name of the part: `TESTJOB.JBI`, `points-1`.
+    /// Name on the controller, or name of the part: `TESTJOB.JBI`, `points-1`.
     pub name: String,
-    /// The name in bytes, where the text does not lead back to them.
+    /// Bytes of the name, if the text does not convert back to them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name_hex: Option<String>,
-    /// What was done.
+    /// Result.
     pub state: State,
-    /// Its file in the folder of the backup.
+    /// File in the folder of the backup.
     pub file: Option<String>,
     /// Size of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bytes: Option<u64>,
-    /// Values written, where they are written one by one.
+    /// Number of values written, if they are written one by one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub written: Option<usize>,
-    /// Values that were the same already.
+    /// Number of equal values.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unchanged: Option<usize>,
-    /// What is not in the file, or was not written.
+    /// Items that are not in the file, or were not written.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
-    /// What there is to say beside.
+    /// Notes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// Why it failed.
+    /// Reason for the failure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<Failure>,
 }
 
 impl Item {
-    /// Before it is tried.
+    /// Initial result.
     pub fn pending(name: impl fmt::Display) -> Self {
         Self {
             name: name.to_string(),
@@ -141,7 +140,8 @@ impl Item {
         }
     }
 
-    /// It failed. Says whether the next one can be tried: after a "no" to this one it can, on a broken line it cannot.
+    /// Records a failure. Returns whether the next item can be tried: yes after a refusal of this item, no after a
+    /// lost connection.
     pub fn fail(&mut self, failure: Failure) -> bool {
         let goes_on = goes_on(&failure);
         self.state = State::Failed;
@@ -149,7 +149,7 @@ impl Item {
         goes_on
     }
 
-    /// The copy is there, by `state` now or before.
+    /// Records a copy that was made now or earlier.
     pub fn saved(&mut self, state: State, copy: &Saved, left_out: &[LeftOut]) {
         self.state = state;
         self.file = Some(copy.file.clone());
@@ -157,7 +157,7 @@ impl Item {
         self.left_out = left_out.to_vec();
     }
 
-    /// In words; `done` now, or before.
+    /// Text of the result; `done` now, or `before`.
     fn result(&self, [done, before]: [&str; 2]) -> Cell {
         let counted = |n: usize, words: &str| (n > 0).then(|| format!("{n} {words}"));
         let counts = match (self.written, self.unchanged) {
@@ -194,9 +194,9 @@ impl Item {
     }
 }
 
-/// Said where nothing had to be written.
+/// Text if nothing had to be written.
 const NO_DIFFERENCE: &str = "nothing differed";
-/// Longer lists of what was left out do not fit a table.
+/// Maximum number of left-out items in a table.
 const MOST_KEYS: usize = 6;
 
 /// Whether the next file or part can be tried after a failure.
@@ -204,7 +204,7 @@ pub fn goes_on(failure: &Failure) -> bool {
     matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::Rejected)
 }
 
-/// What a person must know first: that something may have been done, then that the work ended early.
+/// Severity of a failure kind: first that an action may have been executed, then that the work ended early.
 pub fn gravity(kind: Kind) -> u8 {
     match kind {
         Kind::OutcomeUnknown => 4,
@@ -215,36 +215,36 @@ pub fn gravity(kind: Kind) -> u8 {
     }
 }
 
-/// What a dry run says of a file or a part that would be written: how much it is, as `bytes` or `values`.
+/// Note in a dry run for a file or part that would be written, with its size in `bytes` or `values`.
 pub fn would_write(item: impl fmt::Display, (unit, count): (&str, u64), depends_on: &str) -> Value {
     json!({ "item": item.to_string(), "action": "write", unit: count, "depends_on": depends_on })
 }
 
-/// What a dry run says of a file or a part of the backup that is not written.
+/// Note in a dry run for a file or part that is not written.
 pub fn would_leave(item: impl fmt::Display, why: &str) -> Value {
     json!({ "item": item.to_string(), "action": "leave", "why": why })
 }
 
-/// Why a dry run leaves what is not among the chosen ones.
-pub const NOT_CHOSEN: &str = "not chosen";
-/// Why it leaves what makes another machine of it.
-pub const NOT_MACHINE: &str = "makes it another machine: written with --machine only";
+/// Reason for an item that is not selected.
+pub const NOT_CHOSEN: &str = "not selected";
+/// Reason for an item that changes the machine itself.
+pub const NOT_MACHINE: &str = "changes the machine itself; written only with --machine";
 
-/// Result of each file or part, in the order of working.
+/// Results of files or parts, in the order of processing.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Items {
-    /// Each of them.
+    /// Results.
     pub files: Vec<Item>,
-    /// How many are done, now or before.
+    /// Number of completed items, including earlier ones.
     done: usize,
-    /// How many failed.
+    /// Number of failed items.
     failed: usize,
-    /// How many were not tried.
+    /// Number of items that were not tried.
     not_tried: usize,
 }
 
 impl Items {
-    /// Counts.
+    /// Counts the results.
     pub fn new(files: Vec<Item>) -> Self {
         let count = |states: &[State]| files.iter().filter(|item| states.contains(&item.state)).count();
         let (done, failed) = (count(&[State::Done, State::Kept]), count(&[State::Failed]));
@@ -252,12 +252,12 @@ impl Items {
         Self { files, done, failed, not_tried }
     }
 
-    /// Whether every one is done.
+    /// Whether all items are complete.
     pub fn is_complete(&self) -> bool {
         self.failed + self.not_tried == 0
     }
 
-    /// A row each; `words` say that it was done, now or before.
+    /// One row per item; `words` are the texts for done now and done earlier.
     pub fn view(&self, words: [&str; 2]) -> View {
         let mut table = Table::new(&["name", "result"], "nothing");
         for item in &self.files {
@@ -266,7 +266,7 @@ impl Items {
         View::table(table)
     }
 
-    /// The gravest failure, and how many there are; of equally grave ones, the first.
+    /// Most severe failure (the first of equal severity), with the number of failures.
     fn gravest(&self) -> Option<Failure> {
         let failures = self.files.iter().filter_map(|item| Some((&item.name, item.error.as_ref()?)));
         let (name, gravest) = failures.rev().max_by_key(|(_, failure)| gravity(failure.kind))?;
@@ -275,47 +275,47 @@ impl Items {
             0 => format!("{} of {total} failed", self.failed),
             left => format!("{} of {total} failed, {left} not tried", self.failed),
         };
-        // Some done, some not.
+        // Some items succeeded and some failed.
         let kind = if self.done > 0 { Kind::Mixed } else { gravest.kind };
         Some(Failure { kind, message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() })
     }
 
-    /// The same with how it goes on.
+    /// Most severe failure, with the way to continue.
     pub fn failure(&self, again: &str) -> Option<Failure> {
         Some(with_hint(self.gravest()?, again))
     }
 }
 
-/// A failure with how the work goes on, below what it hints at already.
+/// Adds the way to continue to the hint of a failure.
 pub fn with_hint(failure: Failure, again: &str) -> Failure {
     let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
     failure.hint(hint)
 }
 
-/// What is in a folder after a backup.
+/// Content of a folder after a backup.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct BackedUp {
-    /// The folder.
+    /// Folder.
     pub folder: String,
-    /// The list of what is in it.
+    /// Manifest.
     pub manifest: String,
-    /// Whether nothing is missing of what was asked for.
+    /// Whether all selected data is present.
     pub complete: bool,
-    /// What was asked for, where that is not everything.
+    /// Selection, if not everything.
     pub scope: Vec<String>,
-    /// Each file or part.
+    /// Results of files or parts.
     #[serde(flatten)]
     pub items: Items,
 }
 
 impl BackedUp {
-    /// Of a folder.
+    /// Result for a folder.
     pub fn new(folder: &Path, scope: Vec<String>, complete: bool, items: Items) -> Self {
         let manifest = folder.join(MANIFEST).display().to_string();
         Self { folder: folder.display().to_string(), manifest, complete, scope, items }
     }
 
-    /// The gravest failure of a file or part.
+    /// Most severe failure of a file or part.
     pub fn gravest(&self) -> Option<Failure> {
         self.items.gravest()
     }
@@ -327,30 +327,30 @@ impl Report for BackedUp {
     }
 
     fn failure(&self) -> Option<Failure> {
-        self.items.failure("--resume reads what is missing")
+        self.items.failure("read the missing parts with --resume")
     }
 }
 
-/// What is on a controller after a restore.
+/// Result of a restore.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Restored {
-    /// The folder of the backup.
+    /// Folder of the backup.
     folder: String,
     #[serde(flatten)]
     items: Items,
-    /// Machine parameters were changed, and nothing else was written: the controller's power must be switched off and on
-    /// first (toyo).
+    /// Machine parameters were changed and nothing else was written: first switch the controller's power off and on
+    /// (toyo).
     pub needs_power_cycle: bool,
 }
 
 impl Restored {
-    /// Of a folder.
+    /// Result for a folder.
     pub fn new(folder: &Path, items: Items) -> Self {
         Self { folder: folder.display().to_string(), items, needs_power_cycle: false }
     }
 }
 
-/// What to do after machine parameters were written.
+/// Next step after machine parameters were written.
 pub const POWER_CYCLE: &str = "machine parameters were changed: switch the controller's power off and on, then restore \
                                again without --machine";
 
@@ -361,7 +361,7 @@ impl Report for Restored {
 
     fn failure(&self) -> Option<Failure> {
         let not_done = self.needs_power_cycle.then(|| Failure::new(Kind::ConditionNotMet, POWER_CYCLE));
-        self.items.failure("the same command goes on: what is the same already is not written again").or(not_done)
+        self.items.failure("run the same command again to continue; equal values are not written again").or(not_done)
     }
 }
 

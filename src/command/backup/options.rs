@@ -1,4 +1,4 @@
-//! What the command line takes to make and to restore a backup, in every family.
+//! Command-line options of backup and restore, common to all families.
 
 use std::path::PathBuf;
 
@@ -7,30 +7,30 @@ use clap::Args;
 use super::{Making, Only, Restoring};
 use crate::command::ValueKind;
 
-/// What is saved, and where.
+/// Backup options.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct BackupOptions {
-    /// Folder, made if it is not there
+    /// Folder; created if it does not exist
     folder: PathBuf,
-    /// Files or parts whose names fit, such as '*.JBI' or 'points*' (repeatable)
+    /// Names of files or parts, such as '*.JBI' or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
-    /// Go on with a backup that is not whole; what is there already is kept
+    /// Continue an incomplete backup and keep its files
     #[arg(long, conflicts_with = "force")]
     resume: bool,
-    /// Make a new backup over the one in the folder
+    /// Replace the backup in the folder
     #[arg(long)]
     force: bool,
 }
 
 impl BackupOptions {
-    /// The folder.
+    /// Folder.
     pub fn folder(&self) -> &PathBuf {
         &self.folder
     }
 
-    /// What is asked for, with what the family's own options narrow it to.
+    /// Backup request, with additional selections of the family.
     pub fn making(&self, narrowed: impl IntoIterator<Item = String>) -> Making {
         let scope: Vec<String> = narrowed.into_iter().chain(Only(self.only.clone()).scope()).collect();
         Making {
@@ -42,26 +42,26 @@ impl BackupOptions {
     }
 }
 
-/// What is restored, and how.
+/// Restore options.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct RestoreOptions {
     /// Folder of the backup
     #[arg(add = ValueKind::Backup)]
     folder: PathBuf,
-    /// Files or parts whose names fit, such as '*.JBI' or 'points*' (repeatable)
+    /// Names of files or parts, such as '*.JBI' or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
-    /// Write what makes it another machine, too, such as parameters
+    /// Also write data that changes the machine itself, such as parameters
     #[arg(long)]
     machine: bool,
-    /// Write the backup of one robot or model to another
+    /// Write the backup to another robot or model
     #[arg(long)]
     force: bool,
 }
 
 impl RestoreOptions {
-    /// What is asked for.
+    /// Restore request.
     pub fn restoring(&self) -> Restoring {
         let Self { folder, only, machine, force } = self;
         Restoring { folder: folder.clone(), only: Only(only.clone()), machine: *machine, force: *force }

@@ -1,5 +1,5 @@
-//! The one way in which a backup is made: what is whole already is kept, each part answers for itself, and the list in the
-//! folder tells at any time how far the work is. A family says which parts there are and reads them.
+//! Backup procedure of all families. Complete parts are kept, each part has its own result, and the manifest always
+//! shows the progress. A family supplies the list of parts and reads them.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -15,15 +15,15 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// How much work may be lost from the list when the power fails.
+/// Maximum progress that may be lost from the manifest after a power failure.
 const WRITE_EVERY: Duration = Duration::from_secs(1);
 
-/// A backup that is asked for, before the controller is.
+/// A requested backup, before the controller is read.
 #[derive(Debug)]
 pub struct Task<C> {
-    /// Where it goes.
+    /// Target folder.
     pub folder: PathBuf,
-    /// What goes into it.
+    /// Selection.
     pub scope: Vec<String>,
     earlier: Option<Manifest<C>>,
 }
@@ -31,36 +31,36 @@ pub struct Task<C> {
 /// A part that was read.
 #[derive(Debug)]
 pub struct Part {
-    /// What goes into its file.
+    /// Content of its file.
     pub content: Content,
-    /// What it holds, where that is known only now.
+    /// Content type, if known only after reading.
     pub holds: Option<String>,
-    /// What is not in it.
+    /// Items that are not in the file.
     pub left_out: Vec<LeftOut>,
-    /// What the controller does not have, for the list alone.
+    /// Items that the controller does not have, only for the manifest.
     pub absent: Vec<LeftOut>,
-    /// What there is to say beside.
+    /// Notes.
     pub notes: Vec<String>,
 }
 
-/// What goes into the file of a part.
+/// Content of the file of a part.
 #[derive(Debug)]
 pub enum Content {
-    /// This text, under this name.
+    /// New file with this name and text.
     Text(String, String),
-    /// What is there already.
+    /// Existing file.
     File(Saved),
 }
 
 impl Part {
-    /// With nothing to say of it.
+    /// Part without notes.
     pub fn new(content: Content) -> Self {
         Self { content, holds: None, left_out: Vec::new(), absent: Vec::new(), notes: Vec::new() }
     }
 }
 
 impl<C: About> Task<C> {
-    /// Looks at what is in the folder, which tells what is asked for where nobody says.
+    /// Reads the target folder; an existing backup supplies the selection if none is given.
     pub fn new(making: Making, robot: &Robot, several: bool) -> Result<Self, Failure> {
         let Making { folder, scope, resume, force } = making;
         let folder = own_folder(&folder, &robot.name, several);
@@ -69,8 +69,8 @@ impl<C: About> Task<C> {
         Ok(Self { folder, scope, earlier })
     }
 
-    /// Begins: writes the list at once, to learn whether it can be written. Of what is there already it has what is whole
-    /// and what `is_kept` says of the earlier list and an entry of it.
+    /// Starts the backup and writes the manifest at once to check that it is writable. It contains the existing parts
+    /// that are complete and that `is_kept` accepts, based on the earlier manifest and its entry.
     pub fn begin<'a>(
         &'a self,
         (screen, robot): (&'a Screen, &Robot),
@@ -80,7 +80,7 @@ impl<C: About> Task<C> {
         let folder = &self.folder;
         make_folder(folder)?;
         let mut list = Manifest::new(robot, controller, self.scope.clone());
-        // What was saved before stays in the list, so that it is kept whenever this is cut off.
+        // Earlier parts stay in the manifest, so that they are kept if the backup is interrupted.
         if let Some(earlier) = &self.earlier {
             let is_whole = |entry: &&Entry| entry.copy.as_ref().is_some_and(|copy| copy.check(folder).is_ok());
             let kept = earlier.files.iter().filter(|entry| is_kept(earlier, entry)).filter(is_whole);
@@ -91,9 +91,9 @@ impl<C: About> Task<C> {
     }
 }
 
-/// Waits for a backup, or for Ctrl-C; a failure that ends it tells what is saved.
+/// Runs a backup until it ends or Ctrl-C; a failure reports what is saved.
 pub async fn cut_off_by_ctrl_c<T>(folder: &Path, work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
-    // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
+    // Ctrl-C ends the work here, before the caller handles it, so that the saved files are reported.
     let outcome = interruptible(work).await.and_then(|outcome| outcome);
     outcome.map_err(|failure| match manifest::read::<Value>(folder) {
         Ok(Some(list)) if failure.kind != Kind::Usage => {
@@ -103,15 +103,15 @@ pub async fn cut_off_by_ctrl_c<T>(folder: &Path, work: impl Future<Output = Resu
     })
 }
 
-/// A failure that ended a backup, with what is there already; `saved` files are.
+/// Failure that ended a backup, with the number of saved files.
 fn cut_off(failure: Failure, folder: &Path, saved: usize) -> Failure {
     let message = format!("{}; {saved} files are in {}", failure.message.trim_end_matches('.'), folder.display());
-    let again = "--resume goes on from there";
+    let again = "continue with --resume";
     let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}; then {again}"));
     Failure { message, ..failure }.hint(hint)
 }
 
-/// A backup under way.
+/// A backup in progress.
 #[derive(Debug)]
 pub struct Saving<'a, C: About> {
     list: Manifest<C>,
@@ -123,17 +123,17 @@ pub struct Saving<'a, C: About> {
 }
 
 impl<C: About> Saving<'_, C> {
-    /// What the list says of a part.
+    /// Manifest entry of a part.
     pub fn entry(&self, name: &str) -> Option<&Entry> {
         self.list.entry(name)
     }
 
-    /// Result of each part so far.
+    /// Results so far.
     pub fn items(&self) -> &[Item] {
         &self.items
     }
 
-    /// Reads a part into its file, unless it is there. Says whether the next one can be tried.
+    /// Reads a part into its file, unless the file exists. Returns whether the next part can be tried.
     pub async fn part(
         &mut self,
         mut entry: Entry,
@@ -173,7 +173,7 @@ impl<C: About> Saving<'_, C> {
         Ok(goes_on)
     }
 
-    /// Ends; `rest` was not read.
+    /// Ends the backup; `rest` was not read.
     pub fn end(mut self, rest: impl IntoIterator<Item = Item>) -> Result<BackedUp, Failure> {
         self.is_closed = true;
         self.items.extend(rest);
@@ -193,7 +193,7 @@ impl<C: About> Drop for Saving<'_, C> {
     }
 }
 
-/// Writes a text into a folder, whole or not at all.
+/// Writes a text file to a folder atomically.
 fn write_text(folder: &Path, file: String, text: &str) -> Result<Saved, Failure> {
     let mut draft = Target::new(folder.join(&file), true)?.begin()?;
     draft.write(text.as_bytes())?;

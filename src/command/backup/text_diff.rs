@@ -1,4 +1,4 @@
-//! Texts compared by lines, as `diff -u` shows them.
+//! Line comparison of texts, as in `diff -u`.
 
 use std::time::{Duration, Instant};
 
@@ -9,74 +9,74 @@ use similar::{Algorithm, ChangeTag, capture_diff_slices_deadline, group_diff_ops
 use crate::controller::text::Encoding;
 use crate::output::view::{Cell, Tone};
 
-/// Larger files are compared byte by byte only.
+/// Maximum file size for a line comparison; larger files are compared only by bytes.
 pub const MOST_TEXT: usize = 4 << 20;
-/// Unchanged lines around a change.
+/// Number of context lines.
 const AROUND: usize = 3;
-/// After this, a correct but longer diff does.
+/// Time limit for a minimal diff; after it, a longer but correct diff is accepted.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// A stretch of changes.
+/// A hunk of changes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Hunk {
-    /// First line in the old file, from 1; 0 if there is none.
+    /// First line in the old file, starting with 1; 0 if there is none.
     pub old_start: usize,
-    /// How many of its lines.
+    /// Number of lines in the old file.
     pub old_lines: usize,
-    /// First line in the new file, from 1; 0 if there is none.
+    /// First line in the new file, starting with 1; 0 if there is none.
     pub new_start: usize,
-    /// How many of its lines.
+    /// Number of lines in the new file.
     pub new_lines: usize,
-    /// Those of both.
+    /// Lines of both files.
     pub lines: Vec<DiffLine>,
 }
 
 /// A line of either file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct DiffLine {
-    /// Which file has it.
+    /// File or files that contain the line.
     pub change: Change,
-    /// Without what ends it.
+    /// Text without the line ending.
     pub text: String,
-    /// What ends it.
+    /// Line ending.
     pub ending: Ending,
 }
 
-/// Which file has a line.
+/// File or files that contain a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Change {
     /// Both.
     Same,
-    /// The old one alone.
+    /// Only the old file.
     Removed,
-    /// The new one alone.
+    /// Only the new file.
     Added,
 }
 
-/// How a line ends.
+/// Line ending.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
     /// CR LF.
     CrLf,
-    /// LF alone.
+    /// LF without CR.
     Lf,
-    /// The file ends without one.
+    /// End of file without a line ending.
     None,
 }
 
-/// A difference in lines.
+/// Line differences.
 #[derive(Debug)]
 pub struct TextDifference {
-    /// Stretches of changes.
+    /// Hunks of changes.
     pub hunks: Vec<Hunk>,
-    /// Whether nothing but ends of lines differs.
+    /// Whether only line endings differ.
     pub only_line_endings: bool,
 }
 
 impl TextDifference {
-    /// `None` if one of the two is no text.
+    /// Compares two texts; `None` if one of them is not text.
     pub fn of(encoding: Encoding, old: &[u8], new: &[u8]) -> Option<Self> {
         let is_text = |bytes: &[u8]| bytes.len() <= MOST_TEXT && !bytes.contains(&0);
         if !is_text(old) || !is_text(new) {
@@ -114,8 +114,8 @@ impl TextDifference {
     }
 }
 
-/// The unified form under the names of the two. A CR LF is what lines of a controller end in, so only other ends are shown,
-/// and a bare LF only beside lines that have CR LF.
+/// Unified diff with the names of both files. CR LF is the normal line ending of controllers, so only other endings
+/// are shown, and a bare LF only next to lines with CR LF.
 pub fn unified(old: &str, new: &str, hunks: &[Hunk]) -> Vec<Cell> {
     let mut shown =
         vec![Cell::from(format!("--- {old}")).tone(Tone::Bad), Cell::from(format!("+++ {new}")).tone(Tone::Good)];
@@ -140,7 +140,7 @@ pub fn unified(old: &str, new: &str, hunks: &[Hunk]) -> Vec<Cell> {
     shown
 }
 
-/// Lines with what ends them.
+/// Lines with their endings.
 fn lines(bytes: &[u8]) -> Vec<&[u8]> {
     bytes.split_inclusive(|byte| *byte == b'\n').collect()
 }

@@ -1,4 +1,4 @@
-//! Positions that are the same but for a little: which lines of a file hold some, and how far two of them are apart.
+//! Tolerant comparison of positions: lines with positions in a file, and their distance.
 
 use std::collections::HashMap;
 
@@ -7,18 +7,18 @@ use serde::Serialize;
 
 use crate::command::backup::manifest::Entry;
 
-/// What is not taken for a difference of positions.
+/// Tolerance of positions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Tolerance {
-    /// Millimetres; where a file does not tell which axes turn, degrees as well.
+    /// Millimetres; also degrees if a file does not identify rotary axes.
     mm: f64,
     /// Degrees.
     deg: f64,
-    /// Pulses of the encoders.
+    /// Encoder pulses.
     pulses: f64,
 }
 
-/// A part of it, as typed.
+/// One limit, as typed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
     unit: Option<Unit>,
@@ -32,29 +32,29 @@ enum Unit {
     Pulses,
 }
 
-/// The least step that controllers store.
+/// Minimum step that controllers store.
 const DEFAULT: Tolerance = Tolerance { mm: 0.001, deg: 0.001, pulses: 1.0 };
-/// Decimals are no binary fractions: 0.003 less 0.002 is more than 0.001.
+/// Rounding margin, because decimals are not exact in binary: 0.003 - 0.002 is more than 0.001.
 const SLACK: f64 = 1e-7;
 
 impl Limit {
-    /// `0.05` (mm and degrees), `0.1mm`, `0.05deg`, `5pulses`.
+    /// Parses `0.05` (mm and degrees), `0.1mm`, `0.05deg`, `5pulses`.
     pub fn parse(text: &str) -> Result<Self, String> {
         let units = [("mm", Unit::Mm), ("deg", Unit::Deg), ("pulses", Unit::Pulses), ("pulse", Unit::Pulses)];
         let found = units.into_iter().find_map(|(word, unit)| Some((text.strip_suffix(word)?, unit)));
         let (number, unit) = found.map_or((text, None), |(number, unit)| (number, Some(unit)));
         match number.trim().parse::<f64>() {
             Ok(most) if most.is_finite() && most >= 0.0 => Ok(Self { unit, most }),
-            _ => Err(format!("'{text}' is not a valid tolerance; as in 0.05mm, 0.1deg or 5pulses")),
+            _ => Err(format!("'{text}' is not a valid tolerance, such as 0.05mm, 0.1deg or 5pulses")),
         }
     }
 }
 
 impl Tolerance {
-    /// None at all.
+    /// No tolerance.
     pub const NONE: Self = Self { mm: 0.0, deg: 0.0, pulses: 0.0 };
 
-    /// The usual one, but for what was given.
+    /// Default tolerance, replaced by the given limits.
     pub fn of(limits: &[Limit]) -> Self {
         let mut tolerance = DEFAULT;
         for Limit { unit, most } in limits {
@@ -78,8 +78,7 @@ impl Tolerance {
         (one - other).abs() <= most + SLACK
     }
 
-    /// The new text, with the old line in place of each that is the same position but for a little. Files that hold no
-    /// positions stay as they are.
+    /// New text, with the old line for each position within the tolerance. Files without positions are unchanged.
     pub fn align(self, entry: &Entry, old: &[u8], new: &[u8]) -> Vec<u8> {
         let ending = entry.copy.as_ref().and_then(|copy| copy.file.rsplit_once('.'));
         let is_table = ending.is_some_and(|(_, ending)| ending == "csv");
@@ -96,7 +95,7 @@ impl Tolerance {
         }
     }
 
-    /// Whether two lines of a table are the same but for coordinates that are near each other.
+    /// Whether two rows of a table are equal, apart from coordinates within the tolerance.
     fn allows_row(self, header: &[String], one: &str, other: &str) -> bool {
         let (one, other): (Vec<&str>, Vec<&str>) = (one.split(',').collect(), other.split(',').collect());
         let in_pulses = header.iter().zip(&one).any(|(name, cell)| name == "unit" && *cell == "pulse");
@@ -112,7 +111,7 @@ impl Tolerance {
         one.len() == other.len() && one.len() == header.len() && header.iter().zip(&one).zip(&other).all(is_near)
     }
 
-    /// Whether two lines like `C00001=1,2,3` are the same but for numbers that are near each other: whole ones are
+    /// Whether two lines like `C00001=1,2,3` are equal, apart from numbers within the tolerance. Whole numbers are
     /// pulses; of the others, the first three are millimetres.
     fn allows_position(self, one: &str, other: &str) -> bool {
         let numbers = |line: &str| {
@@ -132,7 +131,7 @@ impl Tolerance {
     }
 }
 
-/// What tells a position of a job or variable file from the others, as `C00001`, `BC00001`, `P001` do.
+/// Key of a position in a job or variable file, such as `C00001`, `BC00001`, `P001`.
 fn position_key(line: &str) -> Option<&str> {
     let (name, _) = line.split_once('=')?;
     let digits = name.trim_start_matches(['B', 'E', 'C', 'P', 'X']);
@@ -140,7 +139,7 @@ fn position_key(line: &str) -> Option<&str> {
     (is_position && digits.bytes().all(|byte| byte.is_ascii_digit())).then_some(name)
 }
 
-/// The new lines, with the old one in place of each of the same key that is near it.
+/// New lines, with the old line for each position with the same key within the tolerance.
 fn aligned(
     old: &[u8],
     new: &[u8],
@@ -161,10 +160,10 @@ fn aligned(
     text
 }
 
-/// Where a position stands: under which headline, and by which key.
+/// Location of a position: section heading and key.
 type Place = (String, String);
 
-/// The lines of a text, each with its place if it is a position.
+/// Lines of a text, with the location of each position.
 fn placed(text: &[u8], key: impl Fn(&str) -> Option<&str>) -> Vec<(Option<Place>, &[u8])> {
     let mut headline = String::new();
     let mut lines = Vec::new();

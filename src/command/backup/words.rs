@@ -1,4 +1,4 @@
-//! `backup`, `restore` and `diff`: one set of words, for robots of any family and below the word of each.
+//! `backup`, `restore` and `diff` commands, for robots of any family and for each family.
 
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
@@ -19,34 +19,34 @@ use crate::gate::Confirmation;
 use crate::settings::inventory::Inventory;
 use crate::settings::{Robot, target};
 
-/// A family whose robots can be backed up.
+/// A family with backups.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Backups: Family {
-    /// The names of `backup`, `restore` and `diff` in envelopes and schemas.
+    /// Names of `backup`, `restore` and `diff` in envelopes and schemas.
     const IDS: [&'static str; 3];
 
-    /// What it takes to read all of a robot, at the most.
+    /// Maximum risk of reading all of a robot.
     const BACKUP_RISK: Risk = Risk::Read;
 
-    /// What it takes to read all of this robot.
+    /// Risk of reading all of this robot.
     fn backup_risk(_robot: &Robot) -> Risk {
         Self::BACKUP_RISK
     }
     /// Makes a backup.
     async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure>;
-    /// Writes a backup back.
+    /// Restores a backup.
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure>;
 }
 
-/// Saves what a controller stores in a folder of files.
+/// Saves the data of a controller to a folder of files.
 #[derive(Debug, Args)]
 #[group(skip)]
 #[command(
-    after_help = "Files of a yerc, points and data of a yrcx, parameters, points and programs of a toyo controller; several \
-                  robots each in a folder of their name. manifest.json lists what is there with sizes and hashes, and \
-                  what is missing and why. `yrcx backup` and `toyo backup` have more options.\n\nTo save \
-                  every task of a toyo controller, each is made the current one for a while. That is a change: of a \
-                  read-only robot the current task alone is saved."
+    after_help = "Files of a yerc, points and data of a yrcx, parameters, points and programs of a toyo controller. \
+                  With several robots, each has a folder with its name. manifest.json lists the files with sizes and \
+                  hashes, and the missing data with the reason. `yrcx backup` and `toyo backup` have more \
+                  options.\n\nTo save every task of a toyo controller, armctl selects each task temporarily. \
+                  That is a change, so on a read-only robot only the current task is saved."
 )]
 pub struct Backup<F: Backups> {
     #[command(flatten)]
@@ -56,7 +56,7 @@ pub struct Backup<F: Backups> {
 }
 
 impl<F: Backups> Backup<F> {
-    /// The folder.
+    /// Folder.
     pub fn folder(&self) -> &Path {
         self.options.folder()
     }
@@ -79,15 +79,15 @@ impl<F: Backups> Command for Backup<F> {
     }
 }
 
-/// Writes back what a backup holds.
+/// Writes a backup to the controller.
 #[derive(Debug, Args)]
 #[group(skip)]
 #[command(
-    after_help = "All files are checked against their hashes first, and what differs from the controller is written. So \
-                  after a restore that was cut off the same command goes on where it ended. What the controller has \
-                  beyond the backup stays.\n\nWhat makes it another machine is left out unless --machine is given: \
-                  parameters and system data (yerc), parameters and settings (yrcx), machine parameters (toyo). \
-                  `toyo restore` has more options."
+    after_help = "armctl first checks all files against their hashes, then writes the data that differs from the \
+                  controller. After an interruption, run the same command again to continue. Data that is not in the \
+                  backup stays on the controller.\n\nWithout --machine, data that changes the machine itself is not \
+                  written: parameters and system data (yerc), parameters and settings (yrcx), machine parameters \
+                  (toyo). `toyo restore` has more options."
 )]
 pub struct Restore<F: Backups> {
     #[command(flatten)]
@@ -97,7 +97,7 @@ pub struct Restore<F: Backups> {
 }
 
 impl<F: Backups> Restore<F> {
-    /// The family of the backup.
+    /// Family of the backup.
     pub fn of_family(&self) -> Option<target::Family> {
         family_of(&self.options.restoring().folder)
     }
@@ -108,7 +108,7 @@ impl<F: Backups> Command for Restore<F> {
     type Report = Restored;
     const ID: &'static str = F::IDS[1];
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite what the controller stores by the backup";
+    const INTENT: &'static str = "overwrite data of the controller with the backup";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, F>) -> Result<Restored, Failure> {
@@ -119,17 +119,18 @@ impl<F: Backups> Command for Restore<F> {
     }
 }
 
-/// Compares a backup with another one, or with a controller.
+/// Compares a backup with another backup, or with a controller.
 #[derive(Debug, Args)]
 #[group(skip)]
 #[command(
-    after_help = "With two folders no robot is asked. With one, the controller is read as far as the backup goes, and what \
-                  is shown is what changed since: - is the backup, + the controller. `armctl diff ROBOT ROBOT` reads and \
-                  compares two controllers of a family; where a folder has such a name, name them with -r. Texts are \
-                  compared by lines, other files by their hashes.\n\nPositions (points, shifts, hands, positions of jobs) that are no further apart than \
-                  the tolerance are the same: 0.001 mm, 0.001 degrees and 1 pulse, unless --tolerance says otherwise; \
-                  such files are named. So are jobs that differ in the line ///DATE alone, which \
-                  controllers rewrite: it is ignored. --exact compares every byte. Exit code 0: the same; 8: different."
+    after_help = "With two folders, armctl reads no robot. With one folder, it reads the same data from the controller \
+                  and shows the changes since the backup: - is the backup, + the controller. `armctl diff ROBOT ROBOT` \
+                  reads and compares two controllers of a family. If a folder has the same name, use -r for the \
+                  robots. Texts are compared by lines, other files by their hashes.\n\nPositions (points, shifts, \
+                  hands, positions of jobs) within the tolerance are equal: 0.001 mm, 0.001 degrees and 1 pulse, or \
+                  the value of --tolerance. The line ///DATE of jobs is ignored, because controllers rewrite it. The \
+                  result lists the files to which this applies. --exact compares every byte. Exit code 0: equal; 8: \
+                  different."
 )]
 pub struct Diff<F: Backups> {
     #[command(flatten)]
@@ -139,22 +140,22 @@ pub struct Diff<F: Backups> {
 }
 
 impl<F: Backups> Diff<F> {
-    /// The family of the backup.
+    /// Family of the backup.
     pub fn of_family(&self) -> Option<target::Family> {
         family_of(self.options.old.as_deref()?)
     }
 
-    /// What is compared, and how exactly.
+    /// Comparison options.
     pub fn options(&self) -> &DiffOptions {
         &self.options
     }
 
-    /// Whether robots may be asked: not where two folders are compared.
+    /// Whether robots may be read: not for a comparison of two folders.
     pub fn may_ask_robots(&self) -> bool {
         self.options.new.is_none() || !self.options.names_folder()
     }
 
-    /// The two robots that are named in place of folders.
+    /// Two robots that are given instead of folders.
     pub fn robots(&self, inventory: &Inventory) -> Option<[String; 2]> {
         let named = |path: &Option<PathBuf>| {
             let name = path.as_ref()?.to_str()?;
@@ -194,14 +195,14 @@ impl<F: Backups> Command for Diff<F> {
     }
 }
 
-/// The folder of a robot's backup in what was named: the folder of its name in it, where several robots have one.
+/// Folder of a robot's backup: a subfolder with its name if there are several robots.
 fn place(folder: &Path, robot: &Robot, several: bool) -> PathBuf {
     let own = own_folder(folder, &robot.name, true);
     let has_list = |folder: &Path| folder.join(manifest::MANIFEST).exists();
     if several || !has_list(folder) && has_list(&own) { own } else { folder.to_owned() }
 }
 
-/// The family of the backup in a folder, for simulators, which can be of any.
+/// Family of the backup in a folder, for simulators, which can have any family.
 fn family_of(folder: &Path) -> Option<target::Family> {
     manifest::read::<Value>(folder).ok()??.family.parse().ok()
 }

@@ -1,4 +1,4 @@
-//! What a family says of itself, in its own types. [`Declared`] makes the [`Face`] of it that the house sees.
+//! Declaration of a family in its own types. [`Declared`] converts it to the [`Face`] for the rest of the program.
 
 use std::marker::PhantomData;
 
@@ -29,37 +29,37 @@ use crate::output::Screen;
 use crate::settings::{Robot, target};
 use crate::transport::session::host::Guard;
 
-/// A family, as it is written down in its `face.rs`.
+/// A family, declared in its `face.rs`.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Declaration: Backups {
-    /// What stands behind its word.
+    /// Commands after its name.
     type Commands: CommandSet + Subcommand;
     /// `armctl decode`.
     type Decode: Decode + Args + 'static;
     /// `armctl explain`.
     type Explain: Explain + Args + 'static;
-    /// What lists the alarms that are present.
+    /// Command that lists present alarms.
     type Alarms: Command<Family = Self, Report: Recorded> + Args;
-    /// What lists those of the past.
+    /// Command that lists past alarms.
     type AlarmHistory: Command<Family = Self, Report: Recorded + Alike> + Args;
-    /// What resets them.
+    /// Command that resets alarms.
     type AlarmReset: Command<Family = Self, Report: Alike> + Args;
-    /// Where the robot stands.
+    /// Command that reads the position.
     type Position: Command<Family = Self, Report: Alike> + Args;
-    /// What stops the robot.
+    /// Command that stops the robot.
     type Stop: Command<Family = Self, Report: Alike> + 'static;
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
-    /// Looks for the poller.
+    /// Poller for live views.
     type Poller: Poller<Family = Self>;
 
-    /// Which it is.
+    /// Family.
     const NAME: target::Family;
     /// See [`Face::title`].
     const TITLE: &'static str;
-    /// What the help says of its word.
+    /// Help text of its name.
     const ABOUT: &'static str;
-    /// What stands below the help of its word.
+    /// Text below the help of its name.
     const AFTER_HELP: &'static str;
     /// See [`Face::setup`].
     const SETUP: (&'static str, &'static str);
@@ -83,49 +83,49 @@ pub trait Declaration: Backups {
         Vec::new()
     }
 
-    /// What can stand between its word and a command.
+    /// Adds arguments between its name and a command.
     fn arguments(command: clap::Command) -> clap::Command {
         command
     }
-    /// What stood there.
+    /// Reads the arguments between its name and a command.
     fn read_arguments(_matches: &mut ArgMatches) -> Result<Own, clap::Error> {
         Ok(Own::default())
     }
-    /// What stops the robot, as [`STOP`](connection::Family::STOP) has it in words.
+    /// Stop command, equivalent to the words of [`STOP`](connection::Family::STOP).
     fn stop_command() -> Self::Stop;
-    /// The alarms that are present, the latest first, as far as they can be asked for.
+    /// Present alarms, the latest first, as far as they can be read.
     async fn alarms(link: &mut Self::Link) -> Result<Vec<Alarm>, Failure>;
-    /// What was counted on a link so far.
+    /// Traffic counted on a link so far.
     fn traffic(link: &Self::Link) -> Traffic;
-    /// A line for `status`.
+    /// Summary for `status`.
     async fn overview(link: &mut Self::Link) -> Result<OverviewReport, Failure>;
-    /// What `robots check` finds.
+    /// Layers of `robots check`.
     async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure>;
-    /// Opens a link for a session to hold.
+    /// Opens a link for a session.
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure>;
 }
 
-/// Looks at a robot again and again.
+/// Poller that reads a robot repeatedly.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Poller: Sized + 'static {
-    /// The family of the robot.
+    /// Family of the robot.
     type Family: Declaration;
 
     /// Connects.
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure>;
-    /// Looks once.
+    /// Reads once.
     async fn look(&mut self, detail: Detail) -> Result<Sample, Failure>;
-    /// The connection, for a command that only reads.
+    /// Connection, for a read-only command.
     fn link(&mut self) -> &mut <Self::Family as connection::Family>::Link;
     /// Closes the connection.
     async fn close(self, screen: &Screen) -> Result<(), Failure>;
 }
 
-/// The face of a family that is declared.
+/// [`Face`] of a declared family.
 pub struct Declared<F>(PhantomData<fn() -> F>);
 
 impl<F> Declared<F> {
-    /// It.
+    /// The only value.
     pub const FACE: Self = Self(PhantomData);
 }
 

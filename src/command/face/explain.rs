@@ -1,4 +1,4 @@
-//! `armctl explain FAMILY CODE`: what is known of a code, and what the controllers of the robots that are named have of it.
+//! `armctl explain FAMILY CODE`: meaning of a code, and its occurrences on selected robots.
 
 use clap::Args;
 use futures_util::FutureExt as _;
@@ -19,45 +19,45 @@ use crate::output::view::{Cell, Section, Table, View};
 use crate::settings::Robot;
 use crate::settings::alarms::{self, Explanation, Origin};
 
-/// A code as typed, of a family.
+/// A parsed code of a family.
 pub trait Explain {
-    /// What is known of it.
+    /// Report type.
     type Report: Report + 'static;
     /// `explain.yerc`.
     const ID: &'static str;
 
-    /// Says what is known of it without asking anybody; `alarms` has what the site says.
+    /// Meaning of the code without reading a robot; `alarms` has the site's texts.
     fn explain(&self, alarms: &alarms::Alarms, origin: Origin<'_>) -> Result<Self::Report, Failure>;
 
-    /// The alarm as controllers list it; nothing where it is none.
+    /// The alarm in the notation of controllers; none if the code is not an alarm.
     fn alarm(&self) -> Option<String>;
 }
 
-/// What is known of a code.
+/// Meanings of a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Codes<T> {
-    /// One or, for a short code that is in two tables, several.
+    /// One meaning, or several for a short code that is in two tables.
     pub codes: Vec<Known<T>>,
 }
 
-/// A code in words.
+/// Meaning of a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Known<T> {
-    /// Whether anybody knows this very code.
+    /// Whether this exact code is known.
     known: bool,
     #[serde(flatten)]
     alarm: Alarm,
-    /// What usually causes it, one by one.
+    /// Usual causes.
     causes: Vec<String>,
-    /// What to do, one by one.
+    /// Remedies.
     remedies: Vec<String>,
-    /// What the family tells besides.
+    /// Family-specific fields.
     #[serde(flatten)]
     own: T,
 }
 
 impl<T> Known<T> {
-    /// A code as this program knows it, and what `alarms.toml` says of it, which stands first.
+    /// Built-in meaning of a code, and the text of `alarms.toml`, which has priority.
     pub fn new(known: bool, alarm: Alarm, [causes, remedies]: [&[&str]; 2], site: Option<Explanation>, own: T) -> Self {
         let listed = |site: Option<&String>, own: &[&str]| -> Vec<String> {
             site.cloned().into_iter().chain(own.iter().map(ToString::to_string)).collect()
@@ -89,9 +89,9 @@ impl<T: Besides + Serialize + JsonSchema> Report for Codes<T> {
     }
 }
 
-/// A report of alarms, present or past.
+/// Report of present or past alarms.
 pub trait Recorded {
-    /// Each with what the controller says of it; `what` names the list.
+    /// Each alarm with its data; `what` is the name of the list.
     fn recorded(&self, what: &str) -> Vec<Occurrence>;
 }
 
@@ -110,38 +110,38 @@ impl<T: Besides, S> Recorded for Alarms<T, S> {
     }
 }
 
-/// The list of alarms that are present.
+/// Name of the list of present alarms.
 const PRESENT: &str = "present";
 
 /// An alarm that a controller has or had.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Occurrence {
-    /// `present`, or which one of which list of the past: `major 3`.
+    /// `present`, or list and index of a past alarm: `major 3`.
     pub place: String,
-    /// The alarm.
+    /// Alarm.
     #[serde(flatten)]
     pub alarm: Alarm,
-    /// What it says beside: a sub-code, an axis, a task; null where it says nothing.
+    /// Additional data: a sub-code, an axis, a task; null if there is none.
     pub data: Option<String>,
 }
 
-/// A code, and what controllers have of it.
+/// Meaning of a code, and its occurrences on controllers.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Explained<R> {
     #[serde(flatten)]
     known: R,
-    /// The robots that were named; not there where none was.
+    /// Selected robots; absent if none was selected.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     robots: Vec<Told>,
 }
 
-/// What the controller of a robot has of a code.
+/// Occurrences of a code on a robot.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Told {
     robot: String,
-    /// What its alarm list and its history have of it, the latest first.
+    /// Occurrences in its alarm list and history, the latest first.
     alarms: Vec<Occurrence>,
-    /// What was not asked or not answered, and why.
+    /// Lists that were not read, and the reason.
     errors: Vec<String>,
 }
 
@@ -163,7 +163,7 @@ impl Told {
             table.row([place.as_str().into(), text, data, time]);
         }
         let found = if self.alarms.is_empty() && self.errors.is_empty() {
-            format!("{} has no such alarm, present or among the latest of its history.", self.robot)
+            format!("{} does not have this alarm, neither present nor in its recent history.", self.robot)
         } else if self.alarms.is_empty() {
             String::new()
         } else {
@@ -176,7 +176,7 @@ impl Told {
     }
 }
 
-/// What was typed behind `explain FAMILY`.
+/// Parsed arguments of `explain FAMILY`.
 pub(super) struct Explaining<F: Declaration>(pub F::Explain);
 
 impl<F: Declaration> ToolTask for Explaining<F> {
@@ -190,7 +190,7 @@ impl<F: Declaration> ToolTask for Explaining<F> {
             for robot in &robots {
                 let (alarms, errors) = match self.0.alarm() {
                     Some(alarm) => recall::<F>(run, robot, &alarm).await,
-                    None => (Vec::new(), vec!["not asked: this is no alarm number".to_owned()]),
+                    None => (Vec::new(), vec!["not read: the code is not an alarm number".to_owned()]),
                 };
                 told.push(Told { robot: robot.name.clone(), alarms, errors });
             }
@@ -200,7 +200,7 @@ impl<F: Declaration> ToolTask for Explaining<F> {
     }
 }
 
-/// What a controller has of an alarm, present and past; and what was not told of it, and why.
+/// Occurrences of an alarm on a controller, present and past, and the lists that were not read.
 async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<Occurrence>, Vec<String>) {
     let mut link = match connect::<F>(run, robot).await {
         Ok(link) => link,
@@ -217,11 +217,11 @@ async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<O
     (recall.found, recall.errors)
 }
 
-/// Connects, unless that would do something to the robot.
+/// Connects, unless the connection would affect the robot.
 async fn connect<F: Declaration>(run: &Run, robot: &Robot) -> Result<F::Link, String> {
     if matches!(F::entry(robot, ConnectMode::Control), Entry::Stops(_)) {
-        return Err("not asked: that takes a command connection, whose end stops the robot; `armctl session open` \
-                    keeps one open"
+        return Err("not read: this needs a command connection, and its end stops the robot. `armctl session open` \
+                    keeps a connection open"
             .to_owned());
     }
     let access = Access::reading(ConnectMode::Control);
@@ -234,10 +234,10 @@ async fn connect<F: Declaration>(run: &Run, robot: &Robot) -> Result<F::Link, St
 
 #[expect(clippy::needless_pass_by_value, reason = "made for map_err")]
 fn not_asked(failure: Failure) -> String {
-    format!("not asked: {}", failure.message)
+    format!("not read: {}", failure.message)
 }
 
-/// What lists have of an alarm.
+/// Occurrences of an alarm in lists.
 struct Recall<'a> {
     alarm: &'a str,
     found: Vec<Occurrence>,
@@ -245,7 +245,7 @@ struct Recall<'a> {
 }
 
 impl Recall<'_> {
-    /// Reads a list, by the command that shows it.
+    /// Reads a list with its command.
     async fn of<C: Command<Report: Recorded> + Args>(
         &mut self,
         run: &Run,
@@ -267,7 +267,7 @@ impl Recall<'_> {
     }
 }
 
-/// Whether these are the same code, whatever zeros are before it.
+/// Whether two codes are equal apart from leading zeros.
 fn same(one: &str, other: &str) -> bool {
     let bare = |code: &str| code.trim_start_matches('0').to_ascii_uppercase();
     bare(one) == bare(other)

@@ -1,4 +1,4 @@
-//! What `armctl robots check` finds out about a robot, layer by layer, from its name to its alarms.
+//! Layers of `armctl robots check`, from the name of a robot to its alarms.
 
 use std::path::Path;
 
@@ -13,26 +13,26 @@ use crate::output::view::{Cell, Table, Tone};
 /// One layer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Layer {
-    /// What was looked at.
+    /// Name of the layer.
     layer: &'static str,
     state: State,
-    /// What was found; for a layer that was skipped, why.
+    /// Finding; for a skipped layer, the reason.
     found: String,
-    /// What to set or to do; null where all is well.
+    /// What to set or to do; null if the layer is ok.
     advice: Option<String>,
 }
 
-/// How a layer is.
+/// State of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
-    /// As it should be.
+    /// Ok.
     Ok,
-    /// It works, but something does not, or may not, for this.
+    /// Works with a restriction.
     Warning,
-    /// It does not work.
+    /// Failed.
     Failed,
-    /// Not looked at.
+    /// Not checked.
     Skipped,
 }
 
@@ -65,38 +65,38 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// Of the robot that messages name so; these are the layers there are.
+    /// Layers of the robot `label`; `names` are all layers.
     pub fn new(label: String, names: impl Into<Vec<&'static str>>) -> Self {
         Self { label, names: names.into(), found: Vec::new() }
     }
 
-    /// As it should be.
+    /// Adds an ok layer.
     pub fn ok(&mut self, layer: &'static str, found: impl Into<String>) {
         self.add(layer, State::Ok, found.into(), None);
     }
 
-    /// It works, but.
+    /// Adds a layer with a warning.
     pub fn warn(&mut self, layer: &'static str, found: impl Into<String>, advice: impl Into<String>) {
         self.add(layer, State::Warning, found.into(), Some(advice.into()));
     }
 
-    /// It is not as it should be.
+    /// Adds a failed layer.
     pub fn wrong(&mut self, layer: &'static str, found: impl Into<String>, advice: impl Into<String>) {
         self.add(layer, State::Failed, found.into(), Some(advice.into()));
     }
 
-    /// It could not be asked.
+    /// Adds a layer that could not be read.
     pub fn fail(&mut self, layer: &'static str, failure: &Failure) {
         let message = failure.message.strip_prefix(&format!("{}: ", self.label)).unwrap_or(&failure.message);
         self.add(layer, State::Failed, message.to_owned(), failure.hint.clone());
     }
 
-    /// Well, or a warning.
+    /// Adds an ok layer or a warning.
     pub fn judge(&mut self, layer: &'static str, is_well: bool, (well, ill): (&str, &str), advice: &str) {
         if is_well { self.ok(layer, well) } else { self.warn(layer, ill, advice) }
     }
 
-    /// What somebody left behind; no layer where there is nothing.
+    /// Adds state that an earlier client left; no layer if there is none.
     pub fn left_over(&mut self, left: &[LeftOver]) {
         let joined = |part: fn(&LeftOver) -> &str| left.iter().map(part).collect::<Vec<_>>().join("; ");
         if !left.is_empty() {
@@ -104,16 +104,16 @@ impl Layers {
         }
     }
 
-    /// Whether none has failed so far.
+    /// Whether no layer has failed so far.
     pub fn is_well(&self) -> bool {
         self.found.iter().all(|layer| layer.state != State::Failed)
     }
 
-    /// The layers, in their order; those that were not reached say why.
+    /// Layers in their order; skipped layers have the reason.
     pub fn finish(mut self) -> Vec<Layer> {
         let why = match self.found.iter().rev().find(|layer| layer.state == State::Failed) {
             Some(failed) => format!("{} failed", failed.layer),
-            None => "it could not be asked".to_owned(),
+            None => "could not be read".to_owned(),
         };
         let names = std::mem::take(&mut self.names);
         for name in &names {
@@ -121,34 +121,32 @@ impl Layers {
                 self.add(name, State::Skipped, why.clone(), None);
             }
         }
-        // What has no place of its own comes last.
+        // Layers that are not in the list come last.
         self.found.sort_by_key(|found| names.iter().position(|name| *name == found.layer).unwrap_or(names.len()));
         self.found
     }
 
-    /// What is found of a layer later counts.
+    /// A later finding replaces an earlier one.
     fn add(&mut self, layer: &'static str, state: State, found: String, advice: Option<String>) {
         self.found.retain(|known| known.layer != layer);
         self.found.push(Layer { layer, state, found, advice });
     }
 }
 
-/// Removes half-written files of commands that were killed from this folder; no layer where there are none.
+/// Removes partial files of killed commands from this folder; no layer if there are none.
 pub fn drafts() -> Option<Layer> {
     let (removed, left) = files::sweep(Path::new("."));
     (removed + left > 0).then(|| Layer {
-        layer: "left over here",
+        layer: "partial files",
         state: if left > 0 { State::Warning } else { State::Ok },
-        found: format!(
-            "half-written files of commands that were killed (.armctl-*.part): {removed} removed, {left} not"
-        ),
-        advice: (left > 0).then(|| "remove them as a user who may".to_owned()),
+        found: format!("partial files of killed commands (.armctl-*.part): {removed} removed, {left} not removed"),
+        advice: (left > 0).then(|| "remove them as a user with permission".to_owned()),
     })
 }
 
-/// Layers as a table.
+/// Table of layers.
 pub fn table(layers: &[Layer]) -> Table {
-    let mut table = Table::new(&["layer", "state", "found"], "nothing to look at");
+    let mut table = Table::new(&["layer", "state", "found"], "no layers");
     for Layer { layer, state, found, advice } in layers {
         let told = advice.as_ref().map_or_else(|| found.clone(), |advice| format!("{found}; {advice}"));
         table.row([Cell::from(*layer).whole(), Cell::from(state.name()).tone(state.tone()), told.into()]);
@@ -156,7 +154,7 @@ pub fn table(layers: &[Layer]) -> Table {
     table
 }
 
-/// The first layer that failed.
+/// First failed layer.
 pub fn first_failed(layers: &[Layer]) -> Option<(&'static str, &str)> {
     layers.iter().find(|layer| layer.state == State::Failed).map(|layer| (layer.layer, layer.found.as_str()))
 }

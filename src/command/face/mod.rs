@@ -1,4 +1,5 @@
-//! What the rest of the house may ask of a family. Each has its own in `face.rs`; [`families`](super::families) lists them.
+//! Family interface for the rest of the program. Each family implements it in `face.rs`;
+//! [`families`](super::families) lists them.
 
 pub mod declared;
 pub mod explain;
@@ -30,55 +31,55 @@ use crate::settings::{Robot, target::Family};
 use crate::transport::session::host::Guard;
 use crate::transport::session::host::held::Held;
 
-/// A family, as the rest of the house sees it: [`declared`] makes it of what the family says of itself.
+/// A family, as the rest of the program sees it; [`declared`] derives it from the declaration.
 pub trait Face: Sync {
-    /// Which it is.
+    /// Family.
     fn family(&self) -> Family;
-    /// Makers and models, as a completion shows them.
+    /// Manufacturers and models, for completion.
     fn title(&self) -> &'static str;
-    /// How its target URLs begin, with what follows.
+    /// Prefixes of its target URLs, with their continuation.
     fn urls(&self) -> Vec<(String, &'static str)>;
-    /// Codes and words that `explain` explains, with their names.
+    /// Codes that `explain` supports, with their names.
     fn codes(&self) -> Vec<(String, String)>;
-    /// The topic `NAME-setup` of `help`: a line about it, and its text.
+    /// Help topic `NAME-setup`: summary and text.
     fn setup(&self) -> (&'static str, &'static str);
-    /// Further topics of `help`: the name, a line about it, and its text.
+    /// Additional help topics: name, summary and text.
     fn topics(&self) -> Vec<(&'static str, &'static str, String)>;
-    /// The URL of the simulator that `sim` serves without arguments.
+    /// URL of the simulator that `sim` starts without arguments.
     fn simulator(&self) -> &'static str;
-    /// The start state of a simulator, as an example.
+    /// Example of a simulator start state.
     fn start_state(&self) -> &'static str;
 
-    /// Its word with all that can stand behind it.
+    /// Its command with all subcommands and arguments.
     fn augment(&self, command: clap::Command) -> clap::Command;
-    /// Its word with as much as is named.
+    /// Its command with the named subcommands only.
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
-    /// What stands behind its word.
+    /// Parses the arguments after its name.
     fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error>;
-    /// The schemas of all its reports.
+    /// Schemas of all its reports.
     fn schemas(&self) -> Vec<SchemaEntry>;
 
-    /// What it does behind a common word.
+    /// Its tool of this kind.
     fn tool(&self, kind: ToolKind) -> Tool;
 
-    /// What opens connections to its robots.
+    /// Driver of its robots.
     fn driver(&self) -> &'static dyn Driver;
-    /// A line for `status`.
+    /// Summary for `status`.
     fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>>;
-    /// The alarms that are present, for `alarm list`.
+    /// Present alarms, for `alarm list`.
     fn alarms<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<Vec<Alarm>, Failure>>;
-    /// What it does behind a verb that every family has.
+    /// Its command for a shared verb.
     fn shared(&self, verb: SharedVerb) -> Box<dyn AnyCommand>;
-    /// The keys of `armctl teach`.
+    /// Keys of `armctl teach`.
     fn panel(&self) -> Panel;
-    /// What `robots check` finds.
+    /// Layers of `robots check`.
     fn check<'a>(
         &self,
         robot: &'a Robot,
         access: Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>>;
-    /// Connects to look again and again.
+    /// Opens a connection for repeated reads.
     fn watch<'a>(
         &self,
         robot: &'a Robot,
@@ -86,27 +87,27 @@ pub trait Face: Sync {
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>>;
 
-    /// Opens a link for a session to hold.
+    /// Opens a link for a session.
     fn hold<'a>(
         &self,
         robot: &'a Robot,
         access: &'a Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>>;
-    /// The words of the command that stops a robot, behind the word of the family.
+    /// Words of its stop command, after its name.
     fn stop(&self) -> &'static [&'static str];
-    /// What may pass to a read-only robot, whoever sends it through a session.
+    /// Filter of the requests that may reach a read-only robot through a session.
     fn guard(&self) -> Guard;
-    /// Whether a session records what passes; otherwise each command does.
+    /// Whether a session records the traffic; otherwise each command does.
     fn session_records(&self) -> bool;
-    /// Whether a session commands the controller by being there, which a read-only robot does not allow.
+    /// Whether an open session commands the controller, which a read-only robot does not allow.
     fn session_commands(&self) -> bool;
 
-    /// What it takes to read all of a controller.
+    /// Risk of reading all of a controller.
     fn backup_risk(&self, robot: &Robot) -> Risk;
     /// Makes a backup.
     fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
-    /// Writes a backup back.
+    /// Restores a backup.
     fn restore<'a>(
         &self,
         context: AnyContext<'a>,
@@ -114,28 +115,28 @@ pub trait Face: Sync {
     ) -> LocalBoxFuture<'a, Result<Restored, Failure>>;
 }
 
-/// Looks at a robot again and again, for the poller.
+/// Repeated reads of a robot, for the poller.
 pub trait Watch {
-    /// Looks once.
+    /// Reads once.
     fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
-    /// Runs a command of the family over the same connection. Nothing but reads can leave.
+    /// Runs a command of the family on the same connection. Only reads are sent.
     fn ask<'a>(
         &'a mut self,
         command: &'a dyn AnyCommand,
         robot: &'a Robot,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Outcome>;
-    /// What was counted on the connection so far.
+    /// Traffic counted on the connection so far.
     fn traffic(&mut self) -> Traffic;
     /// Closes the connection.
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
 }
 
-/// A link that a session can hold.
+/// A link for a session.
 pub struct HeldLink {
     /// The link.
     pub held: Held,
-    /// What is to be done once it is closed: the end of a record.
+    /// Action after the link is closed: end of the trace.
     pub finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
 }
 

@@ -1,4 +1,4 @@
-//! A robot in the line that `armctl status` prints.
+//! Summary of a robot for `armctl status`.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -8,42 +8,42 @@ use crate::command::robot::state::State;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 
-/// The state of one robot in a line.
+/// State of one robot in one line.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct OverviewReport {
-    /// The family.
+    /// Family.
     pub family: &'static str,
-    /// The concept: how it stands.
+    /// State of the robot.
     #[serde(flatten)]
     pub state: State,
-    /// Why the position was not asked (yrcx without a session); null where it was.
+    /// Reason why the position was not read (yrcx without a session); null if it was read.
     pub not_asked: Option<&'static str>,
-    /// What somebody left behind, and how to undo it.
+    /// State that an earlier client left, and how to undo it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_over: Vec<LeftOver>,
-    /// Why it is not reachable.
+    /// Reason why it is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,
 }
 
-/// Something that a client left behind: a hold, control by the host, a program that runs.
+/// State that a client left: a hold, host control, a running program.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct LeftOver {
-    /// What it is.
+    /// Description.
     pub what: String,
     /// How to undo it.
     pub undo: String,
 }
 
 impl LeftOver {
-    /// What it is, and how to undo it; nothing where it is not so.
+    /// Creates the entry if `is_so`.
     pub fn new(is_so: bool, what: &str, undo: &str) -> Option<Self> {
         is_so.then(|| Self { what: what.to_owned(), undo: undo.to_owned() })
     }
 }
 
 impl OverviewReport {
-    /// What is wrong with it, in a few words; `None` if nothing is.
+    /// Short description of the problem; `None` if there is none.
     pub fn trouble(&self) -> Option<String> {
         let fault = &self.state.fault;
         (fault.faulted == Some(true)).then(|| fault.describe().unwrap_or_else(|| "alarm".to_owned()))
@@ -66,7 +66,7 @@ impl Report for OverviewReport {
             _ => "stopped".into(),
         };
         let alarm = self.trouble().map_or_else(|| "none".into(), |told| Cell::from(told).tone(Tone::Bad));
-        // To a tenth, as a screen of 80 columns has room for the alarm as well; JSON has it whole.
+        // One decimal, so that an 80-column screen has space for the alarm; JSON has all digits.
         let position = state.position.as_ref().map(|at| format!("{:.1} {:.1} {:.1}", at.x_mm, at.y_mm, at.z_mm));
         table.row([
             self.family.into(),

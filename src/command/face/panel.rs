@@ -1,66 +1,66 @@
-//! What `armctl teach` types for a family: each key is a command line that a person could type as well.
+//! Command lines of `armctl teach` for a family: each key corresponds to a command line that a person could type.
 
 use serde_json::Value;
 
-/// The command lines behind the keys of the panel, without the word of the family.
+/// Command lines of the panel keys, without the family name.
 #[derive(Debug, Clone, Copy)]
 pub struct Panel {
-    /// Ways in which the axes move.
+    /// Coordinate systems.
     pub systems: &'static [System],
-    /// What tells where the robot stands, for [`Step::from`].
+    /// Command that reads the position, for [`Step::from`].
     pub position: &'static [&'static str],
-    /// What stops the robot.
+    /// Command that stops the robot.
     pub stop: &'static [&'static str],
-    /// What lets the robot go on after that, and may let a motion that was stopped go on; nothing where none is needed.
+    /// Command that enables motion after a stop, and may continue a stopped motion; none if not needed.
     pub release: Option<&'static [&'static str]>,
-    /// Asks what is stored in a point.
+    /// Command that reads a point.
     pub stored: fn(point: u32) -> Vec<String>,
-    /// Stores the place of the robot in a point.
+    /// Command that stores the current position as a point.
     pub store: fn(point: u32, system: &System) -> Vec<String>,
-    /// Goes to a point.
+    /// Command that moves to a point.
     pub go: fn(point: u32, system: &System, speed: u32) -> Vec<String>,
-    /// How points are named: `P5`, `point 5`.
+    /// Name of a point: `P5`, `point 5`.
     pub point: fn(u32) -> String,
-    /// The small step of a controller that moves by its own.
+    /// Inching step of the controller, if it has its own.
     pub small_step: Option<SmallStep>,
 }
 
-/// What a small step of the controller is.
+/// Inching step of a controller.
 #[derive(Debug, Clone, Copy)]
 pub struct SmallStep {
-    /// What asks for it.
+    /// Command that reads it.
     pub words: &'static [&'static str],
-    /// Its size in the answer, for axis 0, 1 and so on.
+    /// Size in the answer, for axis 0, 1 and so on.
     pub size: fn(&Value, usize) -> Option<f64>,
 }
 
-/// A way in which axes move.
+/// A coordinate system.
 #[derive(Debug, Clone, Copy)]
 pub struct System {
-    /// In a word: `base`, `tool`, `axes`.
+    /// Name: `base`, `tool`, `axes`.
     pub name: &'static str,
-    /// What moves, with the unit of its steps.
+    /// Axes, with the unit of their steps.
     pub axes: &'static [(&'static str, &'static str)],
-    /// Steps, the smallest first; the last one is the most that a key moves.
+    /// Step sizes, the smallest first; the last one is the maximum per key press.
     pub steps: &'static [f64],
-    /// Speeds, the lowest first; empty where the controller has its own for small steps.
+    /// Speeds, the lowest first; empty if the controller has its own for inching.
     pub speeds: &'static [u32],
-    /// What a speed is: `mm/s, deg/s`, `%`.
+    /// Unit of speeds: `mm/s, deg/s`, `%`.
     pub speed_unit: &'static str,
-    /// Moves an axis by a step.
+    /// Command that moves an axis by a step.
     pub step: fn(&Step<'_>) -> Option<Vec<String>>,
 }
 
-/// A step to be taken.
+/// A step to execute.
 #[derive(Debug, Clone, Copy)]
 pub struct Step<'a> {
-    /// Number of the axis in [`System::axes`].
+    /// Index of the axis in [`System::axes`].
     pub axis: usize,
-    /// How far; signed.
+    /// Signed distance.
     pub by: f64,
-    /// How fast.
+    /// Speed.
     pub speed: u32,
-    /// Where the robot stands: the data of [`Panel::position`], asked for this step.
+    /// Current position: the data of [`Panel::position`], read for this step.
     pub from: &'a Value,
 }
 

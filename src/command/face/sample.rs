@@ -1,4 +1,4 @@
-//! What one look at a robot of any family finds, for a live view. Only reads make it.
+//! Result of one poll of a robot of any family, for a live view. It only reads.
 
 use std::time::Duration;
 
@@ -8,31 +8,31 @@ use crate::command::face::overview::OverviewReport;
 use crate::command::robot::alarm::Alarm;
 use crate::output::view::Tone;
 
-/// How much is asked, the least first.
+/// Level of detail, the lowest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detail {
-    /// What a line of a list shows.
+    /// Data for a line of a list.
     Summary,
-    /// The same, with the axes and their torque: [`Sample::whole`] without signals, limits and errors of position that
-    /// would have to be asked for.
+    /// Also axes and torque: [`Sample::whole`] without signals, limits and position errors that would need additional
+    /// requests.
     Axes,
-    /// What a screen of its own shows.
+    /// Data for a full screen.
     Full,
 }
 
-/// What was counted on a link since it was opened.
+/// Traffic counted on a link since it was opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Traffic {
-    /// Frames, blocks or images that left.
+    /// Frames, blocks or images sent.
     pub sent: u64,
-    /// Those that came.
+    /// Frames, blocks or images received.
     pub received: u64,
-    /// How often something went otherwise than it should: was late, doubled, garbled, lost or sent again.
+    /// Number of disturbances: late, duplicate, corrupt, lost or repeated data.
     pub disturbances: u64,
 }
 
 impl Traffic {
-    /// What was counted since that.
+    /// Difference to an earlier count.
     #[must_use]
     pub fn since(self, before: Self) -> Self {
         Self {
@@ -42,7 +42,7 @@ impl Traffic {
         }
     }
 
-    /// With what was counted besides.
+    /// Adds another count.
     pub fn add(&mut self, more: Self) {
         self.sent += more.sent;
         self.received += more.received;
@@ -50,58 +50,59 @@ impl Traffic {
     }
 }
 
-/// What was counted, in words, without what was not; nothing if that is all of it.
+/// Text of the non-zero counts; none if all are zero.
 pub fn counted(counts: &[(u64, &str)]) -> Option<String> {
     let counted = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
     Some(counted.collect::<Vec<_>>().join(", ")).filter(|counted| !counted.is_empty())
 }
 
-/// What a look found.
+/// Result of a poll.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sample {
-    /// The state in a line.
+    /// State in one line.
     pub line: OverviewReport,
-    /// How long the first answer took; `None` where a look asks nothing, because the controller shows itself.
+    /// Response time of the first answer; `None` if nothing is requested, because the controller sends its state on
+    /// its own.
     pub answered_in: Option<Duration>,
-    /// The alarms and errors that are present, the latest first, as far as they can be asked for.
+    /// Present alarms and errors, the latest first, as far as they can be read.
     pub alarms: Vec<Alarm>,
-    /// What [`Detail::Full`] asks for, and [`Detail::Axes`] in part.
+    /// Data of [`Detail::Full`], and part of it for [`Detail::Axes`].
     pub whole: Option<Whole>,
 }
 
-/// All that a screen has room for.
+/// Data for a full screen.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Whole {
-    /// States that are so or not so.
+    /// On/off states.
     pub indicators: Vec<Indicator>,
     /// Axes and coordinates.
     pub axes: Vec<Axis>,
-    /// The unit of torques; `None` where the protocol has none.
+    /// Unit of torques; `None` if the protocol has none.
     pub torque_unit: Option<&'static str>,
     /// Signals, by kind.
     pub banks: Vec<Bank>,
-    /// What could not be asked, and why.
+    /// Reason for missing data.
     pub not_asked: Option<&'static str>,
 }
 
-/// A state that is so or not so.
+/// An on/off state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Indicator {
-    /// In a word or two.
+    /// Short name.
     pub name: &'static str,
-    /// Whether it is so.
+    /// Whether it is on.
     pub is_on: bool,
-    /// Whether that is as it should be.
+    /// Tone of this state.
     pub tone: Tone,
 }
 
 impl Indicator {
-    /// An indicator that means this while it is on, and nothing while it is off.
+    /// Indicator with this tone while it is on, and no tone while it is off.
     pub fn new(name: &'static str, is_on: bool, tone: Tone) -> Self {
         Self { name, is_on, tone: if is_on { tone } else { Tone::Plain } }
     }
 
-    /// An indicator that is on in good times, and means this while it is off.
+    /// Indicator that should be on, and has this tone while it is off.
     pub fn should(name: &'static str, is_on: bool, off: Tone) -> Self {
         Self { name, is_on, tone: if is_on { Tone::Good } else { off } }
     }
@@ -112,17 +113,17 @@ impl Indicator {
 pub struct Axis {
     /// `S`, `X`, `Rz`, `1`.
     pub name: String,
-    /// Where it is.
+    /// Position.
     pub position: f64,
-    /// What that is measured in.
+    /// Unit of the position.
     pub unit: &'static str,
-    /// Digits behind the point.
+    /// Number of decimals.
     pub decimals: u8,
-    /// Its soft limits, where they can be asked for.
+    /// Soft limits, if they can be read.
     pub limits: Option<(f64, f64)>,
-    /// Its torque, where there is one.
+    /// Torque, if available.
     pub torque: Option<f64>,
-    /// How far it is from where it should be, in the same unit.
+    /// Position error (deviation), in the same unit.
     pub error: Option<f64>,
 }
 
@@ -131,14 +132,14 @@ pub struct Axis {
 pub struct Bank {
     /// `inputs`, `outputs`.
     pub name: &'static str,
-    /// Eight at a time.
+    /// Groups of eight.
     pub groups: Vec<SignalByte>,
 }
 
-/// Eight signals that stand together.
+/// A group of eight signals.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SignalByte {
-    /// The number of the first one shown, or the name of all.
+    /// Number of the first signal, or name of the group.
     pub label: String,
     /// From left to right, in the order of the manual.
     pub signals: [bool; 8],
@@ -156,7 +157,7 @@ impl SignalByte {
     }
 }
 
-/// Says what `asked` came to, and how long that took.
+/// Returns the result of a request and its duration.
 pub async fn clocked<T>(asked: impl Future<Output = T>) -> (T, Option<Duration>) {
     let began = Instant::now();
     let answer = asked.await;

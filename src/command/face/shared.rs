@@ -1,5 +1,5 @@
-//! Verbs that every family has: `armctl alarm history`, `alarm reset`, `stop`. Each robot gets the command of its family,
-//! and reports have the keys that all families share.
+//! Commands that every family has: `armctl alarm history`, `alarm reset`, `stop`. Each robot gets the command of its
+//! family, and the reports have the common keys.
 
 use clap::Args;
 use futures_util::FutureExt as _;
@@ -17,7 +17,7 @@ use crate::output::csv::RowsOf;
 use crate::output::view::View;
 use crate::settings::Robot;
 
-/// Which of them.
+/// Shared commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SharedVerb {
     /// `armctl alarm history`.
@@ -30,16 +30,16 @@ pub enum SharedVerb {
     Position,
 }
 
-/// What a family reports of such a verb, as all families report it.
+/// Conversion of a family report to the common report.
 pub trait Alike {
-    /// The keys that all share.
+    /// Common report type.
     type Core: Report + 'static;
 
-    /// The report without what is the family's own.
+    /// Report without family-specific fields.
     fn core(&self) -> Self::Core;
 }
 
-/// The command of a family for such a verb, as it is without arguments.
+/// Family command for a shared verb, without arguments.
 pub fn command<F: Declaration>(verb: SharedVerb) -> Box<dyn AnyCommand> {
     match verb {
         SharedVerb::AlarmHistory => Box::new(Reduced(usual::<F::AlarmHistory>())),
@@ -49,19 +49,19 @@ pub fn command<F: Declaration>(verb: SharedVerb) -> Box<dyn AnyCommand> {
     }
 }
 
-/// A command as it is without arguments.
+/// A command with default arguments.
 ///
 /// # Panics
-/// If it takes arguments that have no default, which a test rules out.
+/// If it has arguments without a default, which a test excludes.
 pub fn usual<C: Args>() -> C {
-    // The position of a YRCX takes notice of this flag of all commands.
+    // The position command of a YRCX reads this global option.
     let until = clap::Arg::new("until").long("until").global(true);
     let command = C::augment_args(clap::Command::new("usual").arg(until));
     let matches = command.try_get_matches_from(["usual"]).and_then(|matches| C::from_arg_matches(&matches));
     matches.expect("a command that needs no arguments; a test holds that")
 }
 
-/// A command whose report is reduced to what all families share.
+/// A command whose report is reduced to the common fields.
 struct Reduced<C>(C);
 
 impl<C: Command<Report: Alike>> AnyCommand for Reduced<C> {
@@ -86,7 +86,7 @@ impl<C: Command<Report: Alike>> AnyCommand for Reduced<C> {
             let several = context.several;
             let report = Command::run(&self.0, context.of()?).await?;
             let core = report.core();
-            // One robot alone is shown as its family shows it.
+            // A single robot is shown in the form of its family.
             let view = if several { core.view() } else { report.view() };
             Ok(Box::new(Core { core, view, failure: report.failure() }) as Box<_>)
         }
@@ -94,7 +94,7 @@ impl<C: Command<Report: Alike>> AnyCommand for Reduced<C> {
     }
 }
 
-/// What all families share of a report, with the view and the failure of the whole.
+/// Common fields of a report, with the view and the failure of the full report.
 struct Core<R> {
     core: R,
     view: View,

@@ -1,4 +1,4 @@
-//! What a family does behind a common word: `armctl decode FAMILY`, `explain FAMILY`, `sim FAMILY`.
+//! Family tools: `armctl decode FAMILY`, `explain FAMILY`, `sim FAMILY`.
 
 use clap::{ArgMatches, Args, Command, FromArgMatches as _};
 use futures_util::FutureExt as _;
@@ -11,7 +11,7 @@ use crate::command::decode::{self, Decode};
 use crate::command::frame::run::{Run, RunError};
 use crate::command::serve::{self, Serve};
 
-/// Which of them.
+/// Kinds of tools.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ToolKind {
     /// `armctl decode`.
@@ -23,24 +23,24 @@ pub enum ToolKind {
 }
 
 impl ToolKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 3] = [Self::Decode, Self::Explain, Self::Simulate];
 }
 
-/// What a family does behind such a word, and with which arguments.
+/// A tool of a family with its arguments.
 #[derive(Clone, Copy)]
 pub struct Tool {
-    /// The arguments.
+    /// Arguments.
     pub augment: fn(Command) -> Command,
-    /// What was typed.
+    /// Parser of the arguments.
     pub read: fn(&mut ArgMatches) -> Result<Box<dyn ToolTask>, clap::Error>,
-    /// The schemas of what it reports.
+    /// Schemas of its reports.
     pub schemas: fn() -> Vec<SchemaEntry>,
 }
 
-/// What was typed behind such a word.
+/// Parsed arguments of a tool.
 pub trait ToolTask: 'static {
-    /// Does it.
+    /// Runs the tool.
     fn run(self: Box<Self>, run: &Run) -> LocalBoxFuture<'_, Result<(), RunError>>;
 }
 

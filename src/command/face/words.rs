@@ -1,4 +1,4 @@
-//! What can stand behind the word of a family: its commands, or `repl`.
+//! Words after the family name: its commands, or `repl`.
 
 use clap::builder::CommandExt;
 use clap::{ArgMatches, Command, FromArgMatches as _, Subcommand};
@@ -6,25 +6,25 @@ use clap::{ArgMatches, Command, FromArgMatches as _, Subcommand};
 use crate::command::frame::repl::Repl;
 use crate::command::{AnyCommand, CommandSet, Own};
 
-/// What was typed behind the word of a family.
+/// Parsed words after the family name.
 pub struct Typed {
-    /// What stands between both.
+    /// Arguments before the command.
     pub own: Own,
-    /// What is wanted.
+    /// Requested action.
     pub wish: Wish,
 }
 
-/// What is wanted of a family.
+/// Requested action of a family.
 pub enum Wish {
     /// A command.
     Command(Box<dyn AnyCommand>),
-    /// A prompt.
+    /// Interactive prompt.
     Prompt,
-    /// Nobody says.
+    /// None.
     Nothing,
 }
 
-/// What follows the name of a family. Nothing at all is the prompt, too, where somebody can type.
+/// Word after the family name. Without one, an interactive terminal gets the prompt.
 #[derive(Debug, Subcommand)]
 enum Verb<C: Subcommand> {
     /// A command of the family
@@ -34,16 +34,16 @@ enum Verb<C: Subcommand> {
     Repl(Repl),
 }
 
-/// The word of a family with all its commands, and what the help says of it.
+/// Family command with all subcommands and its help.
 pub fn augment<C: CommandSet + Subcommand>(command: Command, about: &'static str) -> Command {
     let command = Verb::<C>::augment_subcommands(command).mut_subcommands(with_verbs);
     command.about(about).long_about(None).add(Headings(C::headings))
 }
 
-/// Most characters of what a noun is and of its verbs: the help has a line of 80 for it.
+/// Maximum length of a group summary with its subcommands, for one help line of 80 columns.
 const ABOUT: usize = 55;
 
-/// A noun is told with its verbs: `Jobs: show, list, select`.
+/// Adds the subcommands to the summary of a group: `Jobs: show, list, select`.
 fn with_verbs(noun: Command) -> Command {
     let Some(about) = noun.get_about().map(ToString::to_string) else { return noun };
     let mut verbs = String::new();
@@ -61,13 +61,13 @@ fn with_verbs(noun: Command) -> Command {
     noun.about(format!("{about}: {verbs}")).mut_subcommands(with_verbs)
 }
 
-/// Headings of the help over the words of a command, see [`CommandSet::headings`].
+/// Help headings of a command; see [`CommandSet::headings`].
 #[derive(Debug, Clone, Copy)]
 pub struct Headings(pub fn() -> Vec<(Option<&'static str>, String)>);
 
 impl CommandExt for Headings {}
 
-/// What is wanted of a family.
+/// Reads the requested action of a family.
 pub fn read<C: CommandSet + Subcommand>(matches: &mut ArgMatches) -> Result<Wish, clap::Error> {
     if matches.subcommand_name().is_none() {
         return Ok(Wish::Nothing);

@@ -23,12 +23,12 @@ pub type Restore = words::Restore<Fleet>;
 /// Arguments of `armctl diff`.
 pub type Diff = words::Diff<Fleet>;
 
-/// `armctl backup`: makes one, or looks whether one is still sound.
+/// `armctl backup`: makes a backup, or checks an existing one.
 #[derive(Debug, Args)]
 pub struct Backup {
     #[command(flatten)]
     making: words::Backup<Fleet>,
-    /// Talk to nobody: compare the files in the folder with their hashes
+    /// Check a backup without a connection: compare its files with their hashes
     #[arg(long, conflicts_with_all = ["resume", "force", "only"])]
     verify: bool,
 }
@@ -67,11 +67,12 @@ pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
     }
     let robots = run.ready(&reading).await?;
     let [old, new] = &robots[..] else {
-        let failure = Failure::usage(format!("two robots are compared, not {}", robots.len()));
-        return Err(failure.hint("`armctl diff ROBOT ROBOT`").into());
+        let failure = Failure::usage(format!("diff compares two robots, but {} are selected", robots.len()));
+        return Err(failure.hint("select two: `armctl diff ROBOT ROBOT`").into());
     };
     if old.family != new.family {
-        let message = format!("{} is a {} controller, {} a {} one", old.name, old.family, new.name, new.family);
+        let message =
+            format!("{} is a {} controller, but {} is a {} controller", old.name, old.family, new.name, new.family);
         return Err(Failure::usage(message).hint("compare robots of one family").into());
     }
     for (robot, outcome) in robots.iter().zip(run.gather(&reading, &robots).await) {

@@ -21,22 +21,22 @@ pub enum Names {
 /// Lists the names of a robot.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Names stand in robots.toml, below [robot.names] of the robot's entry. Those that a yerc controller keeps \
-                  are read by `armctl yerc names get`."
+    after_help = "Names are in robots.toml, below [robot.names] of the robot's entry. `armctl yerc names get` reads \
+                  the names that a yerc controller stores."
 )]
 pub struct List {
-    /// Only those with this in name, kind, address or origin
+    /// Only names with this text in name, kind, address or origin
     filter: Option<String>,
 }
 
 /// Writes a name into the entry of the robot in robots.toml.
 #[derive(Debug, Args)]
-#[command(after_help = "Then the name can be typed in place of the address: `armctl yerc io get clamp`.")]
+#[command(after_help = "Later commands accept the name in place of the address: `armctl yerc io get clamp`.")]
 pub struct Set {
     /// The name, such as clamp
     #[arg(value_name = "NAME")]
     name: String,
-    /// What it names: 27010, B5 (yerc); SO(20), DO12 (yrcx); IN2.1, CN05 (toyo)
+    /// The address: 27010, B5 (yerc); SO(20), DO12 (yrcx); IN2.1, CN05 (toyo)
     #[arg(value_name = "ADDRESS")]
     address: String,
 }
@@ -65,8 +65,8 @@ fn one(run: &Run) -> Result<Robot, Failure> {
     match (robots.pop(), robots.len()) {
         (Some(robot), 0) => Ok(robot),
         (_, others) => {
-            let message = format!("each robot has its own names, and {} robots are chosen", others + 1);
-            Err(Failure::usage(message).hint("name one with -r"))
+            let message = format!("each robot has its own names, but {} robots are selected", others + 1);
+            Err(Failure::usage(message).hint("select one with -r"))
         }
     }
 }

@@ -22,14 +22,14 @@ use crate::settings::inventory::{Entry, fits};
 use crate::settings::model::ToldModels;
 use crate::settings::{Origin, Robot, Setting, duration};
 
-/// What can be done with the inventory.
+/// Commands for the inventory.
 #[derive(Debug, Subcommand)]
 pub enum Robots {
-    /// List the robots of the inventory
+    /// List the robots in the inventory
     List,
     /// Show the effective settings of a robot
     Show(Show),
-    /// Add a robot; `armctl setup` asks for all of it
+    /// Add a robot; `armctl setup` asks for each setting
     Add(entry::Add),
     /// Change settings of a robot
     Set(entry::Set),
@@ -39,7 +39,7 @@ pub enum Robots {
     Default(entry::Default),
     /// Remove a robot
     Remove(entry::Remove),
-    /// Edit the inventory, and check it before it is used
+    /// Edit the inventory in an editor, and check it
     Edit,
     /// Print the path of the inventory
     Path,
@@ -139,10 +139,10 @@ fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String)
 /// The inventory.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct List {
-    /// The file, whether it exists or not.
+    /// Path of the file, which may not exist.
     file: Option<String>,
     robots: Vec<Listed>,
-    /// Whether the inventory has robots that were not chosen.
+    /// Whether the inventory has robots that are not selected.
     #[serde(skip)]
     has_others: bool,
 }
@@ -153,7 +153,7 @@ struct Listed {
     family: &'static str,
     target: String,
     read_only: bool,
-    /// Taken when no robot is named.
+    /// Used if no robot is selected.
     default: bool,
     tags: Vec<String>,
 }
@@ -163,9 +163,8 @@ impl List {
     fn of(run: &Run) -> Result<Self, Failure> {
         let (inventory, selection) = (&run.sources.inventory, &run.sources.selection);
         if selection.sim || selection.target.is_some() {
-            return Err(
-                Failure::usage("--sim and -t select no robots of the inventory").hint("select robots with -r or --tag")
-            );
+            return Err(Failure::usage("--sim and -t cannot select robots in the inventory")
+                .hint("select robots with -r or --tag"));
         }
         let is_chosen = |robot: &&Entry| {
             let is_named = selection.from_environment
@@ -194,9 +193,9 @@ impl List {
 impl Report for List {
     fn view(&self) -> View {
         let none = if self.has_others {
-            "no robot of the inventory has this name or tag"
+            "no robot in the inventory has this name or tag"
         } else {
-            "no robots yet; `armctl setup` adds one step by step, `armctl robots add cell1 udp://192.168.1.31` at once"
+            "no robots yet; add one with `armctl setup`, or with `armctl robots add cell1 udp://192.168.1.31`"
         };
         let mut table = Table::new(&["name", "family", "target", "default", "read-only", "tags"], none);
         let mark = |on: bool| if on { "yes" } else { "" };
@@ -214,7 +213,7 @@ impl Report for List {
     }
 }
 
-/// One robot with every setting in force.
+/// One robot with its effective settings.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Shown {
     name: String,

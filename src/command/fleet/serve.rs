@@ -5,7 +5,7 @@ use clap::Subcommand;
 use super::metrics::Metrics;
 use crate::command::frame::run::{Run, RunError};
 
-/// What can be served.
+/// Servers.
 #[derive(Debug, Subcommand)]
 pub enum Serve {
     /// Metrics for Prometheus, over HTTP

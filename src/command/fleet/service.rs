@@ -73,7 +73,7 @@ impl Service {
             self.log.summarize(false);
             let now = self.supervisor.alive(&status());
             if let (Err(error), true) = (&now, told) {
-                self.say(Level::Error, &format!("the service manager is not reached: {error}"), &[]);
+                self.say(Level::Error, &format!("cannot reach the service manager: {error}"), &[]);
             }
             told = now.is_ok();
         }
@@ -173,12 +173,12 @@ impl News {
             Event::Appeared(robot) => {
                 self.answers.insert(RobotId::of(robot), None);
                 if self.has_begun {
-                    say(log, Level::Notice, robot, "is looked at from now on");
+                    say(log, Level::Notice, robot, "is polled from now on");
                 }
             }
             Event::Gone(robot) => {
                 self.answers.remove(&RobotId::of(robot));
-                say(log, Level::Notice, robot, "is looked at no more");
+                say(log, Level::Notice, robot, "is no longer polled");
             }
             Event::Looked(look) => {
                 if self.answers.insert(RobotId::of(&look.robot), Some(true)) == Some(Some(false)) {
@@ -194,7 +194,7 @@ impl News {
             Event::Inventory(read) => {
                 self.has_begun = true;
                 if read.is_ok() {
-                    log.say(Level::Notice, "the inventory has changed, and was read", &[]);
+                    log.say(Level::Notice, "the inventory has changed and was read again", &[]);
                 }
                 self.unread(log, 0, read.as_ref().err());
             }
@@ -218,7 +218,7 @@ impl News {
             return;
         };
         if self.unread[which].as_ref() != Some(&failure.message) {
-            let effect = if which == 0 { "the robots stay as they were" } else { "its texts are left out" };
+            let effect = if which == 0 { "armctl keeps the earlier robots" } else { "armctl does not use its texts" };
             log.say(Level::Warning, &format!("{}; {effect}", failure.message), &[("kind", &kind(failure))]);
             self.unread[which] = Some(failure.message.clone());
         }

@@ -16,11 +16,11 @@ use crate::output::render;
 use crate::output::view::View;
 use crate::settings::target::{Family, Given, Target};
 
-/// Asks for address, name and what the robot may be told, checks the connection, and writes robots.toml.
+/// Asks for address, name and access rights, checks the connection, and writes robots.toml.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "It reads while it checks, and changes nothing on the controller. `armctl robots add` does the same \
-                        without questions."
+    after_help = "The check only reads, and changes nothing on the controller. `armctl robots add` does the same \
+                  without questions."
 )]
 pub struct Setup {}
 
@@ -37,15 +37,16 @@ impl Setup {
     /// Runs the command.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         if !run.screen.can_ask() {
-            return Err(Failure::usage("setup asks questions, and there is no terminal to ask at")
+            return Err(Failure::usage("setup needs a terminal for its questions")
                 .hint("`armctl robots add NAME URL --read-only` does the same without questions")
                 .into());
         }
         let path = file::path(run)?.display().to_string();
         // From here on, Ctrl-C ends with a message and an exit code.
         catch_interrupts();
-        run.screen
-            .ask_note("Set up a robot. Enter takes what is in brackets; until the last answer nothing is written.");
+        run.screen.ask_note(
+            "Set up a robot. Enter selects the value in brackets. armctl writes nothing before the last answer.",
+        );
         let Found { family, target } = reached(run).await.map_err(unanswered)?;
         let robot = described(run, family, target).await.map_err(unanswered)?;
         run.screen.ask_note(&format!("\n[[robot]]\n{}", robot.table()));
@@ -53,7 +54,7 @@ impl Setup {
             return Err(Failure::new(Kind::Rejected, "not confirmed; nothing was written").into());
         }
         robot.add(run, "setup")?;
-        run.screen.note("`armctl status` shows it; `armctl -h` lists what else there is");
+        run.screen.note("`armctl status` shows the state of the robot; `armctl -h` lists the commands");
         Ok(())
     }
 }
@@ -61,7 +62,7 @@ impl Setup {
 /// Failure for a missing answer to a question.
 fn unanswered(failure: Failure) -> Failure {
     match failure.kind {
-        Kind::Rejected => Failure::new(Kind::Rejected, "there was no answer; nothing was written")
+        Kind::Rejected => Failure::new(Kind::Rejected, "no answer; nothing was written")
             .hint("`armctl robots add NAME URL --read-only` does the same without questions"),
         Kind::Interrupted => Failure { message: format!("{}; nothing was written", failure.message), ..failure },
         _ => failure,
@@ -91,8 +92,8 @@ async fn reached(run: &Run) -> Result<Found, Failure> {
             if check(run, &found).await? {
                 return Ok(found);
             }
-            let ways = ["check again", "another address", "go on all the same"];
-            match choice(run, "Something is in the way. What now?", ways.map(String::from).into()).await? {
+            let ways = ["check again", "another address", "continue anyway"];
+            match choice(run, "The check failed. What now?", ways.map(String::from).into()).await? {
                 0 => {}
                 1 => break,
                 _ => return Ok(found),
@@ -103,9 +104,9 @@ async fn reached(run: &Run) -> Result<Found, Failure> {
 
 async fn address(run: &Run) -> Result<Found, Failure> {
     let ways = [
-        "at an address or serial port that you type",
-        "look for it: ask the boards in this network, list the serial ports",
-        "nowhere yet: a simulator",
+        "type an address or serial port",
+        "search: controllers in this network, serial ports",
+        "no robot yet: use a simulator",
     ];
     loop {
         let found = match choice(run, "Where is the robot?", ways.map(String::from).into()).await? {
@@ -134,7 +135,7 @@ async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
     let mut places = found.places();
     let shown = places.iter().map(|(target, _, device)| format!("{target}  {device}"));
     let options: Vec<String> = shown.chain(["none of these".to_owned()]).collect();
-    let at = choice(run, "This was found:", options).await?;
+    let at = choice(run, "Found:", options).await?;
     if at >= places.len() {
         return Ok(None);
     }
@@ -144,7 +145,7 @@ async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
 
 async fn simulator(run: &Run) -> Result<Found, Failure> {
     let family = family(run).await?;
-    let question = format!("Address of one that `armctl sim {family}` serves, or sim: for one inside armctl");
+    let question = format!("Address of a simulator that runs (`armctl sim {family}`), or sim: for the built-in one");
     let given = line(run, question, Some(families::of(family).simulator())).await?;
     complete(run, &given.parse()?, Some(family)).await
 }
@@ -193,15 +194,15 @@ async fn described(run: &Run, family: Family, target: Target) -> Result<NewRobot
             Err(failure) => screen.failure(&failure),
         }
     };
-    let read_only = yes(run, "Read-only: take no command that changes something?", true).await?;
+    let read_only = yes(run, "Read-only: reject commands that change something?", true).await?;
     let hold = family == Family::Yrcx
         && !read_only
-        && yes(run, "Hold: open a session by itself where a command needs one?", false).await?;
+        && yes(run, "Hold: open a session automatically if a command needs one?", false).await?;
     let is_default = match &inventory.default {
         // The first robot becomes the default without a question.
         None if inventory.robots.is_empty() => true,
-        None => yes(run, "Take it when no robot is named (default)?", true).await?,
-        Some(other) => yes(run, format!("Take it when no robot is named, instead of {other}?"), false).await?,
+        None => yes(run, "Default: use it if no robot is selected?", true).await?,
+        Some(other) => yes(run, format!("Default: use it if no robot is selected, instead of {other}?"), false).await?,
     };
     Ok(NewRobot { name, target, family, read_only, hold, tags: Vec::new(), is_default })
 }

@@ -41,21 +41,21 @@ impl Sim {
     }
 }
 
-/// The simulators that there are.
+/// The available simulators.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Simulators {
     simulators: Vec<Simulator>,
 }
 
-/// One of them.
+/// A simulator.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Simulator {
     family: &'static str,
-    /// The controllers that it is like.
+    /// The controllers that it simulates.
     controller: &'static str,
-    /// What starts it.
+    /// Command that starts it.
     start: String,
-    /// Where it is reached then.
+    /// Its target URL.
     target: &'static str,
 }
 
@@ -72,7 +72,7 @@ impl Simulators {
 
 impl Report for Simulators {
     fn view(&self) -> View {
-        let mut table = Table::new(&["simulator of", "start it with", "it is at"], "");
+        let mut table = Table::new(&["simulator of", "start command", "target"], "");
         for Simulator { controller, start, target, .. } in &self.simulators {
             table.row([(*controller).into(), start.as_str().into(), Cell::from(*target).whole()]);
         }

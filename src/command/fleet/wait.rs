@@ -11,16 +11,15 @@ use crate::settings::duration;
 
 const EVERY: Duration = Duration::from_millis(200);
 
-/// Wait until a condition holds, of several robots for all of them, and print how they are then
+/// Wait until a condition is true for all selected robots, and print their state
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Conditions: idle, running, held, faulted, homed, servo-on; NAME=VALUE, a key of `armctl status`; or a jq \
-    filter over its JSON, which begins with a dot. For signals and variables: `armctl yerc io get clamp --until clamp=on`."
-)]
+#[command(after_help = "Conditions: idle, running, held, faulted, homed, servo-on; NAME=VALUE with a key of `armctl \
+                        status`; or a jq filter over its JSON that begins with a dot. For signals and variables: \
+                        `armctl yerc io get clamp --until clamp=on`.")]
 pub struct Wait {
-    /// What is waited for: idle, servo-on, fault_code=4315, '.data.position.z_mm > 100'
+    /// The condition: idle, servo-on, fault_code=4315, '.data.position.z_mm > 100'
     condition: String,
-    /// How long to wait before giving up with exit code 8 [default: for ever]
+    /// Longest wait, then exit code 8 [default: no limit]
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
 }

@@ -1,4 +1,4 @@
-//! Asks for a yes where the gate wants one, before a command begins and while it runs.
+//! Confirmation questions, before a command starts and while it runs.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -9,7 +9,7 @@ use crate::gate::{Change, Confirmation, Gate, Grant, Intent, unasked};
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// Lets a command through to `robot`, asking where the contract wants it before anything is sent.
+/// Authorizes a command for `robot`, with a question if the risk requires it, before anything is sent.
 pub async fn pass(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
     if !gate.must_ask(screen, robot, intent)? {
         return Ok(());
@@ -22,41 +22,40 @@ pub async fn pass(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -
     ask(screen, robot, Vec::new(), question, "nothing was sent").await
 }
 
-/// What a command may still be let through for while it runs.
+/// Authority of a running command to confirm changes.
 #[derive(Debug, Clone)]
 pub struct Authority<'a> {
     gate: Gate,
     screen: &'a Screen,
     robot: &'a Robot,
-    /// The most that the command said it does.
+    /// Maximum risk that the command declared.
     most: Risk,
     grant: Grant,
 }
 
 impl<'a> Authority<'a> {
-    /// For a command that said it does no more than `most`.
+    /// Authority for a command with this maximum risk.
     pub fn new(gate: Gate, screen: &'a Screen, robot: &'a Robot, most: Risk, grant: Grant) -> Self {
         Self { gate, screen, robot, most, grant }
     }
 
-    /// For what only looks.
+    /// Authority for a read-only command.
     pub fn reading(screen: &'a Screen, robot: &'a Robot) -> Self {
         Self::new(Gate::default(), screen, robot, Risk::Read, Grant::of(Risk::Read))
     }
 
-    /// For a part of the work on another screen.
+    /// Authority for a part of the work on another screen.
     #[must_use]
     pub fn clone_for<'b>(&self, screen: &'b Screen, robot: &'b Robot) -> Authority<'b> {
         Authority { gate: self.gate, screen, robot, most: self.most, grant: self.grant.clone() }
     }
 
-    /// Whether a person is asked before a change: then time passes, in which others may change something.
+    /// Whether a person is asked before a change. In that time, other clients may change data.
     pub fn asks(&self) -> bool {
         self.gate.needs_yes(self.robot, self.most) && self.grant.get() < self.most
     }
 
-    /// Asks whether `change` shall be made, and lets it through. Nothing has been changed so far; what changes nothing
-    /// that a person wrote or taught is let through without a question.
+    /// Confirms `change`. Nothing has been changed so far. A change that overwrites no user data needs no question.
     pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
         let risk = self.most;
         if !change.is_empty() && self.asks() {
@@ -72,17 +71,17 @@ impl<'a> Authority<'a> {
     }
 }
 
-/// What is asked.
+/// Question to the user.
 enum Question {
     Yes(String),
-    /// What will happen, and the word to type.
+    /// Description and the word to type.
     Word(String, &'static str),
 }
 
-/// Who asks.
+/// Serializes questions.
 static TURN: Mutex<()> = Mutex::new(());
 
-/// Asks on a thread of its own, so that Ctrl-C is heard meanwhile. `otherwise` is how things are after a no.
+/// Asks in a separate thread, so that Ctrl-C is handled. `otherwise` describes the state after a no.
 async fn ask(
     screen: &Screen,
     robot: &Robot,
@@ -90,12 +89,13 @@ async fn ask(
     question: Question,
     otherwise: &str,
 ) -> Result<(), Failure> {
-    // From here on Ctrl-C, at the question too, ends in a message and an exit code instead of a killed process.
+    // From here on, Ctrl-C (also at the question) ends with a message and an exit code instead of killing the
+    // process.
     catch_interrupts();
     let screen = *screen;
     let who = format!("{} ({}, {})", robot.name, robot.family, robot.target.value.url());
     let asked = tokio::task::spawn_blocking(move || {
-        // Several robots may have something to ask: one after the other.
+        // Questions for several robots are asked one after the other.
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         screen.ask_title("REAL CONTROLLER:", &who);
         for line in &lines {

@@ -1,4 +1,4 @@
-//! Sessions of another process, which goes on behind the terminal.
+//! Sessions in a background process.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -18,22 +18,22 @@ use crate::settings::Robot;
 use crate::transport::session::place::Place;
 use crate::transport::session::{detach, process, terminate};
 
-/// A session that holds a link.
+/// Result of opening a session.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Opened {
     robot: String,
     family: String,
     target: String,
-    /// The process that holds it.
+    /// Process that holds the link.
     pid: u32,
-    /// Whether it goes on behind the terminal.
+    /// Whether it runs in the background.
     background: bool,
-    /// Where it then writes what happens.
+    /// Log file of a background session.
     log: Option<String>,
 }
 
 impl Opened {
-    /// One that this process holds.
+    /// Session in this process.
     pub fn here(robot: &Robot, background: bool, log: Option<&Path>) -> Self {
         Self {
             robot: robot.name.clone(),
@@ -46,13 +46,13 @@ impl Opened {
     }
 }
 
-/// What the process behind the terminal tells the one in front of it, in a line.
+/// Start message from the background process, one line.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Start {
     /// The link is up.
     Opened(Opened),
-    /// It is not, and why.
+    /// The link could not be opened.
     Failed(Failure),
 }
 
@@ -63,7 +63,7 @@ impl Report for Opened {
     }
 }
 
-/// Opens a session in the background for a robot of the inventory whose entry wants one (`hold = true`).
+/// Opens a background session for a robot whose inventory entry has `hold = true`.
 pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
     let mut words: Vec<OsString> = Vec::new();
     if let Some(path) = inventory {
@@ -72,7 +72,7 @@ pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) 
     words.extend(["-r", &robot.name, "session", "open", "--detached"].map(OsString::from));
     let opened = start(robot, words.into_iter()).await?;
     screen.note(&format!(
-        "{}: a session was opened (process {}); `armctl session close {}` ends it",
+        "{}: session opened (process {}); `armctl session close {}` closes it",
         robot.label(),
         opened.pid,
         robot.name
@@ -80,7 +80,7 @@ pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) 
     Ok(())
 }
 
-/// Starts this program again behind the terminal with these words, and waits until its link is up.
+/// Starts this program in the background with these arguments, and waits until its link is up.
 pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
     let place = Place::make().map_err(|error| no_place(&error))?;
     let log = place.spot(&key_of(robot)).log();
@@ -97,7 +97,7 @@ pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Resu
     match serde_json::from_str(&line) {
         Ok(Start::Opened(opened)) => Ok(opened),
         Ok(Start::Failed(failure)) => Err(failure),
-        Err(_) => Err(Failure::local(format!("{}: the session broke down", robot.label()))
-            .hint(format!("{} may tell why", log.display()))),
+        Err(_) => Err(Failure::local(format!("{}: the session process failed", robot.label()))
+            .hint(format!("see {} for the reason", log.display()))),
     }
 }

@@ -1,4 +1,4 @@
-//! `armctl batch`: what its command line says; `crate::app` runs it.
+//! Arguments of `armctl batch`; `crate::app` runs it.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use clap::Args;
 
 /// Arguments of `batch`.
 #[derive(Debug, Args)]
-#[command(after_help = "The form of the file: `armctl help batch`.")]
+#[command(after_help = "For the file format, see `armctl help batch`.")]
 pub struct Batch {
     /// One command per line, each with its family; - is stdin
     #[arg(value_name = "FILE")]

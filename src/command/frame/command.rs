@@ -1,4 +1,4 @@
-//! What a command is: its arguments, what it does at most, and how it is done.
+//! Command interface: arguments, risk, execution.
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
@@ -13,26 +13,26 @@ use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::settings::{Robot, target};
 
-/// What a command line needs beside its own arguments.
+/// Execution context of a command.
 #[derive(Debug)]
 pub struct Context<'a, F: Family> {
-    /// The robot.
+    /// Robot.
     pub robot: &'a Robot,
-    /// The connection to it.
+    /// Connection to the robot.
     pub link: &'a mut F::Link,
-    /// For progress and notes; reports go back to the caller.
+    /// Screen for progress and notes; reports are returned.
     pub screen: &'a Screen,
-    /// Whether other robots may run the same command, so that files need a folder for each.
+    /// Whether other robots may run the same command, so that files need one folder per robot.
     pub several: bool,
-    /// Confirms what is deleted or overwritten, once that is known.
+    /// Confirms deletions and overwrites when they are known.
     pub authority: Authority<'a>,
 }
 
-/// [`Context`] with a connection of whichever family.
+/// [`Context`] with a connection of any family.
 pub struct AnyContext<'a> {
     /// See [`Context::robot`].
     pub robot: &'a Robot,
-    /// The connection to it.
+    /// Connection to the robot.
     pub connection: &'a mut dyn Connection,
     /// See [`Context::screen`].
     pub screen: &'a Screen,
@@ -43,108 +43,109 @@ pub struct AnyContext<'a> {
 }
 
 impl<'a> AnyContext<'a> {
-    /// The same for a command of one family, whose connection it must be.
+    /// Converts to the context of one family; the connection must belong to it.
     pub fn of<F: Family>(self) -> Result<Context<'a, F>, Failure> {
         let Self { robot, connection, screen, several, authority } = self;
         Ok(Context { robot, link: connection::link::<F>(connection)?, screen, several, authority })
     }
 }
 
-/// A parsed command line for a robot.
+/// A parsed command for a robot.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Command {
-    /// The family it is for.
+    /// Family of the command.
     type Family: Family;
-    /// What it reports.
+    /// Report type.
     type Report: Report + 'static;
-    /// `yerc.status`: its name in envelopes and schemas.
+    /// `yerc.status`: name in envelopes and schemas.
     const ID: &'static str;
-    /// The most that it does.
+    /// Maximum risk.
     const RISK: Risk = Risk::Read;
     /// Completes "This will …" in the question before a motion.
     const INTENT: &'static str = "";
-    /// How a yes is given to what moves, deletes or overwrites.
+    /// Kind of confirmation for motion, deletion and overwriting.
     const CONFIRMATION: Confirmation = Confirmation::Question;
-    /// What it wants of the connection.
+    /// Required connection.
     const CONNECT_MODE: ConnectMode = ConnectMode::Control;
 
-    /// [`RISK`](Self::RISK), where that depends on its arguments.
+    /// Risk for these arguments; default [`RISK`](Self::RISK).
     fn risk(&self) -> Risk {
         Self::RISK
     }
 
-    /// The most that it does to this robot, where that depends on it; not more than [`risk`](Self::risk).
+    /// Risk for this robot; at most [`risk`](Self::risk).
     fn risk_on(&self, _robot: &Robot) -> Risk {
         self.risk()
     }
 
-    /// [`INTENT`](Self::INTENT), where that depends on its arguments.
+    /// Intent for these arguments; default [`INTENT`](Self::INTENT).
     fn intent(&self) -> String {
         Self::INTENT.to_owned()
     }
 
-    /// [`CONFIRMATION`](Self::CONFIRMATION), where that depends on its arguments.
+    /// Confirmation for these arguments; default [`CONFIRMATION`](Self::CONFIRMATION).
     fn confirmation(&self) -> Confirmation {
         Self::CONFIRMATION
     }
 
-    /// Whether it stops the robot, which is always allowed.
+    /// Whether the command stops the robot, which is always allowed.
     fn is_stop(&self) -> bool {
         false
     }
 
-    /// Whether it moves the robot until somebody ends it: a jog without `--for`.
+    /// Whether the command moves the robot until it is stopped: a jog without `--for`.
     fn moves_until_stopped(&self) -> bool {
         false
     }
 
-    /// Whether it jogs: such a motion is stopped even where `--on-interrupt` says to leave it.
+    /// Whether the command jogs. A jog is stopped even with `--on-interrupt leave`.
     fn jogs(&self) -> bool {
         false
     }
 
-    /// Whether it is repeated until something ends it, each run waiting for the next thing to tell.
+    /// Whether the command repeats until it is stopped, and each run waits for an event.
     fn is_endless(&self) -> bool {
         false
     }
 
-    /// Whether it reads or writes files of this machine, also where none is named.
+    /// Whether the command reads or writes files of this machine, even if no file is named.
     fn uses_files(&self) -> bool {
         false
     }
 
-    /// Whether it takes a robot, where that depends on its arguments.
+    /// Whether the command needs a robot with these arguments.
     fn takes_robot(&self) -> bool {
         true
     }
 
-    /// Does it without a robot, where it takes none.
+    /// Runs without a robot, if the command needs none.
     fn run_alone(&self) -> Result<Self::Report, Failure> {
-        Err(Failure::local("internal error: this command takes a robot"))
+        Err(Failure::local("internal error: this command needs a robot"))
     }
 
-    /// [`CONNECT_MODE`](Self::CONNECT_MODE), where that depends on its arguments.
+    /// Required connection for these arguments; default [`CONNECT_MODE`](Self::CONNECT_MODE).
     fn connect_mode(&self) -> ConnectMode {
         Self::CONNECT_MODE
     }
 
-    /// What is said below the table of several robots, of their envelopes.
+    /// Line below the table of several robots.
     fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
         None
     }
 
-    /// Does it. In a dry run orders are noted and count as done; what reads ends in a failure that says its answer is not
-    /// known ([`unknown`](super::dry_run::unknown)), behind which nothing can be foreseen unless the command does.
+    /// Executes the command. In a dry run, requests that change something are noted and count as done. A read ends
+    /// with the failure [`unknown`](super::dry_run::unknown), and nothing after it can be planned unless the command
+    /// handles it.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
 
-/// [`Command`] without its types, for the one loop that runs them all.
+/// [`Command`] without its types, for the common run loop.
 pub trait AnyCommand {
     /// See [`Command::ID`].
     fn id(&self) -> &'static str;
-    /// What the gate is told: of this robot, or at the most.
+    /// Intent for the gate: for this robot, or the maximum.
     fn intent(&self, robot: Option<&Robot>) -> Intent;
-    /// What it reports, if it takes no robot to do it.
+    /// Report, if the command needs no robot.
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
         None
     }
@@ -164,7 +165,7 @@ pub trait AnyCommand {
     fn uses_files(&self) -> bool {
         false
     }
-    /// What opens connections for it, unless it takes no robot.
+    /// Driver for its connections; none if it needs no robot.
     fn driver(&self) -> Option<&'static dyn Driver> {
         None
     }
@@ -181,12 +182,12 @@ pub trait AnyCommand {
 }
 
 impl dyn AnyCommand + '_ {
-    /// The family it is for; `None` if it is for robots of any, or for none.
+    /// Family of the command; `None` for commands of all families or without a robot.
     pub fn family(&self) -> Option<target::Family> {
         self.driver()?.family()
     }
 
-    /// What its connection does to a robot by being there.
+    /// Effect of opening the connection on a robot.
     pub fn entry(&self, robot: &Robot) -> Entry {
         self.driver().map_or(Entry::Harmless, |driver| driver.entry(robot, self.connect_mode(robot)))
     }
@@ -198,7 +199,7 @@ impl dyn AnyCommand + '_ {
         access: Access,
         screen: &Screen,
     ) -> Result<Box<dyn Connection>, Failure> {
-        let driver = self.driver().ok_or_else(|| Failure::local("internal error: this command takes no robot"))?;
+        let driver = self.driver().ok_or_else(|| Failure::local("internal error: this command needs no robot"))?;
         driver.connect(robot, access, screen).await
     }
 }

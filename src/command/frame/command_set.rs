@@ -1,4 +1,4 @@
-//! How commands become words of the command line: sets of them, sets within sets, and those that take no robot.
+//! Mapping of commands to the command line: command sets, nested sets, and commands without a robot.
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
@@ -11,18 +11,18 @@ use crate::gate::{Confirmation, Intent};
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// A command of a family that takes no robot: it is about files, or about this machine.
+/// A command of a family that needs no robot, only files or this computer.
 pub trait OfflineCommand {
-    /// What it reports.
+    /// Report type.
     type Report: Report + 'static;
-    /// `toyo.program.check`: its name in envelopes and schemas.
+    /// `toyo.program.check`: name in envelopes and schemas.
     const ID: &'static str;
 
-    /// Does it.
+    /// Executes the command.
     fn run(&self, screen: &Screen) -> Result<Self::Report, Failure>;
 }
 
-/// A [`OfflineCommand`] command among those for robots.
+/// An [`OfflineCommand`] in a set of robot commands.
 #[derive(Debug, clap::Args)]
 pub struct Offline<C: clap::Args> {
     #[command(flatten)]
@@ -53,15 +53,15 @@ impl<C: OfflineCommand + clap::Args + 'static> AnyCommand for Offline<C> {
     }
 }
 
-/// A command, or a noun that leads to commands by its verbs.
+/// A command, or a group of subcommands.
 pub trait CommandSet {
-    /// The command that was typed.
+    /// Parsed command.
     fn command(self) -> Box<dyn AnyCommand>;
-    /// The schemas of all its reports.
+    /// Schemas of all its reports.
     fn schemas() -> Vec<SchemaEntry>;
-    /// Its part of the command line, as far as words are named: what a line does not name, it does not need.
+    /// Adds the subcommands that `is_named` accepts. Names that a command line does not contain need no parser.
     fn lay_out(command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
-    /// Its words in their order, the first below a heading of the help with that heading.
+    /// Subcommands in their order; the first one below a heading has the heading.
     fn headings() -> Vec<(Option<&'static str>, String)> {
         Vec::new()
     }
@@ -95,7 +95,7 @@ impl<C: OfflineCommand + clap::Args + 'static> CommandSet for Offline<C> {
     }
 }
 
-/// How a variant is typed: `PositionError` as `position-error`.
+/// Command-line name of a variant: `PositionError` becomes `position-error`.
 pub fn word(variant: &str) -> String {
     let mut word = String::with_capacity(variant.len() + 2);
     for (index, c) in variant.char_indices() {
@@ -105,8 +105,8 @@ pub fn word(variant: &str) -> String {
     word
 }
 
-/// Declares a clap enum of nouns or verbs: doc comment, name, and the type that holds its arguments. A text and a colon
-/// before one is the heading in the help for it and those that follow.
+/// Declares a clap enum of commands: doc comment, name, and argument type. A text with a colon is the help heading
+/// for the commands after it.
 macro_rules! commands {
     ($(#[$meta:meta])* $visibility:vis enum $name:ident {
         $($($heading:literal:)? $(#[$doc:meta])* $variant:ident($arguments:ty),)*
@@ -153,7 +153,7 @@ macro_rules! commands {
 }
 pub(crate) use commands;
 
-/// A noun of verbs as an argument struct, so that it can stand in a `commands!` list.
+/// A group of subcommands as an argument struct, for use in a `commands!` list.
 #[derive(Debug, clap::Args)]
 pub struct Subcommands<V: clap::Subcommand> {
     #[command(subcommand)]

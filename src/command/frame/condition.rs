@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::output::jq::Filter;
 
-/// States by their words, and the filter over an envelope that tells whether a robot is in one.
+/// State names and their filters over an envelope.
 const STATES: [(&str, &str); 6] = [
     ("idle", ".data.running == false and .data.held != true"),
     ("running", ".data.running == true"),
@@ -15,51 +15,54 @@ const STATES: [(&str, &str); 6] = [
     ("servo-on", ".data.servo_on == true"),
 ];
 
-/// Ways to compare, the longer ones first.
+/// Comparison operators, longer ones first.
 const COMPARISONS: [&str; 7] = [">=", "<=", "!=", "==", "=", ">", "<"];
 
-/// What is waited for.
+/// Condition to wait for.
 #[derive(Debug)]
 pub struct Condition {
-    /// As it was typed.
+    /// Text as typed.
     text: String,
     filter: Filter,
-    /// The keys that it names, each as a path from the envelope.
+    /// Keys that the condition uses, each as a path from the envelope.
     keys: Vec<Vec<String>>,
 }
 
 impl Condition {
-    /// A condition as typed.
+    /// Parses a condition.
     ///
     /// # Errors
-    /// A filter that is none.
+    /// If the filter is not valid.
     pub fn new(text: &str) -> Result<Self, Failure> {
         let (filter, keys) = match meant(text) {
             Some((filter, keys)) => (each(&filter), keys),
             None => (text.to_owned(), paths(text)),
         };
         let filter = Filter::new(&filter).map_err(|failure| {
-            failure.hint("a condition is one of idle, running, held, faulted, homed, servo-on; NAME=VALUE; or a jq filter such as .data.held")
+            failure.hint(
+                "a condition is one of idle, running, held, faulted, homed, servo-on; NAME=VALUE; or a jq filter such \
+                 as .data.held",
+            )
         })?;
         Ok(Self { text: text.to_owned(), filter, keys })
     }
 
-    /// Whether it holds; of several robots, of all of them.
+    /// Whether the condition is true; for several robots, whether it is true for all of them.
     ///
     /// # Errors
-    /// What a filter fails with.
+    /// The error of the filter.
     pub fn holds(&self, envelopes: &Value) -> Result<bool, Failure> {
         self.filter.is_true(envelopes)
     }
 
-    /// What is said where it can never hold, because a report has no such key.
+    /// Message if the condition can never be true, because a report does not have the key.
     pub fn never(&self, envelopes: &Value) -> Option<String> {
         let first = envelopes.as_array().and_then(|all| all.first()).unwrap_or(envelopes);
         first["data"].as_object()?;
         let missing = self.keys.iter().find(|path| !has(first, path))?;
         let found = path_of(first, missing).map(|keys| keys.join(", ")).unwrap_or_default();
         let place = missing.join(".");
-        Some(format!("'{}': there is no key .{place}, so that this may never be true; there are {found}", self.text))
+        Some(format!("'{}': the key .{place} does not exist, so this may never be true; available: {found}", self.text))
     }
 }
 
@@ -69,7 +72,7 @@ impl std::fmt::Display for Condition {
     }
 }
 
-/// The filter that a word or `NAME=VALUE` stands for, and the keys that it needs.
+/// Filter for a state name or `NAME=VALUE`, and the keys that it needs.
 fn meant(text: &str) -> Option<(String, Vec<Vec<String>>)> {
     let text = text.trim();
     if let Some((_, filter)) = STATES.iter().find(|(word, _)| *word == text) {
@@ -93,7 +96,7 @@ fn meant(text: &str) -> Option<(String, Vec<Vec<String>>)> {
             .and_then(|number| serde_json::from_str(text).ok().or(Some(json!(number))))
             .unwrap_or_else(|| json!(text.trim_matches(['"', '\'']))),
     };
-    // A key of the report; else what is called so in it.
+    // A key of the report, or else an item with this name.
     let name = json!(name);
     let told = format!(
         "(.data | if type == \"object\" and has({name}) then [.[{name}]] else \
@@ -102,12 +105,12 @@ fn meant(text: &str) -> Option<(String, Vec<Vec<String>>)> {
     Some((format!("{told} as $told | ($told | length) > 0 and all($told[]; . {sign} {value})"), Vec::new()))
 }
 
-/// The same of one envelope, or of each of several.
+/// Filter applied to one envelope, or to each of several.
 fn each(filter: &str) -> String {
     format!("if type == \"array\" then length > 0 and all(.[]; {filter}) else ({filter}) end")
 }
 
-/// The plain paths from `.data` that a filter names: `.data.servo_on`.
+/// Plain paths from `.data` in a filter: `.data.servo_on`.
 fn paths(filter: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     for (at, _) in filter.match_indices(".data.") {
@@ -123,7 +126,7 @@ fn paths(filter: &str) -> Vec<Vec<String>> {
     found
 }
 
-/// Whether a value has this path; what is null may have anything below it.
+/// Whether a value has this path; null can have any keys.
 fn has(value: &Value, path: &[String]) -> bool {
     let mut value = value;
     for key in path {
@@ -138,7 +141,7 @@ fn has(value: &Value, path: &[String]) -> bool {
     true
 }
 
-/// The keys where a path ends that is not there.
+/// Available keys at the first missing part of a path.
 fn path_of<'a>(value: &'a Value, path: &[String]) -> Option<Vec<&'a str>> {
     let mut value = value;
     for key in path {
@@ -162,7 +165,7 @@ mod tests {
     fn words_are_states_of_every_family() {
         let of = |running: Option<bool>, held: bool| json!({ "data": { "running": running, "held": held, "servo_on": true } });
         assert!(holds("idle", &of(Some(false), false)) && !holds("idle", &of(Some(false), true)));
-        assert!(!holds("idle", &of(None, false)), "what is not known is not so");
+        assert!(!holds("idle", &of(None, false)), "an unknown state is not true");
         assert!(holds("servo-on", &of(None, false)) && holds("held", &of(None, true)));
         assert!(holds("idle", &json!([of(Some(false), false), of(Some(false), false)])));
         assert!(!holds("idle", &json!([of(Some(false), false), of(Some(true), false)])), "all of them");
@@ -206,7 +209,7 @@ mod tests {
         assert_eq!(
             never("idle"),
             Some(
-                "'idle': there is no key .data.held, so that this may never be true; there are running, position"
+                "'idle': the key .data.held does not exist, so this may never be true; available: running, position"
                     .to_owned()
             )
         );

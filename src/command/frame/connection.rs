@@ -1,4 +1,4 @@
-//! Connections to robots: how they may be used, and what the one loop does with them whatever their family.
+//! Connections to robots: permitted use, and the family-independent interface for the run loop.
 
 use std::any::Any;
 use std::fmt;
@@ -16,56 +16,55 @@ use crate::gate::{Grant, Intent};
 use crate::output::Screen;
 use crate::settings::{Robot, target};
 
-/// How a link may be used.
+/// Permitted use of a link.
 #[derive(Debug, Clone)]
 pub struct Access {
-    /// Nothing riskier leaves: the last check, after the gate.
+    /// Maximum risk of a sent frame: the last check, after the gate.
     pub granted: Grant,
-    /// Note what would be sent instead of sending it.
+    /// Whether frames are noted instead of sent.
     pub dry_run: bool,
-    /// Where frames are recorded.
+    /// Trace file.
     pub trace: Option<PathBuf>,
-    /// What the command wants of the connection.
+    /// Required connection.
     pub mode: ConnectMode,
-    /// The command line, where it is not that of the process.
+    /// Command line, if it differs from that of the process.
     pub typed: Option<Arc<str>>,
-    /// What was typed between the word of the family and the command.
+    /// Family arguments before the command.
     pub own: Own,
-    /// Whether the robot moves on if this process dies.
+    /// Whether a motion continues if this process ends.
     pub leaves_motion: bool,
-    /// Whether it is for a stop, which waits for nobody.
+    /// Whether it is for a stop, which must not wait.
     pub is_stop: bool,
 }
 
 impl Access {
-    /// For what only looks.
+    /// Read-only access.
     pub fn reading(mode: ConnectMode) -> Self {
         let (granted, own) = (Grant::of(Risk::Read), Own::default());
         Self { granted, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false, is_stop: false }
     }
 }
 
-/// What was typed between the word of a family and a command, for all commands of the family. What it says, the family
-/// alone knows.
+/// Family arguments before the command, common to all commands of the family. Only the family can interpret them.
 #[derive(Debug, Clone, Default)]
 pub struct Own(Option<Arc<dyn OwnArguments>>);
 
-/// What a family takes between its word and a command.
+/// Family arguments before a command.
 pub trait OwnArguments: Any + fmt::Debug + Send + Sync {
-    /// Completes what a command will do.
+    /// Adds their effect to the intent of a command.
     fn complete(&self, intent: Intent) -> Intent;
 
-    /// The words that say the same.
+    /// Equivalent words of the command line.
     fn words(&self) -> Vec<String>;
 }
 
 impl Own {
-    /// These.
+    /// Stores the arguments.
     pub fn of(arguments: impl OwnArguments) -> Self {
         Self(Some(Arc::new(arguments)))
     }
 
-    /// As the family knows them, if it has typed any.
+    /// Arguments in the family's type, if given.
     pub fn get<T: OwnArguments>(&self) -> Option<&T> {
         let own: &dyn Any = &**self.0.as_ref()?;
         own.downcast_ref()
@@ -85,79 +84,79 @@ impl Own {
     }
 }
 
-/// What a command wants of the connection. Where a controller takes the end of a connection for a fault, as YRCX does,
-/// nothing is opened that is more than this.
+/// Connection that a command needs. If a controller treats the end of a connection as a fault, like a YRCX, nothing
+/// more than this is opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ConnectMode {
-    /// To ask and to command.
+    /// Read and command.
     #[default]
     Control,
-    /// To see what the controller shows by itself.
+    /// Read the signals that the controller sends on its own.
     Monitor,
-    /// To ask its network board, which answers without a connection to the controller (yrcx).
+    /// Explicit messages to the network board, which need no connection to the controller (yrcx).
     Explicit,
 }
 
-/// What a connection does to a controller by being there.
+/// Effect of a connection on a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Entry {
     /// Nothing.
     Harmless,
-    /// Nothing, as a session holds it; another way would not be harmless.
+    /// None, because a session holds the link; a direct connection would have an effect.
     ThroughSession,
-    /// It stops the robot when it ends; completes "This will …".
+    /// The robot stops when the connection ends; completes "This will …".
     Stops(String),
 }
 
-/// A controller family as its commands see it.
+/// A controller family, for its commands.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Family: Sized + 'static {
-    /// Its name; `None` for what is for robots of any family.
+    /// Name; `None` for commands of all families.
     const FAMILY: Option<target::Family>;
     /// A connection to one robot.
     type Link: 'static;
-    /// Words of the command that stops a robot, behind the word of the family; none where nothing moves.
+    /// Words of the stop command after the family name; empty if nothing can move.
     const STOP: &'static [&'static str];
 
-    /// Connects. With `dry_run` nothing is opened.
+    /// Connects. A dry run opens nothing.
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
 
-    /// Stops what this link set in motion, and says what was done: "the robot was stopped: HOLD is on".
+    /// Stops motion that this link started. Returns the result: "the robot was stopped: HOLD is on".
     async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
 
-    /// Whether what this link set in motion is stopped even if `--on-interrupt` says to leave it.
+    /// Whether motion of this link is stopped even with `--on-interrupt leave`.
     fn must_halt(_link: &Self::Link) -> bool {
         false
     }
 
-    /// What a dry run would have sent, in the order of sending.
+    /// Frames that a dry run would have sent, in order.
     fn planned(link: &mut Self::Link) -> Plan;
 
-    /// Makes sure, before a command reports, that the answers it took were those to what it sent.
+    /// Checks before a report that all answers belong to the requests.
     async fn settle(_link: &mut Self::Link) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// What a connection of this kind does to the controller by being opened, and closed at the end.
+    /// Effect of opening and closing a connection of this kind.
     fn entry(_robot: &Robot, _mode: ConnectMode) -> Entry {
         Entry::Harmless
     }
 
-    /// Whether only one client at a time can reach the controller of a robot, so that those on this machine share its link.
+    /// Whether the controller accepts only one client, so that the commands of this computer share its link.
     fn takes_one_client(_robot: &Robot) -> bool {
         false
     }
 
-    /// All addresses of a robot, asked of its network where each robot there has several; without them, none.
+    /// All addresses of a robot, resolved from its network; empty if each robot has one address.
     fn addresses(_robot: &Robot) -> Result<Vec<target::Address>, Failure> {
         Ok(Vec::new())
     }
 
-    /// Closes the connection, and says at `-v` what it was like.
+    /// Closes the connection and prints statistics at `-v`.
     async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
 }
 
-/// A connection to one robot, whatever its family: what [`Family`] says, without its type.
+/// A connection to one robot of any family: [`Family`] without its types.
 pub trait Connection {
     /// See [`Family::halt`].
     fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>>;
@@ -171,7 +170,7 @@ pub trait Connection {
     fn as_any(&mut self) -> &mut dyn Any;
 }
 
-/// What opens connections to the robots of a family: what [`Family`] says, without its type.
+/// Driver for the robots of a family: [`Family`] without its types.
 pub trait Driver: Sync {
     /// See [`Family::FAMILY`].
     fn family(&self) -> Option<target::Family>;
@@ -192,7 +191,7 @@ pub trait Driver: Sync {
     ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
 }
 
-/// The driver of a family.
+/// Driver of a family.
 pub fn driver<F: Family>() -> &'static dyn Driver {
     &Drives::<F>(PhantomData)
 }
@@ -231,13 +230,13 @@ impl<F: Family> Driver for Drives<F> {
     }
 }
 
-/// The link of a family behind a connection; anything else is a fault of this program.
+/// Link of a family from a connection; a wrong family is an internal error.
 pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, Failure> {
     let link = connection.as_any().downcast_mut();
     link.ok_or_else(|| Failure::local("internal error: this connection is one of another family"))
 }
 
-/// The link of a family, lent as a [`Connection`] for a command that is run over it.
+/// Borrowed link of a family as a [`Connection`], for a command that runs on it.
 pub struct Lent<'a, F: Family>(pub &'a mut F::Link);
 
 impl<F: Family> Connection for Lent<'_, F> {
@@ -253,7 +252,7 @@ impl<F: Family> Connection for Lent<'_, F> {
         F::planned(self.0)
     }
 
-    /// It is closed by who has lent it.
+    /// The lender closes it.
     fn close(self: Box<Self>, _screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
         async { Ok(()) }.boxed_local()
     }

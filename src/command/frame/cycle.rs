@@ -1,4 +1,4 @@
-//! Repeated runs and what they took: `--repeat 20 --stats`.
+//! Repeated runs and their statistics: `--repeat 20 --stats`.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -6,35 +6,35 @@ use serde::Serialize;
 use crate::failure::Failure;
 use crate::output::view::Cell;
 
-/// How often something is run, one run after the end of the one before.
+/// Repetition of a run; each run starts after the end of the previous one.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct Repeat {
-    /// Run it N times, each after the end of the one before; the first failure ends it
+    /// Run N times, each after the end of the previous run; stop at the first failure
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub repeat: Option<u32>,
-    /// Show how long the runs took: minimum, median, 95th percentile, maximum
+    /// Show the duration of the runs: minimum, median, 95th percentile, maximum
     #[arg(long, requires = "repeat")]
     pub stats: bool,
 }
 
 impl Repeat {
-    /// Of what is not repeated.
+    /// A single run.
     pub const fn once() -> Self {
         Self { repeat: None, stats: false }
     }
 
-    /// How many runs.
+    /// Number of runs.
     pub fn count(self) -> u32 {
         self.repeat.unwrap_or(1)
     }
 
-    /// What a question says behind what is started: ` 20 times`.
+    /// Text after the action in a confirmation: ` 20 times`.
     pub fn in_words(self) -> String {
         self.repeat.map(|count| format!(" {count} times, one after the other")).unwrap_or_default()
     }
 }
 
-/// Repeated runs, as one ends after the other.
+/// Progress of repeated runs.
 #[derive(Debug)]
 pub struct Runs {
     repeat: Repeat,
@@ -42,40 +42,40 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// None has ended yet.
+    /// Starts with no completed run.
     pub const fn new(repeat: Repeat) -> Self {
         Self { repeat, times_ms: Vec::new() }
     }
 
-    /// One has ended, after so long.
+    /// Records the duration of a completed run.
     pub fn ended(&mut self, elapsed_ms: u64) {
         self.times_ms.push(elapsed_ms);
     }
 
-    /// Whether as many as are wanted have ended.
+    /// Whether all runs have ended.
     pub fn are_over(&self) -> bool {
         self.times_ms.len() >= usize::try_from(self.repeat.count()).unwrap_or(usize::MAX)
     }
 
-    /// How long the last one took.
+    /// Duration of the last run.
     pub fn last_ms(&self) -> Option<u64> {
         self.times_ms.last().copied()
     }
 
-    /// How the one that is next is told while it runs: `run 2 of 20`; nothing where it is the only one.
+    /// Text of the next run: `run 2 of 20`; none for a single run.
     pub fn next(&self) -> Option<String> {
         self.repeat.repeat.map(|count| format!("run {} of {count}", self.times_ms.len() + 1))
     }
 
-    /// The failure that ends them, with how many had ended before it.
+    /// Failure that ends the runs, with the number of completed runs.
     pub fn early(&self, failure: Failure) -> Failure {
         let Some(run) = self.next() else { return failure };
         let took = CycleTimes::new(&self.times_ms).map(|times| format!("; {}", times.in_a_line())).unwrap_or_default();
         let (done, why) = (self.times_ms.len(), failure.message.trim_end_matches('.'));
-        Failure { message: format!("{run}: {why}; {done} ended before it{took}"), ..failure }
+        Failure { message: format!("{run}: {why}; completed runs: {done}{took}"), ..failure }
     }
 
-    /// What a report says of them.
+    /// Statistics for a report.
     pub fn cycle(self) -> Cycle {
         let Self { repeat, times_ms } = self;
         if repeat.repeat.is_none() {
@@ -85,7 +85,7 @@ impl Runs {
     }
 }
 
-/// The part of a report about repeated runs.
+/// Report part for repeated runs.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Cycle {
     /// Time of each of several runs in ms; empty unless the command repeats.
@@ -97,7 +97,7 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// Its rows, if they are wanted.
+    /// Table rows, if requested.
     pub fn rows(&self) -> Vec<(&'static str, Cell)> {
         self.cycle_times.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows).collect()
     }
@@ -106,22 +106,22 @@ impl Cycle {
 /// Statistics of the times of runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct CycleTimes {
-    /// Runs that ended.
+    /// Number of completed runs.
     n: usize,
     min_ms: u64,
-    /// Half of them took no longer.
+    /// Median.
     median_ms: u64,
-    /// 95 of 100 took no longer.
+    /// 95th percentile.
     p95_ms: u64,
     max_ms: u64,
 }
 
 impl CycleTimes {
-    /// Of the times of runs; nothing where there was none.
+    /// Statistics of the durations; none without runs.
     fn new(times_ms: &[u64]) -> Option<Self> {
         let mut sorted = times_ms.to_vec();
         sorted.sort_unstable();
-        // The smallest time that so many of a hundred runs do not exceed.
+        // Nearest-rank percentile.
         let share = |percent: usize| sorted.get((sorted.len() * percent).div_ceil(100).saturating_sub(1)).copied();
         Some(Self {
             n: sorted.len(),
@@ -144,7 +144,7 @@ impl CycleTimes {
 
     fn in_a_line(&self) -> String {
         let Self { min_ms, median_ms, p95_ms, max_ms, .. } = self;
-        format!("they took {min_ms} ms at least, {median_ms} in the middle, {p95_ms} for 95 %, {max_ms} at most")
+        format!("duration: minimum {min_ms} ms, median {median_ms}, 95 % within {p95_ms}, maximum {max_ms}")
     }
 }
 
@@ -169,7 +169,7 @@ mod tests {
         runs.ended(7);
         let failure = runs.early(Failure::new(Kind::ConditionNotMet, "an alarm came up."));
         assert!(
-            failure.message.starts_with("run 3 of 20: an alarm came up; 2 ended before it; they took 5 ms"),
+            failure.message.starts_with("run 3 of 20: an alarm came up; completed runs: 2; duration: minimum 5 ms"),
             "{failure}"
         );
     }

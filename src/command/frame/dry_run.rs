@@ -1,4 +1,4 @@
-//! What a dry run notes instead of sending it.
+//! Notes of a dry run instead of sent frames.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,13 +15,13 @@ impl From<Plan> for DryRun {
     }
 }
 
-/// The answer to a question that a dry run does not ask. It ends the command, unless that can go on without.
+/// Failure for a read in a dry run. It ends the command, unless the command can continue without the answer.
 pub fn unknown() -> Failure {
     Failure::new(Kind::NotKnown, "a dry run has no answer")
 }
 
-/// Whether a failure of a dry run is only that an answer is not known, in the words of whoever wanted it: what a controller
-/// says cannot be wrong where none is asked.
+/// Whether a failure of a dry run only means a missing answer. A malformed answer counts as well, because a dry run
+/// reads nothing.
 pub fn is_end(failure: &Failure) -> bool {
     match failure.kind {
         Kind::NotKnown
@@ -35,9 +35,9 @@ pub fn is_end(failure: &Failure) -> bool {
     }
 }
 
-/// Answers as far as they are known: for a command that can go on without.
+/// Optional answers, for a command that can continue without them.
 pub trait Known<T> {
-    /// The answer; `None` in a dry run, which has none.
+    /// Answer; `None` in a dry run.
     fn known(self) -> Result<Option<T>, Failure>;
 }
 
@@ -50,32 +50,33 @@ impl<T> Known<T> for Result<T, Failure> {
     }
 }
 
-/// What a dry run reports.
+/// Report of a dry run.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct DryRun {
-    /// What would be sent, in order: each under the key of its family, beside what it is about where that is known.
+    /// Frames in the order of sending: each under the key of its family, with its purpose if known.
     #[schemars(extend("items" = {
         "type": "object",
         "properties": {
-            "hex": {"description": "The bytes (yerc; messages to the board of a yrcx); `??` where an answer decides.",
+            "hex": {"description": "The bytes (yerc; messages to the board of a yrcx); `??` for bytes that depend on \
+                                    an answer.",
                     "type": "string"},
-            "wi": {"description": "The 16 command words (yrcx); `?` where an answer decides.",
+            "wi": {"description": "The 16 command words (yrcx); `?` for words that depend on an answer.",
                    "type": "array", "items": {"type": "string"}},
             "bits": {"description": "The words of bits (yrcx).", "type": "array", "items": {"type": "string"}},
-            "text": {"description": "The line (toyo); `?` where an answer decides.", "type": "string"},
-            "fields": {"description": "What an order that moves something says, field by field; `?` where an answer \
-                                       decides.",
+            "text": {"description": "The line (toyo); `?` for parts that depend on an answer.", "type": "string"},
+            "fields": {"description": "Fields of a command that moves something; `?` for values that depend on an \
+                                       answer.",
                        "type": "array",
                        "items": {"type": "object", "required": ["name", "value"],
                                  "properties": {"name": {"type": "string"}, "value": {"type": "string"}}}},
-            "about": {"description": "What it is for.", "type": "string"},
-            "depends_on": {"description": "What of the answers before it decides how it looks, or whether it is sent.",
+            "about": {"description": "Purpose of the frame.", "type": "string"},
+            "depends_on": {"description": "Earlier answer that decides its content, or whether it is sent.",
                            "type": "string"}
         },
         "oneOf": [{"required": ["hex"]}, {"required": ["wi"]}, {"required": ["bits"]}, {"required": ["text"]}]
     }))]
     pub frames: Vec<Value>,
-    /// What would be done with each file or part: `write`, if what it `depends_on` is so, or `leave`, and `why`.
+    /// Actions for each file or part: `write`, possibly subject to `depends_on`, or `leave`, with the reason `why`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("items" = {
         "type": "object",
@@ -85,14 +86,14 @@ pub struct DryRun {
             "action": {"enum": ["write", "leave"]},
             "bytes": {"description": "Of a file.", "type": "integer"},
             "values": {"description": "Of a part.", "type": "integer"},
-            "depends_on": {"description": "What of the answers decides whether it is written.", "type": "string"},
-            "why": {"description": "Why it is left as it is.", "type": "string"}
+            "depends_on": {"description": "Answer that decides whether it is written.", "type": "string"},
+            "why": {"description": "Reason why it is not written.", "type": "string"}
         }
     }))]
     pub items: Vec<Value>,
-    /// Whether these are all; if not, what follows depends on answers in a way that cannot be shown.
+    /// Whether the list is complete; if not, the following frames depend on answers and cannot be shown.
     pub complete: bool,
-    /// What follows, in words; null where nothing does.
+    /// Description of what follows; null if nothing follows.
     pub then: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! `--wait` and `--no-wait`: whether a command ends with what it has set in motion.
+//! `--wait` and `--no-wait`: whether a command waits for the end of what it started.
 
 use std::time::Duration;
 
@@ -6,11 +6,11 @@ use clap::Args;
 
 use crate::settings::duration;
 
-/// Of a motion, or other work that takes its time: it is waited for, unless told not to.
+/// Wait option of a motion or other long action; the default is to wait.
 #[derive(Debug, Clone, Copy, Args)]
 #[group(skip)]
 pub struct MotionEnd {
-    /// Wait until it has ended, as without a flag
+    /// Wait until the motion has ended (default)
     #[arg(long, overrides_with = "no_wait", hide_short_help = true)]
     wait: bool,
     /// Return as soon as the controller has accepted it
@@ -19,27 +19,27 @@ pub struct MotionEnd {
 }
 
 impl MotionEnd {
-    /// Whether it is not waited for.
+    /// Whether the command returns without waiting.
     pub const fn no_wait(self) -> bool {
         self.no_wait
     }
 }
 
-/// Of a program: it is not waited for, unless told to.
+/// Wait option of a program; the default is not to wait.
 #[derive(Debug, Clone, Copy, Args)]
 #[group(skip)]
 pub struct ProgramEnd {
-    /// Wait until the program has ended, at most TIME; with --repeat each run
+    /// Wait until the program has ended, at most TIME; with --repeat for each run
     #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
     #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
     wait: Option<Option<Duration>>,
-    /// Return as soon as the controller has accepted the start, as without a flag
+    /// Return as soon as the controller has accepted the start (default)
     #[arg(long, conflicts_with_all = ["wait", "repeat"], hide_short_help = true)]
     no_wait: bool,
 }
 
 impl ProgramEnd {
-    /// How long it is waited for, if it is.
+    /// Time limit of the wait, if the command waits.
     pub const fn limit(self) -> Option<Option<Duration>> {
         self.wait
     }
@@ -51,10 +51,10 @@ mod tests {
 
     use crate::cli::Cli;
 
-    /// Commands whose `--wait TIME` is how long an answer may take.
+    /// Commands whose `--wait TIME` is a response timeout.
     const OTHERS: [&str; 2] = ["armctl yerc file cmos", "armctl robots discover"];
 
-    /// Commands below one that take only one of both flags.
+    /// Subcommands that accept only one of the two options.
     fn halves(command: &Command, path: &str, found: &mut Vec<String>) {
         let has = |long: &str| command.get_arguments().any(|argument| argument.get_long() == Some(long));
         if has("wait") != has("no-wait") && !OTHERS.contains(&path) {

@@ -1,8 +1,8 @@
-//! Ctrl-C, and other requests to end, as events instead of a killed process.
+//! Ctrl-C and other termination requests as events instead of a killed process.
 //!
-//! They are heard on a thread of their own, whatever the rest of the process does. The first one is passed on to the
-//! work, which stops what moves. A second one ends the process at once, and so does the first where the work does not
-//! get round to hearing it, because it computes.
+//! A separate thread receives them, whatever the rest of the process does. The first request is passed to the running
+//! work, which stops the robot. A second one ends the process at once. So does the first, if the work is busy with a
+//! computation and does not react.
 
 use std::future::Future;
 use std::pin::pin;
@@ -18,40 +18,41 @@ use tokio::task::coop::unconstrained;
 use crate::failure::{Failure, Kind};
 use crate::output::{busy, leave};
 
-/// What asked the process to end, once something has. It stays asked: nothing new begins after that, until [`again`].
+/// Reason of the termination request, once received. It stays set, so that nothing new starts, until [`again`].
 type Asked = watch::Sender<Option<&'static str>>;
 
 const KEYS: &str = "Ctrl-C";
 #[cfg_attr(not(unix), cfg(test))]
-const TERMINATE: &str = "asked to end (SIGTERM)";
+const TERMINATE: &str = "termination request (SIGTERM)";
 const HANGUP: &str = "the terminal was closed (SIGHUP)";
 #[cfg(unix)]
 const QUIT: &str = "Ctrl-\\ (SIGQUIT)";
 #[cfg(unix)]
 const SUSPEND: &str = "Ctrl-Z (SIGTSTP)";
 
-/// Of two requests closer than this the second is the first one again: `timeout`, for one, sends each twice.
+/// Two requests closer than this count as one: `timeout`, for example, sends each twice.
 const TWICE: Duration = Duration::from_millis(100);
-/// How long work that computes has to get round to a request.
+/// Time for busy work to react to a request.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// One listener for the process, so that a signal between two waits is not lost.
+/// One listener per process, so that a signal between two waits is not lost.
 static ASKED: OnceLock<Result<Asked, String>> = OnceLock::new();
 
-/// Waits for `work`, or for Ctrl-C or another request to end. Of two that nest, the inner one hears it first.
+/// Runs `work` until it ends or a termination request arrives. Of nested calls, the inner one handles it first.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
     let asked = asked()?.subscribe();
     let before = *asked.borrow();
     if let Some(how) = before {
         return Err(Failure::new(Kind::Interrupted, how));
     }
-    // Work that has used up its turn, because its peer answers at once, must not use up this one's as well.
+    // `unconstrained`, because work that exhausts the task budget (a peer that answers at once) must not delay this
+    // wait.
     let how = unconstrained(wait(asked, |_| true));
     heard_first(work, how).await.map_err(|how| Failure::new(Kind::Interrupted, how))
 }
 
-/// What `work` comes to, or the request that ended it. The work itself may wait for the same request: it is asked once
-/// more when that has come, because the request is told from another thread, between any two questions.
+/// Result of `work`, or the request that ended it. The work may wait for the same request, so it is polled once more
+/// after the request has arrived from its thread.
 async fn heard_first<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
     let mut work = pin!(work);
     tokio::select! {
@@ -61,20 +62,21 @@ async fn heard_first<T, R>(work: impl Future<Output = T>, request: impl Future<O
     }
 }
 
-/// From here on a request to end waits for the next [`interruptible`] instead of killing the process.
+/// From here on, a termination request waits for the next [`interruptible`] instead of killing the process.
 pub fn catch_interrupts() {
-    // Where that cannot be, the next one says so.
+    // If signals cannot be caught, the next call reports it.
     let _ = asked();
 }
 
-/// Ctrl-C has ended one line of several, and the next one may begin. Says what else asked the process to end.
+/// Clears a Ctrl-C that ended one of several lines, so that the next line can start. Returns any other termination
+/// request.
 pub fn again() -> Option<&'static str> {
     let asked = asked().ok()?;
     asked.send_if_modified(|how| how.take_if(|how| *how == KEYS).is_some());
     *asked.borrow()
 }
 
-/// Waits for a request to end that is no Ctrl-C.
+/// Waits for a termination request other than Ctrl-C.
 pub async fn asked_to_end() -> &'static str {
     match asked() {
         Ok(asked) => wait(asked.subscribe(), |how| how != KEYS).await,
@@ -84,10 +86,10 @@ pub async fn asked_to_end() -> &'static str {
 
 fn asked() -> Result<&'static Asked, Failure> {
     let asked = ASKED.get_or_init(|| start().map_err(|error| crate::failure::plain(&error)));
-    asked.as_ref().map_err(|why| Failure::local(format!("no signals can be heard: {why}")))
+    asked.as_ref().map_err(|why| Failure::local(format!("cannot receive signals: {why}")))
 }
 
-/// Starts the thread. When this returns it listens: work may send an order the first time it is polled.
+/// Starts the thread. It listens when this function returns, because work may send a request at its first poll.
 fn start() -> std::io::Result<Asked> {
     let ask = Asked::default();
     let (ready, is_ready) = mpsc::channel();
@@ -106,7 +108,7 @@ fn start() -> std::io::Result<Asked> {
     Ok(ask)
 }
 
-/// Waits for a request to end that counts.
+/// Waits for a matching termination request.
 async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(&str) -> bool) -> &'static str {
     let how = asked.wait_for(|how| how.is_some_and(&counts)).await.ok().and_then(|how| *how);
     match how {
@@ -115,10 +117,10 @@ async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(
     }
 }
 
-/// Passes on every request to end.
+/// Passes on every termination request.
 async fn listen(mut signals: Signals, ask: Asked) {
     let mut presses = Presses::default();
-    // The work that was under way when it was looked last, while a request waits.
+    // The work that was running at the last check, while a request is pending.
     let mut seen = None;
     loop {
         let is_waiting = ask.borrow().is_some();
@@ -140,10 +142,10 @@ async fn listen(mut signals: Signals, ask: Asked) {
             continue;
         }
         if presses.are_enough(how, ask.borrow().is_some(), Instant::now()) {
-            leave::at_once(&format!("{how} again: ended at once; what was under way may go on"));
+            leave::at_once(&format!("{how} again: ended at once; a motion or command may continue"));
         }
         seen = busy::under_way();
-        // The first one counts, unless it was for one line only.
+        // The first request stays set, unless it was cleared for the next line.
         ask.send_if_modified(|asked| {
             let is_first = asked.is_none_or(|asked| asked == KEYS);
             if is_first {
@@ -154,7 +156,7 @@ async fn listen(mut signals: Signals, ask: Asked) {
     }
 }
 
-/// How often somebody has asked since the work heard of it.
+/// Requests since the work reacted to one.
 #[derive(Debug, Default)]
 struct Presses {
     count: u32,
@@ -162,8 +164,8 @@ struct Presses {
 }
 
 impl Presses {
-    /// Whether one more is the second; `is_waiting` says whether the one before was not done with. What comes as the
-    /// terminal goes away does not count: it comes by itself, and often more than once.
+    /// Whether one more request ends the process; `is_waiting` says whether the previous one is pending. Requests
+    /// from a closing terminal do not count, because they come automatically and more than once.
     fn are_enough(&mut self, how: &str, is_waiting: bool, now: Instant) -> bool {
         if !is_waiting {
             *self = Self::default();
@@ -179,16 +181,16 @@ impl Presses {
     }
 }
 
-/// How many motions are under way.
+/// Number of motions in progress.
 static MOTIONS: AtomicUsize = AtomicUsize::new(0);
 
-/// A motion that this process watches over. While there is one, Ctrl-Z does not suspend the process: it ends the work, as
-/// Ctrl-C does.
+/// A motion that this process supervises. During a motion, Ctrl-Z does not suspend the process; it ends the work,
+/// like Ctrl-C.
 #[derive(Debug)]
 pub struct UnderWay;
 
 impl UnderWay {
-    /// From now on, until it is dropped.
+    /// Starts supervision, until it is dropped.
     pub fn begin() -> Self {
         catch_interrupts();
         MOTIONS.fetch_add(1, Ordering::SeqCst);
@@ -210,7 +212,7 @@ async fn heard(signal: &mut Option<tokio::signal::unix::Signal>) {
     }
 }
 
-/// Every request to end; those that come once this was made count, also before they are waited for.
+/// Termination signals. Signals after its creation count, even before they are awaited.
 #[cfg(unix)]
 struct Signals {
     keys: Option<tokio::signal::unix::Signal>,
@@ -225,7 +227,7 @@ impl Signals {
     fn new() -> Self {
         use tokio::signal::unix::{SignalKind, signal};
 
-        /// The number of SIGTSTP.
+        /// Number of SIGTSTP.
         const SIGTSTP: i32 = if cfg!(target_os = "linux") { 20 } else { 18 };
 
         Self {
@@ -248,7 +250,7 @@ impl Signals {
     }
 }
 
-/// Whether the process shall outlive its terminal, as under `nohup`. Where that cannot be told, it is left alone.
+/// Whether the process must outlive its terminal, as under `nohup`. If unknown, hangups are not caught.
 #[cfg(unix)]
 fn hangup_is_ignored() -> bool {
     let status = crate::files::text(std::path::Path::new("/proc/self/status"), crate::files::SETTINGS);
@@ -285,7 +287,7 @@ mod tests {
     async fn of_two_that_wait_for_a_request_the_inner_one_hears_it() {
         let (ask, asked) = watch::channel(None);
         let inner = heard_first(pending::<()>(), wait(asked.clone(), |_| true));
-        // The request comes behind the question to the work.
+        // The request arrives after the poll of the work.
         let outer = poll_fn(|_| {
             ask.send_replace(Some(KEYS));
             Poll::Ready("outer")
@@ -308,7 +310,7 @@ mod tests {
         assert!(!presses.are_enough(KEYS, true, at(50)), "sent twice");
         assert!(!presses.are_enough(KEYS, true, at(99)), "a key that is held down");
         assert!(presses.are_enough(TERMINATE, true, at(120)));
-        // The line was done with, and another one runs.
+        // The line has ended, and another line is running.
         assert!(!presses.are_enough(KEYS, false, at(400)));
         assert!(presses.are_enough(KEYS, true, at(600)));
     }

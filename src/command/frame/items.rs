@@ -1,6 +1,6 @@
-//! The several things that one command asks for or does: each answers for itself, and the exit code for all of them.
+//! Results of several items of one command, and the common exit code.
 //!
-//! Some failed, some not: exit 9. All failed: the exit code that they have in common, or that of the gravest.
+//! Some failed: exit 9. All failed: their common exit code, or that of the most severe failure.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -9,34 +9,34 @@ use crate::command::backup::gravity;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Tone};
 
-/// Why one of several things failed: `{"asked":"B300","kind":"refused","code":"0xA001","message":…}`.
+/// Failure of one item: `{"asked":"B300","kind":"refused","code":"0xA001","message":…}`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct ItemError {
-    /// What was asked for, as the operator would type it or as the report names it.
+    /// Item as the operator would type it, or as the report names it.
     asked: String,
     #[serde(flatten)]
     failure: Failure,
 }
 
 impl ItemError {
-    /// The failure of one thing; its message need not name the thing.
+    /// Failure of one item; its message need not contain the item.
     pub fn new(asked: impl Into<String>, failure: Failure) -> Self {
         Self { asked: asked.into(), failure }
     }
 
-    /// As the failure of a whole command.
+    /// Failure of a command with only this item.
     pub fn failure(&self) -> Failure {
         let Self { asked, failure } = self;
         Failure { message: format!("{asked}: {}", failure.message), ..failure.clone() }
     }
 
-    /// What fits a column.
+    /// Short text for a column.
     pub fn cell(&self) -> Cell {
         Cell::from(brief(&self.failure)).tone(Tone::Bad)
     }
 }
 
-/// What fits a column: the first sentence and the code.
+/// Short text for a column: the first sentence and the code.
 pub fn brief(failure: &Failure) -> String {
     let sentence = failure.message.split(". ").next().unwrap_or_default();
     match &failure.code {
@@ -45,22 +45,21 @@ pub fn brief(failure: &Failure) -> String {
     }
 }
 
-/// What one of several things came to, beside its name in a report: `{"ok":true, …}` with its data, or
-/// `{"ok":false,"error":{…}}`.
+/// Result of one item, next to its name in a report: `{"ok":true, …}` with its data, or `{"ok":false,"error":{…}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ItemOutcome<T> {
-    /// Whether it was answered, or done.
+    /// Whether the item was read or written.
     ok: bool,
     #[serde(flatten)]
     data: Option<T>,
-    /// Why not.
+    /// Reason for the failure.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
 }
 
 impl<T> ItemOutcome<T> {
-    /// The outcome of what was asked for.
+    /// Result of a requested item.
     pub fn new(asked: impl Into<String>, outcome: Result<T, Failure>) -> Self {
         match outcome {
             Ok(data) => Self { ok: true, data: Some(data), error: None },
@@ -68,29 +67,29 @@ impl<T> ItemOutcome<T> {
         }
     }
 
-    /// The same with something made of the data.
+    /// Converts the data.
     pub fn map<U>(&self, make: impl FnOnce(&T) -> U) -> ItemOutcome<U> {
         ItemOutcome { ok: self.ok, data: self.data.as_ref().map(make), error: self.error.clone() }
     }
 
-    /// What there is.
+    /// Data, if any.
     pub fn data(&self) -> Option<&T> {
         self.data.as_ref()
     }
 
-    /// The same, to add to it.
+    /// Mutable data, if any.
     pub fn data_mut(&mut self) -> Option<&mut T> {
         self.data.as_mut()
     }
 
-    /// Why there is nothing.
+    /// Error, if any.
     pub fn error(&self) -> Option<&ItemError> {
         self.error.as_ref()
     }
 }
 
 impl<T> ItemOutcome<Option<T>> {
-    /// The same of what is there; nothing of what is empty.
+    /// Converts a result with optional data; none if there is no data.
     pub fn filled(self) -> Option<ItemOutcome<T>> {
         let Self { ok, data, error } = self;
         let data = match data {
@@ -101,7 +100,7 @@ impl<T> ItemOutcome<Option<T>> {
     }
 }
 
-/// Why a report of `total` things is not a success; `None` where nothing failed.
+/// Failure of a report of `total` items; `None` if none failed.
 pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Option<Failure> {
     let errors: Vec<&ItemError> = errors.into_iter().collect();
     let first = *errors.first()?;
@@ -115,7 +114,7 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
         let kind = if is_interrupted { Kind::Interrupted } else { Kind::Mixed };
         (kind, format!("{} of {total} failed", errors.len()))
     } else {
-        // Of equally grave ones, the first.
+        // The first of equal severity.
         (kinds().rev().max_by_key(|kind| gravity(*kind))?, format!("all {total} failed"))
     };
     let told = errors.iter().find(|error| error.failure.kind == kind).copied().unwrap_or(first);
@@ -125,8 +124,8 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
     Some(Failure { kind, code, message: format!("{how_many}: {}", failure.message), hint: failure.hint })
 }
 
-/// The failure of a command that got nothing, for one and the same reason: there is no report then. Where the reasons
-/// differ, the report has them.
+/// Failure of a command if all items failed for the same reason; there is no report then. If the reasons differ, the
+/// report lists them.
 pub fn nothing<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<(), Failure> {
     let errors: Vec<&ItemError> = errors.into_iter().collect();
     let reason = |error: &ItemError| (error.failure.kind, error.failure.code.clone());

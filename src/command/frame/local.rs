@@ -1,5 +1,4 @@
-//! Files on this machine: a name for every file of a controller that cannot leave its folder, and writing beside the
-//! target until the whole is there.
+//! Local files: safe local names for the files of a controller, and atomic writes.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -17,17 +16,17 @@ pub use crate::files::folder_of;
 use crate::output::escape;
 pub use crate::settings::state_folder;
 
-/// Longest name that the usual file systems take.
+/// Maximum length of a name in common file systems.
 const MAX_LOCAL_NAME: usize = 255;
-/// Room for the data of a few hundred blocks.
+/// Buffer size: the data of a few hundred blocks.
 const BUFFER: usize = 1 << 17;
-/// Names that Windows keeps for devices, whatever the extension.
+/// Reserved device names of Windows, with any extension.
 const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
-/// The same with a digit after them.
+/// Reserved device names with a digit.
 const NUMBERED_DEVICES: [&str; 2] = ["COM", "LPT"];
 
-/// The local name for a file of a controller: the name in text, with `%XX` for the bytes of every character that some
-/// file system, shell or terminal takes for something else. [`controller_name`] leads back.
+/// Local name for a file of a controller: the decoded name, with `%XX` for each byte of a character that some file
+/// system, shell or terminal could misinterpret. [`controller_name`] is the inverse.
 pub fn local_name(encoding: Encoding, name: &[u8]) -> String {
     let mut pieces = pieces(encoding, name);
     let last = pieces.len().saturating_sub(1);
@@ -46,7 +45,7 @@ pub fn local_name(encoding: Encoding, name: &[u8]) -> String {
     written(&pieces)
 }
 
-/// A local name that differs from those of all other files by more than the case of letters.
+/// Local name that differs from other names in more than case.
 fn caseless_name(encoding: Encoding, name: &[u8]) -> String {
     let mut pieces = pieces(encoding, name);
     for piece in &mut pieces {
@@ -55,8 +54,7 @@ fn caseless_name(encoding: Encoding, name: &[u8]) -> String {
     written(&pieces)
 }
 
-/// The name on the controller of a file that is called `local` here: what [`local_name`] escaped is restored, any other
-/// name is taken as it is.
+/// Name on the controller of a local file: [`local_name`] escapes are decoded, any other name is unchanged.
 pub fn controller_name(encoding: Encoding, local: &str) -> Result<Vec<u8>, EncodeError> {
     if let Some(name) = unescaped(encoding, local)
         && (local_name(encoding, &name) == local || caseless_name(encoding, &name) == local)
@@ -66,14 +64,14 @@ pub fn controller_name(encoding: Encoding, local: &str) -> Result<Vec<u8>, Encod
     encoding.encode(local)
 }
 
-/// Whether a local name, as a manifest states it, is that of a file in its folder and nothing else.
+/// Whether a local name in a manifest is a plain file name in its folder.
 pub fn is_plain_file_name(local: &str) -> bool {
     let mut parts = Path::new(local).components();
     let alone = matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == local);
     alone && local.chars().all(is_plain_or_escape) && !is_device(local)
 }
 
-/// Gives every file of a controller a local name of its own, on file systems that ignore case too.
+/// Assigns unique local names to the files of a controller, also on file systems that ignore case.
 #[derive(Debug)]
 pub struct LocalNames {
     encoding: Encoding,
@@ -81,16 +79,16 @@ pub struct LocalNames {
 }
 
 impl LocalNames {
-    /// Nothing taken yet.
+    /// Starts without names.
     pub fn new(encoding: Encoding) -> Self {
         Self { encoding, taken: HashMap::new() }
     }
 
-    /// The local name for `name`; the same one each time.
+    /// Local name for `name`; the same for each call.
     pub fn assign(&mut self, name: &[u8]) -> Result<String, Failure> {
         for local in [local_name(self.encoding, name), caseless_name(self.encoding, name)] {
             if local.is_empty() || local.len() > MAX_LOCAL_NAME {
-                return Err(Failure::local(format!("the name '{}' makes no local file name", name.escape_ascii()))
+                return Err(Failure::local(format!("the name '{}' cannot be a local file name", name.escape_ascii()))
                     .hint("`yerc file get NAME --dir -` writes the file to stdout"));
             }
             let owner = self.taken.entry(local.to_lowercase()).or_insert_with(|| name.to_vec());
@@ -98,11 +96,11 @@ impl LocalNames {
                 return Ok(local);
             }
         }
-        Err(Failure::local(format!("the name '{}' cannot be told from another one here", name.escape_ascii())))
+        Err(Failure::local(format!("the name '{}' conflicts with another name on this computer", name.escape_ascii())))
     }
 }
 
-/// Where a file shall be, checked before anything is sent.
+/// Path of a file to be written, checked before anything is sent.
 #[derive(Debug, Clone)]
 pub struct Target {
     path: PathBuf,
@@ -110,12 +108,12 @@ pub struct Target {
 }
 
 impl Target {
-    /// The file must not exist unless `replace`.
+    /// The file must not exist unless `replace` is set.
     pub fn new(path: PathBuf, replace: bool) -> Result<Self, Failure> {
         match path.symlink_metadata() {
             Ok(found) if !found.is_file() && !found.is_symlink() => {
-                return Err(Failure::local(format!("{} is there and is no file", path.display()))
-                    .hint("choose another place for the file"));
+                return Err(Failure::local(format!("{} exists and is not a file", path.display()))
+                    .hint("use another path for the file"));
             }
             Ok(_) if !replace => return Err(exists(&path)),
             Ok(_) => {}
@@ -130,7 +128,7 @@ impl Target {
         &self.path
     }
 
-    /// Begins to write; until [`Draft::commit`] nothing is where the file shall be.
+    /// Starts the write; before [`Draft::commit`], the target path does not change.
     pub fn begin(&self) -> Result<Draft, Failure> {
         let folder = folder_of(&self.path);
         let file = files::draft_in(&folder).with_context(|| folder.display().to_string())?;
@@ -138,7 +136,7 @@ impl Target {
     }
 }
 
-/// A file that is being written beside its place; dropped, it is removed.
+/// A file that is written next to its target path; removed if dropped.
 #[derive(Debug)]
 pub struct Draft {
     file: BufWriter<NamedTempFile>,
@@ -151,12 +149,12 @@ impl Draft {
         Ok(self.file.write_all(bytes).with_context(|| self.target.path.display().to_string())?)
     }
 
-    /// Puts the file in its place, whole and on the disk.
+    /// Moves the complete file to its target path and syncs it to disk.
     pub fn commit(self) -> Result<(), Failure> {
         let Target { path, replace } = self.target;
         let place = || path.display().to_string();
         let file = self.file.into_inner().map_err(std::io::IntoInnerError::into_error).with_context(place)?;
-        // Some file systems tell only now that the disk is full.
+        // Some file systems report a full disk only at this point.
         file.as_file().sync_data().with_context(place)?;
         let kept = if replace { file.persist(&path) } else { file.persist_noclobber(&path) };
         match kept {
@@ -166,24 +164,24 @@ impl Draft {
     }
 }
 
-/// The place of robot `name` within what the operator named, where several robots answer: a folder of its own.
+/// Path for robot `name` in the operator's folder: a subfolder if there are several robots.
 pub fn own_folder(folder: &Path, name: &str, several: bool) -> PathBuf {
     if several { folder.join(local_name(Encoding::Utf8, name.as_bytes())) } else { folder.to_owned() }
 }
 
-/// Makes a folder unless it is there.
+/// Creates a folder if it does not exist.
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     Ok(std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?)
 }
 
 fn exists(path: &Path) -> Failure {
-    Failure::local(format!("{} exists and was kept", path.display()))
-        .hint("--force replaces it; or choose another place")
+    Failure::local(format!("{} already exists and was not changed", path.display()))
+        .hint("add --force to replace it, or use another path")
 }
 
-/// A character of a name, or a byte that is none.
+/// A character of a name, or an invalid byte.
 struct Piece<'a> {
-    /// The character if it may stand as it is.
+    /// The character, if it needs no escape.
     plain: Option<char>,
     bytes: Cow<'a, [u8]>,
 }
@@ -196,7 +194,7 @@ fn pieces(encoding: Encoding, name: &[u8]) -> Vec<Piece<'_>> {
     }
     let mut buffer = [0; 4];
     let piece = |c: char| {
-        // The whole text leads back to its bytes, so each of its characters has some.
+        // The text converts back to its bytes, so each character can be encoded.
         let bytes = encoding.encode(c.encode_utf8(&mut buffer)).unwrap_or_default();
         Piece { plain: Some(c).filter(|c| is_plain(*c)), bytes: bytes.into() }
     };
@@ -218,7 +216,7 @@ fn written(pieces: &[Piece<'_>]) -> String {
     local
 }
 
-/// The bytes that a local name stands for, if it can come from [`written`].
+/// Bytes of a local name, if [`written`] can produce it.
 fn unescaped(encoding: Encoding, local: &str) -> Option<Vec<u8>> {
     let mut name = Vec::with_capacity(local.len());
     let mut rest = local;
@@ -335,7 +333,7 @@ mod tests {
         draft.write(b"whole").unwrap();
         draft.commit().unwrap();
         assert_eq!(Target::new(path.clone(), false).unwrap_err().kind, Kind::Local);
-        // A file that appears during the transfer is kept as well.
+        // A file that appears during the transfer is not replaced.
         let late = target.begin().unwrap();
         assert_eq!(late.commit().unwrap_err().kind, Kind::Local);
         assert_eq!(std::fs::read(&path).unwrap(), b"whole");

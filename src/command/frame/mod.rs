@@ -1,8 +1,8 @@
-//! What runs every command.
+//! Execution of all commands.
 //!
-//! A command is a struct of its arguments that implements [`Command`]; a noun with verbs is a clap enum. Both are
-//! [`CommandSet`]s, and a line in the family's `commands!` list makes them part of the tool: command line, help, man page,
-//! completion and schema follow from it.
+//! A command is a struct of its arguments that implements [`Command`]. A group of subcommands is a clap enum. Both
+//! are [`CommandSet`]s. A line in the family's `commands!` list adds them to the command line, help, man page,
+//! completion and schema.
 
 pub mod asking;
 pub mod attach;

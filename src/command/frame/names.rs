@@ -1,9 +1,9 @@
-//! Names in place of addresses: `io get clamp`, `io set clamp=on`, `var get PARTS`.
+//! Names instead of addresses: `io get clamp`, `io set clamp=on`, `var get PARTS`.
 //!
-//! Arguments are parsed before it is known whose they are, and must be addresses before anything decides what a line
-//! may do. So a line with a word that may be a name is read twice: at first any address stands for it, which tells which
-//! robots the line is for; then their names are known, and the word is the address that it stands for, or a mistake. What
-//! is an address is never looked up.
+//! Arguments are parsed before their robots are known, and the risk of a line depends on addresses. So a line with a
+//! possible name is parsed twice. The first time, any valid address stands for the name, to find the robots of the
+//! line. The second time, their names are known, and the word is replaced by its address, or rejected. A valid
+//! address is never looked up.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -26,15 +26,15 @@ use crate::settings::Robot;
 use crate::settings::names::{KeptFile, RobotNames, grammar};
 use crate::settings::target::Family;
 
-/// What becomes of a word that is no address.
+/// Treatment of a word that is not an address.
 #[derive(Debug, Clone, Default)]
 enum Mode {
-    /// It is a mistake.
+    /// Reject it.
     #[default]
     Off,
-    /// It may be a name.
+    /// Accept it as a possible name.
     Asking,
-    /// It is a name of these robots, or a mistake.
+    /// Look it up in the names of these robots.
     Known(Rc<Known>),
 }
 
@@ -45,12 +45,12 @@ struct Known {
 }
 
 thread_local! {
-    /// Parsing is one call on one thread, which hands nothing of its caller to the parsers of values.
+    /// Parsing is one call in one thread, and value parsers receive no context.
     static MODE: RefCell<Mode> = const { RefCell::new(Mode::Off) };
     static ASKED: RefCell<bool> = const { RefCell::new(false) };
 }
 
-/// Puts things back as they were, also where a parser panics.
+/// Restores the previous mode, even if a parser panics.
 struct Restore(Mode);
 
 impl Drop for Restore {
@@ -59,7 +59,7 @@ impl Drop for Restore {
     }
 }
 
-/// Parses where words may be names, and says whether there were some.
+/// Parses with possible names, and returns whether there were any.
 pub fn asking<T>(parse: impl FnOnce() -> T) -> (T, bool) {
     let _restore = Restore(MODE.replace(Mode::Asking));
     ASKED.replace(false);
@@ -67,21 +67,21 @@ pub fn asking<T>(parse: impl FnOnce() -> T) -> (T, bool) {
     (parsed, ASKED.replace(false))
 }
 
-/// Parses with the names of the robots that the line is for.
+/// Parses with the names of the robots of the line.
 pub fn known<T>(family: Family, robots: &[Robot], parse: impl FnOnce() -> T) -> T {
     let robots = robots.iter().map(|robot| (robot.name.clone(), robot.names.clone())).collect();
     let _restore = Restore(MODE.replace(Mode::Known(Rc::new(Known { family, robots }))));
     parse()
 }
 
-/// Reads an argument: what `parse` takes, or the name of something of these kinds. `any` is an address that `parse`
-/// takes, of whichever.
+/// Parses an argument: a value that `parse` accepts, or a name of these kinds. `any` is an arbitrary address that
+/// `parse` accepts.
 pub fn read<T>(kinds: &[Kind], any: &str, text: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, String> {
     read_marked(kinds, any, text, parse).map(|(value, _)| value)
 }
 
-/// The same, and whether `any` stands for a name that is yet to be looked up: nothing can be said yet of what is typed
-/// beside it.
+/// Parses an argument, and returns whether `any` replaces a name that is not resolved yet. In that case, nothing
+/// else about it can be checked.
 pub fn read_marked<T>(
     kinds: &[Kind],
     any: &str,
@@ -106,7 +106,7 @@ pub fn read_marked<T>(
             Ok(None) => match known.near(kinds, text) {
                 Some(near) => Err(format!("{wrong}; did you mean '{near}'?")),
                 None if known.has_unread() => {
-                    Err(format!("{wrong}; names that the controller has are read by `yerc names get`"))
+                    Err(format!("{wrong}; read the names of the controller with `yerc names get`"))
                 }
                 None => Err(wrong),
             },
@@ -116,7 +116,7 @@ pub fn read_marked<T>(
 }
 
 impl Known {
-    /// What all robots mean by a name; `None` where no robot has it.
+    /// Address of a name, if it is the same for all robots; `None` if no robot has the name.
     fn address(&self, kinds: &[Kind], text: &str) -> Result<Option<String>, String> {
         let mut meant: Vec<(&str, Option<String>)> = Vec::new();
         for (robot, names) in &self.robots {
@@ -133,12 +133,10 @@ impl Known {
         match meant.iter().find(|(_, other)| other != address) {
             None => Ok(address.clone()),
             Some((other, Some(there))) => Err(format!(
-                "'{text}' is {} on {first} and {there} on {other}; ask one robot at a time, or type the address",
+                "'{text}' is {} on {first} and {there} on {other}; select one robot, or type the address",
                 address.as_deref().unwrap_or_default()
             )),
-            Some((other, None)) => {
-                Err(format!("'{text}' is a name of {first}, but not of {other}; ask one robot at a time"))
-            }
+            Some((other, None)) => Err(format!("'{text}' is a name of {first}, but not of {other}; select one robot")),
         }
     }
 
@@ -146,19 +144,19 @@ impl Known {
         let grammar = grammar(self.family);
         let names = self.robots.iter().flat_map(|(_, names)| names.all().names.iter());
         let names = names.filter(|name| kinds.contains(&name.kind)).map(|name| name.name.as_str());
-        // What could do something to the terminal can be typed by nobody.
+        // A name with control characters cannot be typed.
         nearest(text, names.filter(|name| unusable(grammar, name).is_none())).map(ToOwned::to_owned)
     }
 
-    /// Whether a controller may have names of which none is kept.
+    /// Whether a controller may have names that are not stored.
     fn has_unread(&self) -> bool {
         self.robots.iter().any(|(_, names)| names.place().is_some() && names.all().kept.is_none())
     }
 }
 
-/// Addresses that have one name: which to type.
+/// Message for several addresses with the same name.
 fn ambiguous(text: &str, several: &[&Name]) -> String {
-    /// More are counted.
+    /// Maximum number of listed addresses; others are counted.
     const SHOWN: usize = 6;
 
     let told = |name: &&Name| format!("{} ({} of {})", name.address, name.name, name.source);
@@ -169,11 +167,11 @@ fn ambiguous(text: &str, several: &[&Name]) -> String {
     format!("'{text}' is the name of {}; type the address", told.join(" and of "))
 }
 
-/// What was said last of names that cannot be read.
+/// Last message about unreadable names.
 static TOLD: Mutex<String> = Mutex::new(String::new());
 
-/// The names of a robot for a report. What keeps those of its controller from being read is said once, and hides no
-/// report.
+/// Names of a robot for a report. An error that prevents reading its stored names is printed once and does not
+/// suppress the report.
 pub fn of<'a>(robot: &'a Robot, screen: &Screen) -> &'a Names {
     let all = robot.names.all();
     if let Some(damage) = &all.damage {
@@ -187,12 +185,12 @@ pub fn of<'a>(robot: &'a Robot, screen: &Screen) -> &'a Names {
     &all.names
 }
 
-/// The name of an address, for a report.
+/// Name of an address, for a report.
 pub fn label(names: &Names, kind: Kind, address: &str) -> Option<String> {
     names.label(kind, address).map(ToOwned::to_owned)
 }
 
-/// Names that can be typed, with what they stand for.
+/// Names for completion, with their addresses.
 pub fn candidates(robots: &[Robot], kinds: &[Kind], ending: &str) -> Vec<Candidate> {
     let [robot] = robots else { return Vec::new() };
     let grammar = grammar(robot.family);
@@ -201,7 +199,7 @@ pub fn candidates(robots: &[Robot], kinds: &[Kind], ending: &str) -> Vec<Candida
     names.map(|name| Candidate::new(format!("{}{ending}", name.name), name.address.clone())).collect()
 }
 
-/// The names of a robot that have a text in them; all of them without one.
+/// Names of a robot that contain a text, or all names.
 pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing, Failure> {
     let all = robot.names.all();
     if let Some(damage) = &all.damage {
@@ -232,7 +230,7 @@ pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing, Failure> {
     })
 }
 
-/// Why a name cannot be typed for its address; `None` where it can.
+/// Reason why a name cannot be typed instead of its address; `None` if it can.
 fn not_typed(grammar: Grammar, names: &Names, name: &Name) -> Option<String> {
     if let Some(why) = unusable(grammar, &name.name) {
         return Some(why.to_owned());
@@ -242,7 +240,7 @@ fn not_typed(grammar: Grammar, names: &Names, name: &Name) -> Option<String> {
         Found::One(found) => Some(format!("it is the name of {} in {}", found.address, found.source)),
         Found::Several(several) => {
             let other = several.iter().find(|other| other.address != name.address);
-            Some(format!("it is the name of {}, too", other.map_or("another one", |other| &other.address)))
+            Some(format!("it is also the name of {}", other.map_or("another address", |other| &other.address)))
         }
         Found::None => None,
     }
@@ -252,12 +250,12 @@ fn not_typed(grammar: Grammar, names: &Names, name: &Name) -> Option<String> {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listing {
     names: Vec<Listed>,
-    /// When those of the controller were read; null where none are kept.
+    /// Time when the controller's names were read; null if none are stored.
     #[schemars(with = "Option<String>", extend("format" = "date-time"))]
     read_at: Option<Timestamp>,
-    /// How long ago that was.
+    /// Age of the stored names.
     age_s: Option<i64>,
-    /// The files they were in.
+    /// Files of the stored names.
     files: Vec<KeptFile>,
     #[serde(skip)]
     is_all: bool,
@@ -273,13 +271,13 @@ struct Listed {
     address: String,
     /// `robots.toml`, or the file of the controller.
     source: String,
-    /// Why it cannot be typed in place of the address; null where it can.
+    /// Reason why it cannot be typed instead of the address; null if it can.
     not_typed: Option<String>,
 }
 
 impl Report for Listing {
     fn view(&self) -> View {
-        let empty = if self.is_all { "no names" } else { "no names that fit" };
+        let empty = if self.is_all { "no names" } else { "no matching names" };
         let mut table = Table::new(&["name", "kind", "address", "from", "cannot be typed"], empty);
         for Listed { name, kind, address, source, not_typed } in &self.names {
             let not_typed = Cell::maybe(not_typed.as_deref());
@@ -302,7 +300,7 @@ impl Report for Listing {
     }
 }
 
-/// A time in its largest unit: `3 days`.
+/// Duration in its largest unit: `3 days`.
 fn in_words(seconds: i64) -> String {
     let units = [(86_400, "day"), (3_600, "hour"), (60, "minute"), (1, "second")];
     let (size, unit) = units.into_iter().find(|(size, _)| seconds >= *size).unwrap_or((1, "second"));
@@ -348,7 +346,7 @@ mod tests {
         assert_eq!((known("clamp"), known("CLAMP"), known("27011")), (Ok(27015), Ok(27015), Ok(27011)));
         assert_eq!(known("clanp").unwrap_err(), "'clanp' is no number; did you mean 'clamp'?");
         let unknown = known("door").unwrap_err();
-        assert_eq!(unknown, "'door' is no number; names that the controller has are read by `yerc names get`");
+        assert_eq!(unknown, "'door' is no number; read the names of the controller with `yerc names get`");
         assert_eq!(known("#9x").unwrap_err().split(';').next(), Some("'#9x' is no number"));
         assert_eq!(read_signal("clamp").unwrap_err(), "'clamp' is no number", "it is as it was");
     }

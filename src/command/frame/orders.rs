@@ -1,4 +1,4 @@
-//! What orders of every family report and take.
+//! Common arguments and reports of commands that set a value.
 
 use clap::ValueEnum;
 use schemars::JsonSchema;
@@ -11,41 +11,41 @@ use crate::failure::Failure;
 use crate::gate::Change;
 use crate::output::view::View;
 
-/// What a read before a write is for, in a dry run.
-pub const BEFORE: &str = "the value before";
+/// Purpose of a read before a write, in a dry run.
+pub const BEFORE: &str = "old value";
 
-/// What failed before anything was written.
+/// Failure before any write.
 pub fn unwritten(failure: Failure) -> Failure {
     let message = format!("{}; nothing was written", failure.message.trim_end_matches('.'));
     Failure { message, ..failure }
 }
 
-/// A value before a write: null where nobody asked, or where the controller refused to tell.
+/// Old value of a write: null if it was not read, or if the controller refused to report it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Old(Value);
 
 impl Old {
-    /// Nobody asked: no request reads it, it is an event and no value, or the order must not wait for an answer.
+    /// Not read: there is no request for it, it is an event without a value, or the command must not wait.
     pub const UNREAD: Self = Self(Value::Null);
 
-    /// As it was read; nothing where it was not told.
+    /// Old value; none if the controller refused.
     pub fn read(value: Option<impl Into<Value>>) -> Self {
         Self(value.map_or(Value::Null, Into::into))
     }
 
-    /// The value, where it is known.
+    /// The value, if known.
     pub fn value(&self) -> Option<Value> {
         Some(self.0.clone()).filter(|value| !value.is_null())
     }
 
-    /// As a person reads it; nothing where it is not known.
+    /// Value as text; none if unknown.
     pub fn in_words(&self) -> Option<String> {
         (!self.0.is_null()).then(|| shown(&self.0))
     }
 }
 
-/// What was set, and to what. Only with what it was before, it is a report: no command forgets to say that.
+/// A value that was set. It becomes a report only with its old value, so that no command omits that.
 #[derive(Debug)]
 pub struct New {
     set: String,
@@ -55,12 +55,12 @@ pub struct New {
 }
 
 impl New {
-    /// What was set to which value; the same in words.
+    /// Name, new value, and text.
     pub fn of(set: impl Into<String>, new: impl Into<Value>, words: impl Into<String>) -> Self {
         Self { set: set.into(), with: Map::new(), new: new.into(), words: words.into() }
     }
 
-    /// With a number or a name that belongs to it; nothing where there is none.
+    /// Adds a number or a name; none adds nothing.
     #[must_use]
     pub fn with(mut self, name: &str, value: impl Into<Value>) -> Self {
         let value = value.into();
@@ -70,7 +70,7 @@ impl New {
         self
     }
 
-    /// What is asked before it is set: what that will do, and old and new where old was read.
+    /// Confirmation: the intent, and old and new value if the old value was read.
     pub fn question(&self, intent: String, old: &Old) -> Change {
         let change = Change::new(intent);
         let what = self.set.trim_end_matches("_on").replace('_', " ");
@@ -80,30 +80,30 @@ impl New {
         }
     }
 
-    /// With its value before.
+    /// Adds the old value.
     pub fn replaces(self, old: Old) -> Done {
         let Self { set, with, new, words } = self;
         Done { set, with, old, new, words }
     }
 }
 
-/// One thing that the controller accepted: `{"set":"B0","old":1,"new":5}`. Programs get values, people a sentence.
+/// Result of a set command: `{"set":"B0","old":1,"new":5}`. JSON has values, the view a sentence.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Done {
-    /// What was set, by the name that reads give it: `servo_on`.
+    /// Name of the value, as in reads: `servo_on`.
     set: String,
-    /// Which one of several it is, and what else was given: numbers and names.
+    /// Index and other arguments: numbers and names.
     #[serde(flatten)]
     with: Map<String, Value>,
     old: Old,
-    /// Its value now.
+    /// New value.
     new: Value,
     #[serde(skip)]
     words: String,
 }
 
 impl Done {
-    /// What was set, for people.
+    /// Text of the result.
     pub fn words(&self) -> &str {
         &self.words
     }
@@ -123,27 +123,27 @@ impl Report for Done {
     }
 }
 
-/// One of several things that a command wrote, as reads tell it, with what it held and what it holds.
+/// One of several items that a command wrote, as reads report it, with old and new value.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Written<T> {
-    /// Which one.
+    /// Item.
     #[serde(flatten)]
     pub item: T,
     old: Old,
-    /// Its value now.
+    /// New value.
     new: Value,
-    /// True: it was written.
+    /// Always true.
     written: bool,
 }
 
 impl<T> Written<T> {
-    /// With its value before and now.
+    /// Adds old and new value.
     pub fn new(item: T, old: Old, new: impl Into<Value>) -> Self {
         Self { item, old, new: new.into(), written: true }
     }
 }
 
-/// A value as a person reads it.
+/// Value as text.
 fn shown(value: &Value) -> String {
     match value {
         Value::Bool(on) => if *on { "on" } else { "off" }.to_owned(),
@@ -152,7 +152,7 @@ fn shown(value: &Value) -> String {
     }
 }
 
-/// A number as it was typed and accepted; null where it is none.
+/// Typed number as JSON; null if it is not a number.
 pub fn number(text: &str) -> Value {
     let whole = text.parse::<i64>().map(Value::from);
     whole.unwrap_or_else(|_| text.parse::<f64>().map_or(Value::Null, Value::from))

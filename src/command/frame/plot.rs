@@ -1,16 +1,16 @@
-//! A small chart of values over the rounds of a watch: `position --watch --plot`.
+//! Small chart of values over the rounds of a watch: `position --watch --plot`.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
 
 use crate::output::view::{Cell, Section, Table};
 
-/// Rounds that a chart shows.
+/// Number of rounds in a chart.
 const SHOWN: usize = 40;
-/// From the least to the greatest value.
+/// Bars from the minimum to the maximum.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// What a command keeps from round to round.
+/// Values of earlier rounds.
 #[derive(Debug, Default)]
 pub struct Past(RefCell<Vec<Series>>);
 
@@ -23,12 +23,12 @@ struct Series {
     values: VecDeque<f64>,
 }
 
-/// A chart of all values.
+/// Chart of all values.
 #[derive(Debug, Clone, Default)]
 pub struct Plot(Vec<Series>);
 
 impl Past {
-    /// Adds the values of a round: name, unit, decimals, value. Another set of names begins anew.
+    /// Adds the values of a round: name, unit, decimals, value. A different set of names restarts the chart.
     pub fn add(&self, values: impl IntoIterator<Item = (String, &'static str, usize, f64)>) -> Plot {
         let mut past = self.0.borrow_mut();
         let values: Vec<_> = values.into_iter().collect();
@@ -53,9 +53,9 @@ impl Past {
 }
 
 impl Plot {
-    /// As a part of a view: a row a value, with its least and greatest of what is shown.
+    /// Section of a view: one row per value, with minimum and maximum.
     pub fn section(&self) -> Section {
-        let mut table = Table::new(&["axis", "now", "unit", "chart", "least", "greatest"], "nothing to show");
+        let mut table = Table::new(&["axis", "now", "unit", "chart", "min", "max"], "nothing to show");
         for Series { name, unit, decimals, values } in &self.0 {
             let (least, greatest) = range(values);
             let number = |value: f64| Cell::number(format!("{value:.decimals$}"));
@@ -73,7 +73,7 @@ fn range(values: &VecDeque<f64>) -> (f64, f64) {
     if values.is_empty() { (0.0, 0.0) } else { (least, greatest) }
 }
 
-/// A bar a round, the latest at the end; what does not change is a line at the bottom.
+/// One bar per round, the latest at the end; a constant value is a line at the bottom.
 fn bars(values: &VecDeque<f64>) -> String {
     let (least, greatest) = range(values);
     let step = (greatest - least) / 8.0;

@@ -10,7 +10,8 @@ use crate::settings::duration;
 const WINDOW: Duration = Duration::from_secs(600);
 /// Lines of one kind that are printed in that time, before the others are only counted.
 const BURST: u32 = 5;
-/// Kinds of lines of one peer that are told apart; others count as one kind. A peer may choose the words of its errors.
+/// Maximum number of distinct kinds of lines per peer; others count as one kind. A peer may choose the text of its
+/// errors.
 const KINDS: usize = 16;
 
 /// A line of the log.
@@ -31,7 +32,7 @@ impl Line {
         Self { level, text: text.to_owned(), fields: fields.collect() }
     }
 
-    /// The robot or broker that it is about.
+    /// Robot or broker of the line.
     fn peer(&self) -> Option<&(String, String)> {
         self.fields.iter().find(|(name, _)| name == "robot" || name == "broker")
     }
@@ -42,11 +43,11 @@ impl Line {
 struct Seen {
     since: Instant,
     printed: u32,
-    /// The last one that was not printed, when, and how many there were.
+    /// Last suppressed line, its time, and the number of suppressed lines.
     held: Option<(Line, Instant, u64)>,
 }
 
-/// The limiter: takes lines, and says which of them to print.
+/// Limiter for log lines: returns the lines to print.
 #[derive(Debug, Default)]
 pub struct Repeats {
     /// By peer, and by text with every number as `#`.
@@ -54,7 +55,7 @@ pub struct Repeats {
 }
 
 impl Repeats {
-    /// What is to be printed now, where this line is to be said: summaries that are due, and itself, unless it is counted.
+    /// Lines to print now for this line: due summaries, and the line itself unless it is suppressed.
     pub fn lines(&mut self, line: Line, now: Instant) -> Vec<Line> {
         let mut lines = self.due(now, false);
         if self.admits(&line, now) {
@@ -63,7 +64,7 @@ impl Repeats {
         lines
     }
 
-    /// Whether this line is to be printed now. Lines about this machine always are.
+    /// Whether this line is printed now. Lines about this computer always are.
     fn admits(&mut self, line: &Line, now: Instant) -> bool {
         let Some(peer) = line.peer() else { return true };
         let kinds = self.seen.entry(peer.clone()).or_default();
@@ -81,8 +82,8 @@ impl Repeats {
         false
     }
 
-    /// Summaries that are due, in the order in which their last lines came: so the last word about a peer is true.
-    /// At the end of the service all are due.
+    /// Due summaries, in the order of their last lines, so that the last line about a peer is the current state. At
+    /// the end of the service, all are due.
     pub fn due(&mut self, now: Instant, is_end: bool) -> Vec<Line> {
         let mut due = Vec::new();
         for kinds in self.seen.values_mut() {
@@ -96,7 +97,7 @@ impl Repeats {
                 let age = duration::display(Duration::from_secs(age.as_secs()));
                 line.text = format!("{} ({times} in {age})", line.text);
                 due.push((at, line));
-                // It goes on: one summary for each window from here on.
+                // Still repeating: from here on, one summary per window.
                 (seen.since, seen.printed) = (now, BURST);
                 true
             });
@@ -107,9 +108,9 @@ impl Repeats {
     }
 }
 
-/// The text with each number as `#`: pauses and counts differ in lines that say the same.
+/// Text with each number replaced by `#`, because durations and counts differ between otherwise equal lines.
 fn shape(text: &str) -> String {
-    /// Characters that tell kinds of lines apart.
+    /// Number of characters that distinguish kinds of lines.
     const LONGEST: usize = 200;
 
     let mut shape = String::new();
@@ -141,7 +142,7 @@ mod tests {
         let due = repeats.due(start + WINDOW, false);
         let texts: Vec<&str> = due.iter().map(|line| &line.text[..]).collect();
         assert_eq!(texts, ["again in 999.1s (995 more times in 10m)"]);
-        // It goes on: the next one waits for the next summary. Once it has been quiet for a window, it is forgotten.
+        // While the line repeats, it is held for the next summary. After a window without it, it is forgotten.
         assert!(!repeats.admits(&line("again in 7.0s"), start + WINDOW));
         assert_eq!(repeats.due(start + WINDOW * 2, false)[0].text, "again in 7.0s (once more in 10m)");
         assert!(repeats.due(start + WINDOW * 3, false).is_empty());

@@ -1,8 +1,8 @@
-//! `armctl repl`: what its command line says; `crate::app` runs it.
+//! Arguments of `armctl repl`; `crate::app` runs it.
 
 use clap::Args;
 
-/// Arguments of `repl`: none beside the flags of every command, which are those of each line.
+/// Arguments of `repl`: only the options of every command, which apply to each line.
 #[derive(Debug, Args)]
-#[command(after_help = "Lines and keys: `armctl help repl`.")]
+#[command(after_help = "For lines and keys, see `armctl help repl`.")]
 pub struct Repl {}

@@ -1,4 +1,4 @@
-//! What a command found out or did.
+//! Command reports.
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
@@ -9,28 +9,28 @@ use crate::failure::Failure;
 use crate::output::csv::RowsOf;
 use crate::output::view::View;
 
-/// What a command found out or did.
+/// Report of a command.
 pub trait Report: Serialize + JsonSchema {
-    /// As a person reads it.
+    /// View for people.
     fn view(&self) -> View;
 
-    /// Why the report is not a success although it is whole: a difference, a condition not met, a file that failed.
+    /// Failure of a complete report: a difference, a condition not met, a failed file.
     fn failure(&self) -> Option<Failure> {
         None
     }
 
-    /// What the rows of a spreadsheet are.
+    /// Rows of a spreadsheet.
     fn rows(&self) -> RowsOf {
         RowsOf::Lists
     }
 }
 
-/// A report, or why there is none.
+/// A report, or a failure.
 pub type Outcome = Result<Box<dyn AnyReport>, Failure>;
 
 /// [`Report`] without its type.
 pub trait AnyReport {
-    /// The `data` of the envelope.
+    /// `data` of the envelope.
     fn data(&self) -> Result<Value, Failure>;
     /// See [`Report::view`].
     fn view(&self) -> View;
@@ -38,7 +38,7 @@ pub trait AnyReport {
     fn failure(&self) -> Option<Failure>;
     /// See [`Report::rows`].
     fn rows(&self) -> RowsOf;
-    /// The schema of [`AnyReport::data`].
+    /// Schema of [`AnyReport::data`].
     fn schema(&self) -> Schema;
 }
 
@@ -64,22 +64,22 @@ impl<R: Report> AnyReport for R {
     }
 }
 
-/// The schema of a report as it is written.
+/// Schema of a report.
 pub fn schema_of<R: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<R>()
 }
 
-/// The schema of a report, by command.
+/// Schema of a report, by command.
 #[derive(Debug, Clone, Copy)]
 pub struct SchemaEntry {
     /// `yerc.status`.
     pub id: &'static str,
-    /// Makes the schema of `data`.
+    /// Creates the schema of `data`.
     pub schema: fn() -> Schema,
 }
 
 impl SchemaEntry {
-    /// The schema of a report as it is written: what may be left out is not required.
+    /// Schema of a serialized report: fields that may be omitted are not required.
     pub fn of<R: JsonSchema>(id: &'static str) -> Self {
         Self { id, schema: schema_of::<R> }
     }

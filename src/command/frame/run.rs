@@ -1,4 +1,4 @@
-//! The one loop that every robot command goes through: choose robots, pass the gate, run, report, repeat.
+//! Run loop for robot commands: select robots, pass the gate, run, report, repeat.
 
 mod print;
 mod rounds;
@@ -39,37 +39,37 @@ use crate::output::jq::{Filter, after_a_change};
 use crate::output::redraw::Redraw;
 use crate::settings::{Robot, Sessions, Sources};
 
-/// What the command line says about how to run a command.
+/// Run options of the command line.
 #[derive(Debug)]
 pub struct Run {
-    /// Where to write.
+    /// Output.
     pub screen: Screen,
-    /// Which robots, and their settings.
+    /// Robots and their settings.
     pub sources: Sources,
-    /// What is allowed.
+    /// Permissions.
     pub gate: Gate,
-    /// How often.
+    /// Repetition.
     pub repeat: Repeat,
     /// `--jq`.
     pub filter: Option<Filter>,
     /// `--trace`.
     pub trace: Option<PathBuf>,
-    /// What is around it, where it is one of several lines.
+    /// Context of a line in a REPL or batch.
     pub line: Option<Line>,
-    /// What a watch has on the screen.
+    /// Screen state of a watch.
     pub redraw: Redraw,
-    /// What was typed between the word of a family and the command.
+    /// Family arguments before the command.
     pub own: Own,
 }
 
-/// A failure on its way to stderr, with what the envelope needs to know.
+/// A failure with the data for its envelope.
 #[derive(Debug)]
 pub struct RunError {
-    /// What happened.
+    /// Failure.
     pub failure: Failure,
-    /// To whom, in doing what.
+    /// Envelope with robot and command.
     pub envelope: Option<Box<Envelope>>,
-    /// The report on stdout tells it already: only the exit code is left.
+    /// Whether the report on stdout already shows the failure: then only the exit code is set.
     pub told: bool,
 }
 
@@ -86,24 +86,24 @@ impl From<anyhow::Error> for RunError {
 }
 
 impl RunError {
-    /// The failure of a command on a robot.
+    /// Failure of a command on a robot.
     pub fn at(robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Self {
         let envelope = Some(Box::new(Envelope::of(robot, command.id(), Err(failure.clone()))));
         Self { failure, envelope, told: false }
     }
 }
 
-/// Pause between runs where only a condition or a count is given.
+/// Default interval between reads.
 const EVERY: Duration = Duration::from_secs(1);
-/// Robots talked to at the same time: enough that a plant of which half is switched off takes one wait for an answer, and
-/// no more than the files that a process may have open where that is least, 256.
+/// Maximum number of robots in parallel. It is large enough that a plant with many switched-off robots takes one
+/// timeout, and small enough for an open-file limit of 256.
 const PARALLEL: usize = 128;
 
-/// A connection, and what may pass.
+/// Connection and its granted risk.
 type Granted = (Box<dyn Connection>, Grant);
 
 impl Run {
-    /// Runs `command` on the robots it is for, and reports.
+    /// Runs `command` on its robots and reports.
     pub async fn robots(&self, command: &dyn AnyCommand) -> Result<(), RunError> {
         if let Some(outcome) = command.without_robot(&self.screen) {
             return self.local(command.id(), &*outcome?);
@@ -118,7 +118,7 @@ impl Run {
         }
     }
 
-    /// The robots that a command is for, once it may run on all of them.
+    /// Robots of a command, after it has been authorized for all of them.
     pub async fn ready(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, RunError> {
         let mut robots = self.chosen(command)?;
         let asks = |robot: &Robot| {
@@ -126,7 +126,8 @@ impl Run {
             intent.risk == Risk::Motion || intent.confirmation != Confirmation::Question
         };
         if robots.iter().any(asks) {
-            // From here on Ctrl-C, at a question too, ends in a message and an exit code instead of a killed process.
+            // From here on, Ctrl-C (also at a question) ends with a message and an exit code instead of killing the
+            // process.
             catch_interrupts();
             for robot in &robots {
                 self.check_model(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
@@ -146,39 +147,42 @@ impl Run {
         Ok(robots)
     }
 
-    /// Runs a command once on robots that are [`ready`](Self::ready), and reports nothing.
+    /// Runs a command once on [`ready`](Self::ready) robots, without a report.
     pub async fn gather(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Vec<Outcome> {
         at_a_time(robots.iter().map(|robot| self.once(command, robot))).await
     }
 
-    /// The robots that a command is for, if it can be for these.
+    /// Robots of a command, if the command is valid for them.
     fn chosen(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
         if command.intent(None).risk > Risk::Read && (self.repeat.is_wanted() || self.repeat.check.is_some()) {
-            return Err(Failure::usage("--watch, --count, --until and --check are for commands that only read")
-                .hint("run this command once, and watch `status` or `position`"));
+            return Err(Failure::usage("--watch, --count, --until and --check need a command that only reads")
+                .hint("run this command once and watch `status` or `position`"));
         }
         if command.moves_until_stopped() && !self.gate.dry_run && !self.screen.can_interrupt() {
-            return Err(Failure::usage("nothing would end this motion: there is no terminal for Ctrl-C")
+            return Err(Failure::usage("this motion needs a limit, because there is no terminal for Ctrl-C")
                 .hint("add --for TIME, such as --for 500ms"));
         }
         let mut robots = self.sources.robots(command.family())?;
         self.identify(command, &mut robots)?;
         for robot in &mut robots {
-            // A session that ends meanwhile must not leave the way that nobody was asked about.
+            // If the session ends in the meantime, the direct connection must not be used without confirmation.
             if !self.gate.dry_run && command.entry(robot) == Entry::ThroughSession {
                 robot.sessions = Sessions::Only;
             }
         }
         if command.is_endless() && robots.len() > PARALLEL {
-            return Err(Failure::usage(format!("this watches {PARALLEL} robots at a time, not {}", robots.len()))
-                .hint("choose some with -r or --tag"));
+            return Err(Failure::usage(format!(
+                "at most {PARALLEL} robots can be watched at a time, not {}",
+                robots.len()
+            ))
+            .hint("select fewer with -r or --tag"));
         }
         let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
         Gate::pass_many(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
         Ok(robots)
     }
 
-    /// Finds out which robots have another address that counts. A dry run sends nothing for that.
+    /// Finds robots with an alias address that matters. A dry run sends no request for that.
     fn identify(&self, command: &dyn AnyCommand, robots: &mut [Robot]) -> Result<(), Failure> {
         let Some(driver) = command.driver().filter(|_| !self.gate.dry_run) else { return Ok(()) };
         for robot in robots {
@@ -186,14 +190,14 @@ impl Run {
             let changes = intent.risk > Risk::Read && !intent.is_stop;
             match identify(&self.sources, driver, robot, changes) {
                 Err(failure) if changes => return Err(failure),
-                // A robot that is only read, or stopped, need not be told from others.
+                // For a read or a stop, the identity of the robot does not matter.
                 _ => {}
             }
         }
         Ok(())
     }
 
-    /// Whether a session is to be opened for what a command does, because the robot's entry says so.
+    /// Whether a session is opened for a command, because the robot's entry requires it.
     fn opens_session(&self, command: &dyn AnyCommand, robot: &Robot) -> bool {
         let is_wanted = robot.hold.value && !robot.read_only.value && robot.sessions == Sessions::Shared;
         is_wanted
@@ -202,13 +206,13 @@ impl Run {
             && matches!(command.entry(robot), Entry::Stops(_))
     }
 
-    /// What the gate is told of a command for a robot: what it does, and what its connection does.
+    /// Intent for the gate: effect of the command and of its connection.
     fn intent(&self, command: &dyn AnyCommand, robot: &Robot) -> Intent {
         let intent = self.own.complete(command.intent(Some(robot)));
         let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
         let entry = if is_free { Entry::Harmless } else { command.entry(robot) };
         let Entry::Stops(entry) = entry else { return intent };
-        // What asks by itself, later, says then what it does; whatever else needs a yes says it in this question.
+        // A command that confirms later describes its own action then; any other action is part of this question.
         let (asks, confirmation) = match intent.confirmation {
             Confirmation::Word(_) => (true, intent.confirmation),
             Confirmation::Question => (intent.risk >= Risk::Destroy, Confirmation::Question),
@@ -218,7 +222,7 @@ impl Run {
         Intent { risk: Risk::Motion, text, confirmation, ..intent }
     }
 
-    /// Finds what is refused without asking anybody: robots that are not there, a gate that stays closed.
+    /// Finds rejections that need no question: unknown robots, missing permissions.
     pub fn check_gate(&self, command: &dyn AnyCommand) -> Result<(), Failure> {
         if command.driver().is_none() {
             return Ok(());
@@ -235,7 +239,7 @@ impl Run {
         let report = self.once(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
         let printed = self.print(robot, command.id(), &*report, ReportPosition::Alone);
         if let Some(failure) = report.failure() {
-            // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
+            // A closed or full stdout does not change the failure.
             let told = printed.is_ok() && self.screen.is_json();
             return Err(RunError { failure, envelope: None, told });
         }
@@ -244,7 +248,7 @@ impl Run {
         checked.map_err(|failure| RunError::at(robot, command, failure))
     }
 
-    /// Whether what `--check` asks for holds.
+    /// Evaluates `--check`.
     fn check(&self, envelopes: &impl Serialize) -> Result<(), Failure> {
         let Some(check) = self.repeat.check.as_ref().filter(|_| !self.gate.dry_run) else { return Ok(()) };
         let envelopes = as_value(envelopes)?;
@@ -258,7 +262,7 @@ impl Run {
         })
     }
 
-    /// A failure to report what was done: nobody should do it again for that.
+    /// Failure to print a report of a completed action, with a note not to repeat the action.
     fn unprinted(&self, risk: Risk, failure: Failure) -> Failure {
         if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
             return failure;
@@ -266,7 +270,7 @@ impl Run {
         after_a_change(failure)
     }
 
-    /// Repeats a reading command over one connection; `among` stands where other robots are watched beside this one.
+    /// Repeats a read command on one connection; `among` is set if other robots are watched as well.
     async fn watch(
         &self,
         command: &dyn AnyCommand,
@@ -315,10 +319,10 @@ impl Run {
                     }
                     None
                 }
-                // A robot that is silent for a while is what one watches for; anything else ends the watch.
+                // A watch continues while a robot does not answer; any other failure ends it.
                 Err(failure) if failure.kind == Kind::NoAnswer => {
                     if self.repeat.is_quiet {
-                        // It is told at the end, if it is silent then.
+                        // It is reported at the end if the robot is still silent.
                     } else if self.is_for_people() {
                         silences.say(&failure);
                     } else {
@@ -338,7 +342,7 @@ impl Run {
         }
     }
 
-    /// A failure that ends a watch: in a stream for programs it stands in its place on stdout.
+    /// Failure that ends a watch. In a stream for programs it is written to stdout in order.
     fn broken_off(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
         if self.is_for_people() || failure.kind == Kind::Interrupted {
             return Ok(RunError::at(robot, command, failure));
@@ -347,17 +351,17 @@ impl Run {
         Ok(RunError { failure, envelope: None, told: true })
     }
 
-    /// One connection, one run.
+    /// One run on one connection.
     async fn once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
         if self.gate.dry_run {
             return Ok(Box::new(DryRun::from(self.plan(command, robot, &self.screen).await?)));
         }
         let (mut link, grant) = self.connect(command, robot).await?;
         let outcome = self.attempt(command, robot, &mut *link, &grant).await;
-        // What became of the command is worth more than what became of the record of it.
+        // The result of the command matters more than that of its trace.
         let closed = link.close(&self.screen).await;
         let report = outcome?;
-        closed.map_err(|failure| Failure { message: format!("it was done, but {}", failure.message), ..failure })?;
+        closed.map_err(|failure| Failure { message: format!("succeeded, but {}", failure.message), ..failure })?;
         Ok(report)
     }
 
@@ -381,7 +385,7 @@ impl Run {
         Ok((link, grant))
     }
 
-    /// How a command may use its link when it begins.
+    /// Access of a command at its start.
     fn access(&self, command: &dyn AnyCommand, robot: &Robot) -> Access {
         Access {
             granted: Grant::of(command.intent(Some(robot)).granted_at_first()),
@@ -407,12 +411,12 @@ impl Run {
         AnyContext { robot, connection, screen, several: self.sources.selection.is_plural(), authority }
     }
 
-    /// Whether what a command sets in motion goes on when this process ends. A jog never does.
+    /// Whether motion continues when this process ends. A jog never continues.
     fn leaves_motion(&self, command: &dyn AnyCommand) -> bool {
         self.gate.on_interrupt == OnInterrupt::Leave && !command.jogs()
     }
 
-    /// One run, with a guardian where the robot may move.
+    /// One run, with a guardian if the robot may move.
     async fn attempt(
         &self,
         command: &dyn AnyCommand,
@@ -427,8 +431,8 @@ impl Run {
         guardian.guard(attempt).await
     }
 
-    /// What stops the robot when this process dies or hangs: the guardian, a session of another process, or the adapter of
-    /// a fieldbus, which misses its master. For those the guardian only ends a process that hangs.
+    /// Guardian that stops the robot if this process dies or hangs. With a session of another process, or a fieldbus
+    /// adapter that detects the missing master, the guardian only ends a hanging process.
     fn guardian(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Option<Guardian>, Failure> {
         let intent = command.intent(Some(robot));
         let moves = intent.risk == Risk::Motion && !intent.is_stop && !self.leaves_motion(command);
@@ -439,7 +443,7 @@ impl Run {
         Guardian::start(robot, driver.stop(), stops).map(Some)
     }
 
-    /// One run. Ctrl-C during a motion stops the robot first.
+    /// One run. Ctrl-C during a motion first stops the robot.
     async fn attempt_alone(
         &self,
         command: &dyn AnyCommand,
@@ -456,23 +460,23 @@ impl Run {
                 Err(match link.halt().await {
                     Ok(done) => Failure::new(Kind::Interrupted, done),
                     Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))
-                        .hint("use the pendant or the emergency stop if it must not"),
+                        .hint("use the pendant or the emergency stop if the robot must not move"),
                 })
             }
             Err(interrupt) if risk == Risk::Motion => Err(Failure {
-                message: format!("{}: left as it is; what was started goes on", interrupt.message),
+                message: format!("{}: not stopped; the motion or program continues", interrupt.message),
                 ..interrupt
             }),
             Err(interrupt) if risk > Risk::Read => Err(Failure {
-                message: format!("{}; what was sent may have been done, in whole or in part", interrupt.message),
+                message: format!("{}; the command may have been executed completely or in part", interrupt.message),
                 ..interrupt
             }
-            .hint("look before you repeat it, with the command that reads what this one writes")),
+            .hint("before you repeat it, read the values that this command writes")),
             Err(interrupt) => Err(interrupt),
         }
     }
 
-    /// What `command` would send: it runs to its end against a link that takes notes and has no answers.
+    /// Frames that `command` would send: it runs to its end on a link that takes notes and has no answers.
     async fn plan(&self, command: &dyn AnyCommand, robot: &Robot, screen: &Screen) -> Result<Plan, Failure> {
         let access = Access { dry_run: true, ..self.access(command, robot) };
         let grant = access.granted.clone();
@@ -487,8 +491,9 @@ impl Run {
         }
     }
 
-    /// Finds before anybody is asked what this controller's model cannot do: nobody should clear a cell for a mistyped
-    /// command. Simulators ask nobody, and may be of another model than their settings say.
+    /// Checks before any question whether the controller model supports the command, so that nobody clears a cell for
+    /// a mistyped command. Simulators are skipped, because they need no question and may be of another model than
+    /// configured.
     async fn check_model(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), Failure> {
         if self.gate.dry_run || robot.target.value.is_simulated() {
             return Ok(());
@@ -496,14 +501,14 @@ impl Run {
         self.plan(command, robot, &self.screen.silenced()).await.map(|_| ())
     }
 
-    /// Empties the file of `--trace`, to which every connection of this command then appends. Of several lines the first
-    /// one has done it.
+    /// Truncates the `--trace` file, to which every connection of this command appends. With several lines, only the
+    /// first one truncates it.
     pub fn begin_trace(&self) -> Result<(), Failure> {
         begin_trace(self.trace.as_deref().filter(|_| !self.gate.dry_run && self.line.is_none()))
     }
 }
 
-/// Empties the file of `--trace`; `-` is none.
+/// Truncates the `--trace` file; `-` is not a file.
 pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
     if let Some(path) = file.filter(|path| path.as_os_str() != "-") {
         std::fs::File::create(path).with_context(|| path.display().to_string())?;
@@ -511,8 +516,8 @@ pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Does the work of all robots, of so many at the same time, and gives what came of it in their order. One that waits long
-/// holds up nobody but itself.
+/// Runs the work of all robots with limited parallelism and returns the results in order. A slow robot delays only
+/// itself.
 async fn at_a_time<T>(work: impl Iterator<Item = impl Future<Output = T>>) -> Vec<T> {
     let numbered = work.enumerate().map(|(number, work)| async move { (number, work.await) });
     let mut done: Vec<(usize, T)> = stream::iter(numbered).buffer_unordered(PARALLEL).collect().await;
@@ -526,7 +531,7 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn a_fleet_takes_as_long_as_its_slowest() {
-        // As many as half a plant that is switched off do not answer, here and there among the others.
+        // Half of the robots do not answer, as in a plant with switched-off robots, mixed with the others.
         let silent = |robot: usize| robot.is_multiple_of(2);
         let ask = |robot| async move {
             tokio::time::sleep(Duration::from_millis(if silent(robot) { 2000 } else { 10 })).await;

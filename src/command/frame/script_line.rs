@@ -1,4 +1,4 @@
-//! A command line that is one of several in this process: of a REPL, or of a batch.
+//! A command line in a REPL or batch.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -15,25 +15,25 @@ use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::settings::Robot;
 
-/// What such a line has that a single one has not.
+/// Context of such a line.
 #[derive(Debug, Clone)]
 pub struct Line {
-    /// As it was typed, for others who want the same robot.
+    /// Text as typed, for other clients that wait for the robot.
     pub typed: Arc<str>,
-    /// Who keeps links open from one line to the next.
+    /// Manager of the links that stay open between lines.
     pub manager: SessionManager,
-    /// Where it stands.
+    /// Source location.
     pub origin: Option<Origin>,
-    /// Where its envelopes go instead of stdout.
+    /// Collector for envelopes instead of stdout.
     pub results: Option<Rc<RefCell<Vec<Value>>>>,
 }
 
-/// Where a line of a batch stands.
+/// Source location of a batch line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
-    /// The file, `-` for stdin.
+    /// File; `-` for stdin.
     pub file: Arc<str>,
-    /// Its line, from 1.
+    /// Line number, starting with 1.
     pub line: usize,
 }
 
@@ -45,28 +45,28 @@ impl fmt::Display for Origin {
 }
 
 impl Line {
-    /// Has the link to a robot held from now on.
+    /// Opens the link to a robot for later lines.
     pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
         let trace = trace.map(Path::to_owned);
         let access = Access { trace, ..Access::reading(ConnectMode::Control) };
         self.connecting(robot, access, screen).await.map(|_| ())
     }
 
-    /// Has the link to a robot held if the command wants one, so that it stays open for the next line; simulators always,
-    /// as they live no longer than their link. Says how the command is to connect.
+    /// Opens the link for later lines if the command needs one. A simulator is always kept, because it exists only as
+    /// long as its link. Returns the access for the command.
     pub async fn connecting(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
         let access = Access { typed: Some(Arc::clone(&self.typed)), ..access };
         if access.mode != ConnectMode::Control && !robot.target.value.is_simulated() {
             return Ok(access);
         }
-        // Some families record where the link is held, others in each line.
+        // Some families record in the process that holds the link, others in each line.
         let trace = access.trace.clone().filter(|path| path.as_os_str() != "-");
         let holding = Access { trace, mode: ConnectMode::Control, ..access.clone() };
         let is_traced = self.manager.hold(robot, &holding, screen).await? == By::This { records: true };
         Ok(Access { trace: access.trace.clone().filter(|_| !is_traced), ..access })
     }
 
-    /// The envelope with where the line stands.
+    /// Adds the source location to an envelope.
     pub fn marked(&self, envelope: Envelope) -> Envelope {
         match &self.origin {
             Some(Origin { file, line }) => Envelope { file: Some(file.to_string()), line: Some(*line), ..envelope },
@@ -74,7 +74,7 @@ impl Line {
         }
     }
 
-    /// Keeps envelopes if they are wanted all at once. What is to be written now, if anything.
+    /// Stores the envelope if all are written at the end; otherwise returns it for immediate output.
     pub fn pass(&self, value: Value) -> Option<Value> {
         let Some(results) = &self.results else { return Some(value) };
         match value {

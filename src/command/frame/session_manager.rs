@@ -1,5 +1,5 @@
-//! Links that stay open from one line of this process to the next. Whoever opens them sits on a thread of its own
-//! (`fleet/session/host.rs`); this is how lines ask it.
+//! Client of the manager of links that stay open between the lines of this process. The manager runs in its own
+//! thread (`fleet/session/host.rs`).
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,29 +13,29 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// Holds the links that the lines of this process use, on a thread of its own: a line that computes for long must not
-/// let a link drop.
+/// Manager of the links for the lines of this process. It has its own thread, so that a busy line does not let a link
+/// drop.
 #[derive(Debug, Clone)]
 pub struct SessionManager {
     orders: mpsc::UnboundedSender<ManagerRequest>,
-    /// Whether it has been told that links cannot be held here.
+    /// Whether a note was printed that links cannot be kept open.
     told: Arc<AtomicBool>,
 }
 
-/// What the thread is told.
+/// Request to the manager thread.
 pub enum ManagerRequest {
-    /// To hold the link to a robot, and to say by whom it is held.
+    /// Open the link to a robot and report who holds it.
     Hold {
-        /// The robot.
+        /// Robot.
         robot: Box<Robot>,
-        /// How the link may be used.
+        /// Permitted use of the link.
         access: Access,
-        /// For what is to be noted.
+        /// Screen for notes.
         screen: Screen,
-        /// Who is told.
+        /// Channel for the result.
         done: oneshot::Sender<Result<By, Failure>>,
     },
-    /// To let all links go, and to say when they are gone.
+    /// Close all links and report the end.
     End(oneshot::Sender<()>),
 }
 
@@ -45,43 +45,43 @@ impl fmt::Debug for ManagerRequest {
     }
 }
 
-/// Who holds a link.
+/// Holder of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum By {
     /// This process.
     This {
-        /// Whether what passes is recorded there.
+        /// Whether this process records the traffic.
         records: bool,
     },
     /// A session of another process.
     Another,
-    /// Nobody: there is no place for sessions, and why.
+    /// None: the session folder cannot be used; the reason.
     Nobody(Failure),
 }
 
 impl SessionManager {
-    /// For a thread that takes these orders.
+    /// Client for a thread that handles these requests.
     pub fn new(orders: mpsc::UnboundedSender<ManagerRequest>) -> Self {
         Self { orders, told: Arc::default() }
     }
 
-    /// Has all links let go; `false` if the thread has ended already.
+    /// Closes all links; `false` if the thread has already ended.
     pub fn end(&self, done: oneshot::Sender<()>) -> bool {
         self.orders.send(ManagerRequest::End(done)).is_ok()
     }
 
-    /// Makes sure that the link to a robot is held from now on, and says by whom.
+    /// Ensures that the link to a robot stays open, and returns its holder.
     pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<By, Failure> {
         let (done, is_done) = oneshot::channel();
         let order =
             ManagerRequest::Hold { robot: Box::new(robot.clone()), access: access.clone(), screen: *screen, done };
-        let broken = || Failure::local("the thread that holds links has ended");
+        let broken = || Failure::local("internal error: the session thread has ended");
         self.orders.send(order).map_err(|_| broken())?;
         let by = interruptible(is_done).await?.map_err(|_| broken())??;
         if let By::Nobody(why) = &by
             && !self.told.swap(true, Ordering::Relaxed)
         {
-            screen.note(&format!("links are not held from one line to the next: {why}"));
+            screen.note(&format!("connections are not kept open between lines: {why}"));
         }
         Ok(by)
     }

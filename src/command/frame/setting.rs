@@ -2,18 +2,18 @@
 
 use clap::{Arg, Command};
 
-/// Where a verb takes a name and its value as words of their own.
+/// Positional arguments of a command that form a name and its value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pair {
-    /// Which of its words is the name.
+    /// Index of the name.
     pub name: usize,
-    /// Whether there may be several values, with commas between them.
+    /// Whether the value can be a comma-separated list.
     pub is_list: bool,
 }
 
 impl Pair {
-    /// Of a verb that sets something by a name and a value: the last two of its words. What takes `NAME=VALUE` itself has no
-    /// two, and four are coordinates, or the numbers of an object.
+    /// Finds the pair of a command that sets a named value: its last two positional arguments. A command with
+    /// `NAME=VALUE` arguments has no pair. Four arguments are coordinates or the numbers of an object.
     pub fn of(verb: &Command) -> Option<Self> {
         let words: Vec<&Arg> = verb.get_positionals().collect();
         let ([_, value] | [_, _, value]) = words[..] else { return None };

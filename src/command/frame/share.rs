@@ -1,4 +1,4 @@
-//! Links that take one client: what goes on looking opens a session, so that other commands are not in its way.
+//! Session for long reads on a link that accepts one client, so that other commands can still run.
 
 use std::ffi::OsString;
 use std::time::Duration;
@@ -9,19 +9,19 @@ use super::connection::Driver;
 use crate::failure::{Failure, Kind};
 use crate::settings::{Origin, Robot, Sessions, duration};
 
-/// How long such a session goes on once nobody uses it.
+/// Idle time after which such a session closes.
 const IDLE: Duration = Duration::from_secs(5);
 
-/// Whether the link of a robot takes one client, and others may share it.
+/// Whether the robot accepts one client, and others may share its link.
 pub fn is_to_share(driver: &dyn Driver, robot: &Robot) -> bool {
     robot.sessions == Sessions::Shared && driver.takes_one_client(robot)
 }
 
-/// Has a session hold the link of a robot which takes one client: that of somebody else, or a new one in the background.
-/// The robot as it is to be reached then.
+/// Opens a background session for a robot that accepts one client, or uses an existing one. Returns the robot as it
+/// is then reached.
 ///
 /// # Errors
-/// Why the link cannot be opened.
+/// If the link cannot be opened.
 pub async fn shared(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure> {
     if !is_to_share(driver, robot) {
         return Ok(robot.clone());
@@ -29,9 +29,9 @@ pub async fn shared(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure
     if !is_held(robot) {
         match start(robot, words(robot).into_iter()).await {
             Ok(_) => {}
-            // Somebody else was faster.
+            // Another process opened one first.
             Err(_) if is_held(robot) => {}
-            // There is no place for sessions, or no room for another process.
+            // The session folder or another process is not possible.
             Err(failure) if failure.kind == Kind::Local => return Ok(robot.clone()),
             Err(failure) => return Err(failure),
         }
@@ -39,7 +39,7 @@ pub async fn shared(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure
     Ok(Robot { sessions: Sessions::Only, ..robot.clone() })
 }
 
-/// The words that open a session which ends by itself.
+/// Arguments that open a session with an idle timeout.
 fn words(robot: &Robot) -> Vec<OsString> {
     let mut words: Vec<OsString> = Vec::new();
     if let Some(path) = &robot.inventory {

@@ -1,4 +1,4 @@
-//! Tables that people keep in a spreadsheet, as files: where one goes, and what stays of the one that is there.
+//! Spreadsheet table files: target path, and the content that stays on an update.
 
 use std::path::PathBuf;
 
@@ -10,42 +10,42 @@ use crate::controller::findings::Findings;
 use crate::controller::sheet::{Column, Dialect, update, write};
 use crate::failure::Failure;
 
-/// How a file is written.
+/// File options.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct SheetManner {
     /// Replace the file if it exists
     #[arg(long)]
     pub force: bool,
-    /// Put values into the CSV file if it exists; comments and order stay
+    /// Update the values in an existing CSV file; comments and order stay
     #[arg(long, conflicts_with_all = ["force", "decimal_comma"])]
     update: bool,
-    /// CSV with commas in numbers and semicolons between cells
+    /// CSV with decimal commas and semicolons between cells
     #[arg(long)]
     decimal_comma: bool,
 }
 
-/// Where rows go, known before anything is asked.
+/// Target of rows, checked before the controller is asked.
 #[derive(Debug)]
 pub struct SheetTarget {
     target: Target,
     dialect: Dialect,
-    /// What is there and stays.
+    /// Existing content that stays.
     old: Option<Vec<u8>>,
 }
 
 impl SheetManner {
-    /// Whether any of it was asked for that only a table in a file can have.
+    /// Whether an option was given that needs a table file.
     pub fn is_given(&self) -> bool {
         self.force || self.is_of_tables()
     }
 
-    /// Whether something was asked for that only tables have.
+    /// Whether an option was given that only tables have.
     pub fn is_of_tables(&self) -> bool {
         self.update || self.decimal_comma
     }
 
-    /// Where rows of one robot go.
+    /// Target for the rows of one robot.
     pub fn target(&self, file: PathBuf, several: bool) -> Result<SheetTarget, Failure> {
         if several {
             return Err(text_files::of_one_robot(&file));
@@ -53,7 +53,7 @@ impl SheetManner {
         let is_there = file.symlink_metadata().is_ok();
         let old = if self.update && is_there { Some(text_files::read(&file)?) } else { None };
         let target = Target::new(file, self.force || self.update);
-        let advice = "--update puts the values into it and keeps its comments; --force replaces it";
+        let advice = "add --update to update its values and keep its comments, or --force to replace it";
         let target = target.map_err(|failure| if is_there { failure.hint(advice) } else { failure })?;
         let dialect = if self.decimal_comma { Dialect::DECIMAL_COMMA } else { Dialect::COMMAS };
         Ok(SheetTarget { target, dialect, old })
@@ -61,12 +61,12 @@ impl SheetManner {
 }
 
 impl SheetTarget {
-    /// The file that is there, whose rows get new values.
+    /// Existing file whose rows get new values.
     pub fn old(&self) -> Option<&[u8]> {
         self.old.as_deref()
     }
 
-    /// Writes rows, whole or not at all, and says where. The first column tells a row; `canonical` gives it one spelling.
+    /// Writes the rows atomically and returns the path. The first column identifies a row; `canonical` normalizes it.
     pub fn write(
         &self,
         columns: &[Column],
@@ -86,7 +86,7 @@ impl SheetTarget {
     }
 }
 
-/// One spelling of a number: `007` is `7`.
+/// Canonical spelling of a number: `007` is `7`.
 pub fn number(text: &str) -> String {
     text.trim().parse::<i64>().map_or_else(|_| text.trim().to_owned(), |number| number.to_string())
 }

@@ -1,4 +1,4 @@
-//! What teaching reports in every family, and positions that another command printed.
+//! Teach report of all families, and positions from the output of other commands.
 
 use std::path::Path;
 
@@ -13,38 +13,38 @@ use crate::failure::{Failure, Kind};
 use crate::files;
 use crate::output::view::{Cell, Tone, View};
 
-/// A taught point: what it was and is, and the position of the robot that was stored.
+/// Result of teaching a point: old and new content, and the position of the robot.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Taught {
-    /// `P5`, or the number of the point.
+    /// `P5`, or the point number.
     name: String,
-    /// What it held; null where it was not defined.
+    /// Old content; null if it was not defined.
     old: Option<Position>,
-    /// What it holds, as read back.
+    /// New content, as read back.
     new: Position,
-    /// Where the robot was.
+    /// Position of the robot.
     position: Position,
-    /// Whether it was written; false where it held that already.
+    /// Whether it was written; false if the content was equal.
     written: bool,
-    /// Which point it is, in the words of the family.
+    /// Family-specific identification of the point.
     #[serde(flatten)]
     with: Map<String, Json>,
 }
 
 impl Taught {
-    /// Of what the point was and is, and where the robot is.
+    /// Creates a report from old and new content and the robot position.
     pub fn new(name: impl Into<String>, old: Option<Position>, new: Position, position: Position) -> Self {
         Self { name: name.into(), old, new, position, written: true, with: Map::new() }
     }
 
-    /// With a name or a number that belongs to it.
+    /// Adds a name or a number.
     #[must_use]
     pub fn with(mut self, name: &str, value: impl Into<Json>) -> Self {
         self.with.insert(name.to_owned(), value.into());
         self
     }
 
-    /// The same where nothing had to be written.
+    /// Marks the point as unchanged, so that nothing was written.
     #[must_use]
     pub fn unchanged(self, is_unchanged: bool) -> Self {
         Self { written: !is_unchanged, ..self }
@@ -55,7 +55,7 @@ impl Report for Taught {
     fn view(&self) -> View {
         let shown = |position: &Position| position.text.clone().unwrap_or_else(|| position.line());
         let old = self.old.as_ref().map_or_else(|| "undefined".to_owned(), shown);
-        let result = if self.written { "taught" } else { "unchanged: it was there already" };
+        let result = if self.written { "taught" } else { "unchanged (already stored)" };
         View::fields([
             ("point", self.name.as_str().into()),
             ("old", old.into()),
@@ -65,24 +65,24 @@ impl Report for Taught {
     }
 }
 
-/// What was taught is not what is there.
+/// Failure: the point read back differs from the position.
 pub fn mismatch(name: &str, taught: &str, held: &str) -> Failure {
-    let message = format!("{name} was written and holds something else: {held}; the robot is at {taught}");
+    let message = format!("{name} was written but contains {held}; the robot is at {taught}");
     Failure::new(Kind::Malformed, message)
-        .hint("the robot moved meanwhile, or somebody else wrote the point: look, then teach it again")
+        .hint("the robot moved, or another client wrote the point: check the point, then teach it again")
 }
 
-/// It was written, but not read back.
+/// Failure: the point was written but could not be read back.
 pub fn not_read_back(name: &str, failure: Failure, command: &str) -> Failure {
     let message = format!("{name} was written, but not read back: {}", failure.message);
-    Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(format!("`{command}` tells what it holds"))
+    Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(format!("read the point with `{command}`"))
 }
 
-/// A position takes a kilobyte; this is room for a whole report around it.
+/// Maximum size: a position needs about a kilobyte, and this leaves room for a whole report.
 const MOST: u64 = 1 << 20;
 
-/// A position that another command printed into a file, or to stdin for `-`, as it can be typed: `text` of the concept, of
-/// `position --json`, an item of `get --json`, or the position alone. Where a robot stands in several frames, by axis.
+/// Position from the output of another command, in a file or on stdin (`-`), in typed form: `text` of `position
+/// --json`, an item of `get --json`, or the position itself. If a robot has several frames, the axes are used.
 pub fn printed_position(path: &Path) -> Result<String, Failure> {
     let json = printed(path)?;
     let rows = ["positions", "items", "variables", "points"].iter().find_map(|list| json.get(*list)?.as_array());
@@ -93,12 +93,12 @@ pub fn printed_position(path: &Path) -> Result<String, Failure> {
     };
     let shown = path.display();
     found.ok_or_else(|| {
-        Failure::usage(format!("{shown}: the file holds no position, or several"))
-            .hint("write one with `position --json`, or with `get --json` for a single point")
+        Failure::usage(format!("{shown}: the file must contain exactly one position"))
+            .hint("create the file with `position --json`, or with `get --json` for a single point")
     })
 }
 
-/// The text of a position, of the value of an item, or made of coordinates by name: `x=1.5 y=2`.
+/// Text of a position or an item value, or built from named coordinates: `x=1.5 y=2`.
 fn text(json: &Json) -> Option<String> {
     if let Some(text) = json.get("text").and_then(Json::as_str) {
         return Some(text.to_owned());
@@ -109,14 +109,13 @@ fn text(json: &Json) -> Option<String> {
     if typed.is_empty() { text(json.get("value")?) } else { Some(typed) }
 }
 
-/// The JSON of a file, or of stdin for `-`: what another command printed. Of an envelope its data.
+/// JSON in a file or on stdin (`-`); for an envelope, its data.
 fn printed(path: &Path) -> Result<Json, Failure> {
     let shown = if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() };
     let bytes = files::input(path, MOST).with_context(|| shown.clone())?;
     let json: Result<Json, _> = serde_json::from_slice(&bytes);
-    let mut json = json.map_err(|error| {
-        Failure::usage(format!("{shown}: {error}")).hint("it holds a position as `position --json` prints it")
-    })?;
+    let mut json =
+        json.map_err(|error| Failure::usage(format!("{shown}: {error}")).hint("use a file from `position --json`"))?;
     let data = json.as_object_mut().and_then(|envelope| envelope.remove("data"));
     Ok(data.unwrap_or(json))
 }

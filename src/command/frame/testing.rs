@@ -1,4 +1,4 @@
-//! What the tests of every family need.
+//! Test support for all families.
 
 use futures_util::FutureExt as _;
 use serde_json::Value;
@@ -15,29 +15,29 @@ use crate::gate::{Gate, Grant};
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// Where tests write: nowhere.
+/// Screen without output.
 pub static QUIET: Screen = Screen::silent();
 
-/// A link that may do anything.
+/// Access without restrictions.
 pub fn everything() -> Access {
     Access { granted: Grant::of(Risk::Motion), ..Access::reading(ConnectMode::Control) }
 }
 
-/// What a command needs beside its arguments; all questions are answered by `--yes`.
+/// Context for a command; all questions are answered with `--yes`.
 pub fn context<'a, F: Family>(robot: &'a Robot, link: &'a mut F::Link) -> Context<'a, F> {
     let gate = Gate { yes: true, ..Gate::default() };
     let authority = Authority::new(gate, &QUIET, robot, Risk::Motion, Grant::of(Risk::Motion));
     Context { robot, link, screen: &QUIET, several: false, authority }
 }
 
-/// Runs a command over a link that stays the test's.
+/// Runs a command on a link that the test keeps.
 pub async fn run<F: Family>(command: &dyn AnyCommand, context: Context<'_, F>) -> Outcome {
     let Context { robot, link, screen, several, authority } = context;
     let mut lent = Lent::<F>(link);
     command.run(AnyContext { robot, connection: &mut lent, screen, several, authority }).await
 }
 
-/// The report of a dry run, as it is written.
+/// Report of a dry run.
 pub fn planned<F: Family>(
     robot: &Robot,
     command: &dyn AnyCommand,
@@ -58,7 +58,7 @@ pub fn planned<F: Family>(
     }
 }
 
-/// The frames of [`planned`] without those that only read what is replaced.
+/// Frames of [`planned`], without reads of old values.
 pub fn frames(planned: &Value) -> Vec<Value> {
     all_frames(planned).into_iter().filter(|frame| frame["about"] != BEFORE).collect()
 }
@@ -68,7 +68,7 @@ pub fn all_frames(planned: &Value) -> Vec<Value> {
     planned["frames"].as_array().expect("frames").clone()
 }
 
-/// How many frames of [`planned`] only read what is replaced.
+/// Number of frames of [`planned`] that only read old values.
 pub fn count_before(planned: &Value) -> usize {
     all_frames(planned).len() - frames(planned).len()
 }

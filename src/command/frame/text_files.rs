@@ -1,4 +1,4 @@
-//! Files that an operator hands over, or wants.
+//! Input and output files of the operator.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -8,26 +8,24 @@ use crate::controller::findings::Finding;
 use crate::failure::Failure;
 use crate::files;
 
-/// Most that is read of a file: all that a controller can hold is smaller.
+/// Maximum file size: larger than all data of a controller.
 const MOST: u64 = 16 << 20;
 
-/// The bytes of a file, or of stdin for `-`.
+/// Bytes of a file, or of stdin for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     files::input(path, MOST).map_err(|error| match error.kind() {
-        ErrorKind::FileTooLarge => {
-            Failure::usage(format!("{} is larger than all that a controller can hold", shown(path)))
-                .hint("check that it is the file that was meant")
-        }
+        ErrorKind::FileTooLarge => Failure::usage(format!("{} is larger than the memory of a controller", shown(path)))
+            .hint("check that it is the right file"),
         _ => Failure::io(shown(path), &error),
     })
 }
 
-/// How a file is called in reports.
+/// File name in reports.
 pub fn shown(path: &Path) -> String {
     if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() }
 }
 
-/// Where a file of one robot goes, if somebody wants one; known before anything is asked.
+/// Target of an optional file for one robot, checked before the controller is asked.
 pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<Target>, Failure> {
     let Some(file) = file else { return Ok(None) };
     if several {
@@ -36,13 +34,13 @@ pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<
     Target::new(file.to_owned(), force).map(Some)
 }
 
-/// A file cannot take what several robots have.
+/// Failure for a file that is not possible with several robots.
 pub fn of_one_robot(file: &Path) -> Failure {
     Failure::usage(format!("{} is for one robot", file.display()))
-        .hint("run the command once for each robot, with a file each")
+        .hint("run the command once per robot, each with its own file")
 }
 
-/// Writes a file, whole or not at all, and says where.
+/// Writes a file atomically and returns its path.
 pub fn write(target: &Target, text: &str) -> Result<String, Failure> {
     let mut draft = target.begin()?;
     draft.write(text.as_bytes())?;
@@ -50,7 +48,7 @@ pub fn write(target: &Target, text: &str) -> Result<String, Failure> {
     Ok(target.path().display().to_string())
 }
 
-/// Every mistake of a file, a line each.
+/// All errors of a file, one line each.
 pub fn faulty(name: &str, errors: &[Finding]) -> Failure {
     let lines: Vec<String> = errors
         .iter()

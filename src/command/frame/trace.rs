@@ -1,4 +1,4 @@
-//! `--trace` and `-vv`: what goes over the line, as text and as a capture file. Each family has words of its own for it.
+//! `--trace` and `-vv`: traffic as text and as a capture file. Each family supplies the text.
 
 use std::io;
 use std::net::SocketAddr;
@@ -14,31 +14,31 @@ use crate::failure::{Failure, plain};
 use crate::output::Screen;
 use crate::transport::tap::{CaptureWriter, Direction};
 
-/// Where traffic is recorded beside being sent.
+/// Trace of sent and received data.
 #[derive(Debug)]
 pub struct Trace {
     screen: Screen,
-    /// Text on stderr: 0 nothing, 1 a line a frame, 2 the bytes too.
+    /// Text on stderr: 0 nothing, 1 one line per frame, 2 also the bytes.
     level: u8,
     capture: Option<CaptureWriter>,
-    /// Lines of text that wait to be written.
+    /// Text lines that wait to be written.
     held: Option<Vec<String>>,
-    /// Why the record is not whole.
+    /// Reason why the trace is incomplete.
     broken: Option<Failure>,
 }
 
 impl Trace {
-    /// Of packets with addresses, as flags want it; a capture file is made at once.
+    /// Trace of packets with addresses, as the options request; the capture file is created at once.
     pub fn of_network(access: &Access, screen: &Screen) -> Result<Self, Failure> {
         Self::open(access, screen, CaptureWriter::append)
     }
 
-    /// The same of whole packets of a kind, by its number in capture files.
+    /// Trace of whole packets with this link type.
     pub fn of_packets(access: &Access, screen: &Screen, link_type: u16) -> Result<Self, Failure> {
         Self::open(access, screen, |path| CaptureWriter::append_packets(path, link_type))
     }
 
-    /// The same of lines without addresses.
+    /// Trace of data without addresses.
     pub fn of_lines(access: &Access, screen: &Screen) -> Result<Self, Failure> {
         Self::open(access, screen, CaptureWriter::append_streams)
     }
@@ -60,7 +60,7 @@ impl Trace {
         Ok(Self { screen: *screen, level, capture, held: None, broken: None })
     }
 
-    /// How much text is wanted: 0 nothing, 1 a line a frame, 2 the bytes too.
+    /// Requested text: 0 nothing, 1 one line per frame, 2 also the bytes.
     pub fn level(&self) -> u8 {
         self.level
     }
@@ -74,7 +74,7 @@ impl Trace {
         }
     }
 
-    /// Writes a line of text, and its bytes where they are wanted.
+    /// Writes a line of text, and its bytes if requested.
     pub fn message(&mut self, direction: Direction, text: &str, bytes: &[u8]) {
         if self.level > 1 {
             self.line(direction, &format!("{text}\n   {}", hex(bytes)));
@@ -83,25 +83,25 @@ impl Trace {
         }
     }
 
-    /// Writes no text until [`Trace::release`]: stderr can block for as long as nobody reads it.
+    /// Holds text until [`Trace::release`], because stderr can block.
     pub fn hold(&mut self) {
         self.held.get_or_insert_default();
     }
 
-    /// Writes what was held.
+    /// Writes the held text.
     pub fn release(&mut self) {
         for line in self.held.take().unwrap_or_default() {
             self.screen.note(&line);
         }
     }
 
-    /// Adds a datagram to the capture file; of the two addresses, the own one is first.
+    /// Adds a datagram to the capture file; `ends` has the own address first.
     pub fn datagram(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
         let (from, to) = in_order(direction, ends);
         self.capture(|capture, time| capture.datagram(time, from, to, bytes));
     }
 
-    /// Adds a piece of a stream to the capture file: of TCP between two addresses, the own one first, or of a line.
+    /// Adds a piece of a stream to the capture file: TCP between two addresses (own address first), or a serial line.
     pub fn piece(&mut self, direction: Direction, ends: Option<(SocketAddr, SocketAddr)>, bytes: &[u8]) {
         self.capture(|capture, time| match ends.map(|ends| in_order(direction, ends)) {
             Some((from, to)) => capture.segment(time, from, to, bytes),
@@ -109,7 +109,8 @@ impl Trace {
         });
     }
 
-    /// Adds to the capture file, with the time. A full disk ends the record, not the conversation: a robot may be moving.
+    /// Adds to the capture file, with the time. A full disk ends the trace, not the communication: a robot may be
+    /// moving.
     pub fn capture(&mut self, add: impl FnOnce(&mut CaptureWriter, Duration) -> io::Result<()>) {
         let Some(capture) = &mut self.capture else { return };
         if let Err(error) = add(capture, now()) {
@@ -118,14 +119,14 @@ impl Trace {
         }
     }
 
-    /// Tells whether the record is whole.
+    /// Closes the trace and reports whether it is complete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.broken.take().map_or(Ok(()), Err)
     }
 }
 
-/// What a link shares with the watcher of its client, such as the record. A thread that panicked with it has left it whole:
-/// it is written frame by frame.
+/// Locks data that a link shares with the observer of its client, such as the trace. A panic leaves it complete,
+/// because it is written frame by frame.
 pub fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -138,14 +139,14 @@ fn in_order(direction: Direction, (own, other): (SocketAddr, SocketAddr)) -> (So
     }
 }
 
-/// The time that is recorded, since 1970.
+/// Time for the trace, since 1970.
 pub fn now() -> Duration {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default()
 }
 
-/// The failure of a record.
+/// Failure for an incomplete trace.
 pub fn not_whole(why: &str) -> Failure {
-    Failure::local(format!("the record of --trace is not whole: {why}"))
+    Failure::local(format!("the --trace file is incomplete: {why}"))
 }
 
 #[cfg(test)]

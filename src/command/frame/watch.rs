@@ -1,4 +1,4 @@
-//! `io watch`, `var watch`, `alarm watch` and the like: what a read command reads, and then each change of it as it comes.
+//! `io watch`, `var watch`, `alarm watch` and so on: initial values of a read command, then each change.
 
 use std::cell::RefCell;
 use std::time::Duration;
@@ -18,31 +18,31 @@ use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, View};
 use crate::settings::duration;
 
-/// Pause between two looks, where nothing tells that something has changed.
+/// Read interval, if there is no change notification.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// More things than these are told at the beginning only if they have a name of their own, or are on.
+/// If there are more items than this, only those that have a name or are on are printed at the start.
 const MANY: usize = 24;
 
-/// The field for what people call a thing.
+/// Field of the user name.
 const LABEL: &str = "label";
-/// The same for the bits of one.
+/// Field of the user names of bits.
 const LABELS: &str = "labels";
 
-/// What is watched in the data of a read: a list, and of each thing in it which fields are what.
+/// Location of the watched items in the data of a read: the list and its fields.
 #[derive(Debug, Clone, Copy)]
 pub struct Watched {
     /// `signals`.
     pub list: &'static str,
-    /// The field that tells them apart.
+    /// Field that identifies an item.
     pub name: &'static str,
-    /// Before the name, where that is a mere number: `alarm `.
+    /// Prefix of the name, if that is only a number: `alarm `.
     pub prefix: &'static str,
-    /// The field that says what it is.
+    /// Field of the description.
     pub label: &'static str,
-    /// The field that changes; none where it is there or not. A list of bits is watched bit by bit.
+    /// Field of the value; none if only presence counts. A list of bits is watched bit by bit.
     pub value: Option<&'static str>,
-    /// Said at the beginning where there is nothing.
+    /// Text at the start if there are no items.
     pub empty: &'static str,
 }
 
@@ -52,30 +52,30 @@ impl Watched {
         Self { list: "items", name: "name", prefix: "", label: "", value: Some("value"), empty: "nothing to watch" };
 }
 
-/// A read whose changes can be watched.
+/// A read command whose changes can be watched.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Watchable: Command {
     /// `yerc.io.watch`.
     const WATCH: &'static str;
-    /// Where its data has what is watched.
+    /// Location of the watched items in its data.
     const WATCHED: Watched;
 
-    /// Waits until it is worth to look again.
+    /// Waits until a new read is useful.
     async fn changed(&self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
         tokio::time::sleep(PAUSE).await;
         Ok(())
     }
 }
 
-/// Prints how things are, and then each change on a line, until Ctrl-C, --for, or --count reports.
+/// Prints the current values, then each change on a line, until Ctrl-C, --for, or --count reports.
 #[derive(Debug, Args)]
 pub struct Watch<C: Args> {
     #[command(flatten)]
     what: C,
-    /// How long to go on
+    /// How long to continue
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
-    /// What was there last.
+    /// Items of the previous read.
     #[arg(skip)]
     before: RefCell<Option<Vec<Thing>>>,
 }
@@ -112,13 +112,13 @@ impl<C: Watchable + Args> Command for Watch<C> {
     }
 }
 
-/// One thing that is watched.
+/// A watched item.
 #[derive(Debug, Clone, PartialEq)]
 struct Thing {
     name: String,
     label: Option<String>,
     value: Value,
-    /// As the read tells it, with all its fields.
+    /// Item with all fields of the read.
     item: Value,
 }
 
@@ -130,7 +130,7 @@ impl Watched {
 
     fn things_of(self, item: &Value) -> Vec<Thing> {
         let name = format!("{}{}", self.prefix, plain(&item[self.name]));
-        // What people call it says more than what it is.
+        // The user name is more informative than the description.
         let label = item[LABEL].as_str().or_else(|| item[self.label].as_str()).map(ToOwned::to_owned);
         let thing = |name: String, value: &Value| Thing {
             name,
@@ -157,14 +157,14 @@ impl Watched {
     }
 }
 
-/// How things are at the beginning.
+/// Changes at the start: the current values.
 fn began(now: &[Thing]) -> Vec<Change> {
     let is_off = |value: &Value| *value == false || *value == 0;
     let is_told = |thing: &&Thing| now.len() <= MANY || thing.label.is_some() || !is_off(&thing.value);
     now.iter().filter(is_told).map(|thing| Change::new(thing, None, Some(thing))).collect()
 }
 
-/// What is not as it was, what is new, and what is gone.
+/// Changed, new and removed items.
 fn differences(before: &[Thing], now: &[Thing]) -> Vec<Change> {
     let find = |things: &[Thing], name: &str| things.iter().find(|thing| thing.name == name).cloned();
     let changed = now.iter().filter_map(|thing| {
@@ -176,12 +176,12 @@ fn differences(before: &[Thing], now: &[Thing]) -> Vec<Change> {
     changed.chain(gone.map(|old| Change::new(old, Some(old), None))).collect()
 }
 
-/// What changed at one moment; at first, how things are.
+/// Changes at one moment; in the first report, the current values.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Changes {
-    /// One for each thing that changed.
+    /// One entry per changed item.
     changes: Vec<Change>,
-    /// The same things with all that the read tells of them, under the name that it has for them.
+    /// The same items with all fields of the read, under the name of its list.
     #[serde(flatten)]
     items: Map<String, Value>,
     #[serde(skip)]
@@ -191,16 +191,16 @@ pub struct Changes {
 /// A change.
 #[derive(Debug, PartialEq, Serialize, JsonSchema)]
 struct Change {
-    /// When it was seen.
+    /// Time of the read.
     #[schemars(with = "String", extend("format" = "date-time"))]
     time: Timestamp,
     /// `#27010`, `B0`, `SO(02)`.
     name: String,
-    /// What it is, where that is known.
+    /// Name or description, if known.
     label: Option<String>,
-    /// Null at the beginning, and of what was not there.
+    /// Old value; null at the start and for a new item.
     old: Value,
-    /// Null of what is gone, and of what could not be read.
+    /// New value; null for a removed item, and if it could not be read.
     new: Value,
     #[serde(skip)]
     item: Option<Value>,
@@ -226,7 +226,7 @@ impl Change {
     }
 }
 
-/// A value as people read it.
+/// Value as text.
 fn shown(value: &Value) -> String {
     match value {
         Value::Null => "-".to_owned(),
@@ -246,7 +246,7 @@ impl Changes {
             change.time = now;
         }
         let mut items: Vec<Value> = changes.iter_mut().filter_map(|change| change.item.take()).collect();
-        // Bits of one port come with the same port.
+        // Several bits of one port refer to the same port.
         items.dedup();
         let items = Map::from_iter([(watched.list.to_owned(), Value::Array(items))]);
         Self { changes, items, watched }

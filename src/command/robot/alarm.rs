@@ -1,4 +1,4 @@
-//! Alarms and errors: the same keys in `alarm list` and `alarm history` of every family, in `explain`, `top` and topics.
+//! Alarms and errors: common keys of `alarm list` and `alarm history` in every family, `explain`, `top` and topics.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -10,28 +10,28 @@ use crate::failure::Failure;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::settings::alarms::Explanation;
 
-/// An alarm or error. Null: the protocol does not tell, or nobody knows.
+/// An alarm or error. Null means that the protocol does not report it, or that it is unknown.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Alarm {
-    /// As the controller writes it: `4315`, `12.600`, `28`.
+    /// Code in the notation of the controller: `4315`, `12.600`, `28`.
     pub code: Option<String>,
-    /// What it says; what `alarms.toml` has for it stands first.
+    /// Text; the text of `alarms.toml` has priority.
     pub text: Option<String>,
-    /// An alarm, an error or a warning.
+    /// Alarm, error or warning.
     pub kind: Option<Kind>,
-    /// The family's own level.
+    /// Level in the terms of the family.
     pub severity: Option<&'static str>,
-    /// When, as the controller tells it.
+    /// Time, as the controller reports it.
     pub time: Option<String>,
-    /// What usually causes it.
+    /// Usual cause.
     pub cause: Option<String>,
-    /// What to do.
+    /// Remedy.
     pub remedy: Option<String>,
-    /// Whose words these are.
+    /// Source of the texts.
     pub source: Source,
 }
 
-/// What an entry of a list of alarms is.
+/// Alarm, error or warning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -43,21 +43,21 @@ pub enum Kind {
     Warning,
 }
 
-/// Whose words explain an alarm.
+/// Source of the texts of an alarm.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// The controller's own.
+    /// Controller.
     #[default]
     Controller,
-    /// Those of the operator: `alarms.toml`.
+    /// Operator: `alarms.toml`.
     Site,
-    /// Those of this program.
+    /// This program.
     Armctl,
 }
 
 impl Alarm {
-    /// With what `alarms.toml` says of it: its words before others.
+    /// Adds the texts of `alarms.toml`, which have priority.
     #[must_use]
     pub fn with(self, site: Option<Explanation>) -> Self {
         let Some(Explanation { text, cause, remedy }) = site else { return self };
@@ -69,23 +69,23 @@ impl Alarm {
         Self { text: Some(text), cause, remedy, source: Source::Site, ..self }
     }
 
-    /// Code and text in a line.
+    /// Code and text in one line.
     pub fn line(&self) -> String {
         let parts = [&self.code, &self.text].into_iter().flatten().map(String::as_str);
         parts.collect::<Vec<_>>().join(": ")
     }
 }
 
-/// What a family tells of an alarm besides.
+/// Family-specific data of an alarm.
 pub trait Besides {
-    /// Each with the name of its column; `None` where there is none.
+    /// Columns and values; `None` if there is no value.
     fn cells(&self) -> Vec<(&'static str, Option<String>)>;
 }
 
-/// What a family tells of an alarm besides, in words: for reports of all families.
+/// Family-specific data as text, for reports of all families.
 #[derive(Debug, Clone, Default, Serialize, JsonSchema)]
 pub struct InWords {
-    /// A sub-code, an axis, a place.
+    /// A sub-code, an axis, a source.
     data: Option<String>,
 }
 
@@ -95,29 +95,29 @@ impl Besides for InWords {
     }
 }
 
-/// What a family tells of its alarms as a whole.
+/// Family-specific data of the whole list.
 pub trait Standing {
-    /// What is said where the list is empty.
+    /// Text for an empty list.
     fn none(&self) -> &'static str {
         "no alarm"
     }
 }
 
-/// A family that tells nothing as a whole.
+/// No data of the whole list.
 #[derive(Debug, Clone, Copy, Default, Serialize, JsonSchema)]
 pub struct Nothing {}
 
 impl Standing for Nothing {}
 
-/// Alarms that are present, or were: what `alarm list` and `alarm history` report.
+/// Present or past alarms: report of `alarm list` and `alarm history`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Alarms<T, S = Nothing> {
-    /// The latest first.
+    /// Latest first.
     pub alarms: Vec<Row<T>>,
-    /// What is told as a whole.
+    /// Data of the whole list.
     #[serde(flatten)]
     pub standing: S,
-    /// How many entries were asked for.
+    /// Number of requested entries.
     #[serde(skip)]
     pub asked: usize,
 }
@@ -125,28 +125,28 @@ pub struct Alarms<T, S = Nothing> {
 /// An entry of a list.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Row<T> {
-    /// The list of the history, where a controller has several: `major`, `monitor`, `system`, `user`, `offline` (yerc).
+    /// List of the history, if a controller has several: `major`, `monitor`, `system`, `user`, `offline` (yerc).
     pub list: Option<&'static str>,
     /// 1 is the latest.
     pub index: u16,
-    /// What is there, or why it could not be read.
+    /// Alarm, or the reason why it could not be read.
     #[serde(flatten)]
     pub outcome: ItemOutcome<AlarmEntry<T>>,
 }
 
-/// An alarm with what the family tells besides.
+/// An alarm with family-specific data.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct AlarmEntry<T> {
-    /// The concept.
+    /// Alarm.
     #[serde(flatten)]
     pub alarm: Alarm,
-    /// The family's own.
+    /// Family-specific data.
     #[serde(flatten)]
     pub own: T,
 }
 
 impl<T> Row<T> {
-    /// What was read at this place of a list; `asked` is how errors name it.
+    /// Entry at an index of a list; `asked` is its name in errors.
     pub fn new(index: u16, asked: impl Into<String>, outcome: Result<AlarmEntry<T>, Failure>) -> Self {
         Self { list: None, index, outcome: ItemOutcome::new(asked, outcome) }
     }
@@ -169,25 +169,25 @@ impl<T: Besides, S> Alike for Alarms<T, S> {
 /// Alarms of a robot of any family.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct AllAlarms {
-    /// The latest first.
+    /// Latest first.
     alarms: Vec<Row<InWords>>,
 }
 
 impl AllAlarms {
-    /// Those that are present.
+    /// Present alarms.
     pub fn present(alarms: Vec<Alarm>) -> Self {
         let row = |(index, alarm)| Row::new(index, "alarm", Ok(AlarmEntry { alarm, own: InWords::default() }));
         Self { alarms: (1..).zip(alarms).map(row).collect() }
     }
 
-    /// The same as a family shows its own.
+    /// View in the form of a family.
     pub fn of_one(&self) -> View {
         shown(&self.alarms, "no alarm")
     }
 }
 
 impl Report for AllAlarms {
-    /// A table, to stand among those of other robots.
+    /// Table for several robots.
     fn view(&self) -> View {
         let mut table = Table::new(&["list", "#", "code", "alarm", "data", "time"], "no alarm");
         for row in &self.alarms {
@@ -202,19 +202,19 @@ impl Report for AllAlarms {
 }
 
 impl<T, S> Alarms<T, S> {
-    /// Why entries could not be read.
+    /// Errors of entries that could not be read.
     pub fn errors(&self) -> impl Iterator<Item = &ItemError> {
         self.alarms.iter().filter_map(|row| row.outcome.error())
     }
 
-    /// Those that could be.
+    /// Entries that could be read.
     pub fn known(&self) -> impl Iterator<Item = (&Row<T>, &AlarmEntry<T>)> {
         self.alarms.iter().filter_map(|row| Some((row, row.outcome.data()?)))
     }
 }
 
 impl<T: Besides> AlarmEntry<T> {
-    /// A row of a table of all columns.
+    /// Row of a table with all columns.
     fn cells(&self, list: Option<&'static str>, index: u16) -> Vec<Cell> {
         let Alarm { code, text, time, .. } = &self.alarm;
         let code = Cell::maybe(code.as_deref().map(|code| Cell::from(code).tone(Tone::Bad)));
@@ -244,7 +244,7 @@ impl<T: Besides + Serialize + JsonSchema, S: Standing + Serialize + JsonSchema> 
     }
 }
 
-/// A single alarm with all its fields, several as a table; `none` where there is none.
+/// Shows a single alarm with all fields, several as a table; `none` is the text for an empty list.
 fn shown<T: Besides>(rows: &[Row<T>], none: &str) -> View {
     let known = || rows.iter().filter_map(|row| row.outcome.data());
     let told: Vec<Cell> = known().filter_map(|entry| site(&entry.alarm)).map(Cell::from).collect();
@@ -256,14 +256,14 @@ fn shown<T: Besides>(rows: &[Row<T>], none: &str) -> View {
     }
 }
 
-/// What `alarms.toml` says of an alarm, as a line below a table.
+/// Text of `alarms.toml` for an alarm, as a line below a table.
 fn site(alarm: &Alarm) -> Option<String> {
     let Alarm { code, cause, remedy, source: Source::Site, .. } = alarm else { return None };
     let parts: Vec<&str> = [cause, remedy].into_iter().flatten().map(String::as_str).collect();
     (!parts.is_empty()).then(|| format!("{}: {}", code.as_deref().unwrap_or_default(), parts.join("; ")))
 }
 
-/// A row each, with the columns that something is told in.
+/// Table with one row per entry and only the columns that have a value.
 fn table<T: Besides>(rows: &[Row<T>]) -> Table {
     let own = rows.iter().find_map(|row| Some(row.outcome.data()?.own.cells())).unwrap_or_default();
     let own = own.into_iter().map(|(name, _)| name);
@@ -273,7 +273,7 @@ fn table<T: Besides>(rows: &[Row<T>]) -> Table {
     columns.into_iter().fold(table, Table::without_blank)
 }
 
-/// A row of so many columns.
+/// Row with this number of columns.
 fn cells<T: Besides>(row: &Row<T>, columns: usize) -> Vec<Cell> {
     let mut cells = match (row.outcome.data(), row.outcome.error()) {
         (Some(entry), _) => entry.cells(row.list, row.index),

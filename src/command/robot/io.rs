@@ -1,4 +1,4 @@
-//! Signals: the same keys in `io get|set|list|watch` of every family, and in `armctl io`.
+//! Signals: common keys of `io get|set|list|watch` in every family, and of `armctl io`.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -10,11 +10,11 @@ use crate::command::frame::watch::Watched;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 
-/// Where `io watch` of every family finds what it watches.
+/// Location of the watched items for `io watch` of every family.
 pub const WATCHED: Watched =
     Watched { list: "items", name: "name", prefix: "", label: "meaning", value: Some("value"), empty: "no signals" };
 
-/// Which signals `io list` lists.
+/// Selection of signals for `io list`.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct Filter {
     /// Only inputs
@@ -23,13 +23,13 @@ pub struct Filter {
     /// Only outputs
     #[arg(long)]
     out: bool,
-    /// Also signals that are off and have no name
+    /// Also signals that are off and unnamed
     #[arg(long)]
     off: bool,
 }
 
 impl Filter {
-    /// Whether signals of this kind are listed.
+    /// Whether signals of this kind are selected.
     pub fn has(self, kind: IoKind) -> bool {
         match (self.r#in, self.out) {
             (true, _) => kind == IoKind::Input,
@@ -38,20 +38,20 @@ impl Filter {
         }
     }
 
-    /// As it is typed.
+    /// Equivalent command-line words.
     pub fn words(self) -> Vec<String> {
         let flags = [(self.r#in, "--in"), (self.out, "--out"), (self.off, "--off")];
         flags.into_iter().filter(|(is_given, _)| *is_given).map(|(_, flag)| flag.to_owned()).collect()
     }
 
-    /// Whether a signal is listed: it is on, has a name, or all are; what could not be read always is.
+    /// Whether a signal is listed: it is on, has a name, could not be read, or all are listed.
     pub fn lists(self, row: &IoRow) -> bool {
         let is_off = matches!(row.value, Some(IoValue::State(false)));
         self.has(row.item.kind) && (self.off || !is_off || row.item.label.is_some())
     }
 }
 
-/// Which side sets a signal, or that it is no single signal.
+/// Side that sets a signal, or type of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum IoKind {
@@ -67,28 +67,28 @@ pub enum IoKind {
     Word,
 }
 
-/// A signal, or several as a number.
+/// A signal, or several signals as a number.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct IoItem {
-    /// As it can be typed: `#20010`, `servo-on`, `IN1.3`.
+    /// Name that can be typed: `#20010`, `servo-on`, `IN1.3`.
     pub name: String,
-    /// Its name in `robots.toml` or on the controller; null without one.
+    /// Name in `robots.toml` or on the controller; null if there is none.
     pub label: Option<String>,
-    /// Which side sets it.
+    /// Side that sets it.
     pub kind: IoKind,
-    /// As the manuals of the controller write it: `#20010`, `SO(02)`, `PN01.3`.
+    /// Notation of the controller's manuals: `#20010`, `SO(02)`, `PN01.3`.
     pub address: String,
-    /// What it says or does: `external input` (yerc), `servo on` (yrcx); null where that is not fixed.
+    /// Meaning: `external input` (yerc), `servo on` (yrcx); null if it is not fixed.
     pub meaning: Option<String>,
 }
 
-/// The value of a signal, or of several.
+/// Value of one or several signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum IoValue {
     /// On or off.
     State(bool),
-    /// Without a sign.
+    /// Unsigned number.
     Number(u32),
 }
 
@@ -101,24 +101,24 @@ impl IoValue {
     }
 }
 
-/// A signal that was read, or why it was not.
+/// Value of a signal, or the reason why it was not read.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct IoRow {
-    /// Which one.
+    /// Signal.
     #[serde(flatten)]
     pub item: IoItem,
     /// Whether it was read.
     ok: bool,
-    /// Its value; null where it was not read.
+    /// Value; null if it was not read.
     value: Option<IoValue>,
-    /// Why not.
+    /// Reason why it was not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
 }
 
 impl IoRow {
-    /// What was read of it.
+    /// Result of a read.
     pub fn new(item: IoItem, outcome: Result<IoValue, Failure>) -> Self {
         match outcome {
             Ok(value) => Self { item, ok: true, value: Some(value), error: None },
@@ -129,7 +129,7 @@ impl IoRow {
         }
     }
 
-    /// The same of a signal.
+    /// Result of a read of a single signal.
     pub fn state(item: IoItem, outcome: Result<bool, Failure>) -> Self {
         Self::new(item, outcome.map(IoValue::State))
     }
@@ -145,17 +145,17 @@ impl IoRow {
     }
 }
 
-/// Signals that were read: `io get` and `io list`.
+/// Report of `io get` and `io list`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Signals {
     items: Vec<IoRow>,
 }
 
 impl Signals {
-    /// Of rows.
+    /// Report of these rows.
     ///
     /// # Errors
-    /// Nothing was read, for one and the same reason.
+    /// If no signal was read, for the same reason.
     pub fn new(items: Vec<IoRow>) -> Result<Self, Failure> {
         nothing(items.len(), items.iter().filter_map(|row| row.error.as_ref()))?;
         Ok(Self { items })
@@ -177,24 +177,24 @@ impl Report for Signals {
 /// A signal that was written.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WrittenSignal {
-    /// As it is read now; where it cannot be read, as it was written.
+    /// Value read back, or the written value if it cannot be read.
     #[serde(flatten)]
     row: IoRow,
-    /// Its value before; null where it was not read.
+    /// Old value; null if it was not read.
     old: Option<IoValue>,
-    /// The value that was set.
+    /// New value.
     new: IoValue,
     /// Whether it was written.
     written: bool,
 }
 
 impl WrittenSignal {
-    /// The controller took the value.
+    /// Result of an accepted write.
     pub fn new(item: IoItem, old: Option<IoValue>, new: IoValue) -> Self {
         Self { row: IoRow::new(item, Ok(new)), old, new, written: true }
     }
 
-    /// The same, where the signal reads otherwise behind it.
+    /// Result of a write with a different value read back.
     #[must_use]
     pub fn but(mut self, value: IoValue, failure: Failure) -> Self {
         (self.row.ok, self.row.value) = (false, Some(value));
@@ -203,14 +203,14 @@ impl WrittenSignal {
     }
 }
 
-/// Signals that were written: `io set`.
+/// Report of `io set`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WrittenSignals {
     items: Vec<WrittenSignal>,
 }
 
 impl WrittenSignals {
-    /// In the order in which they were typed.
+    /// Report in the order typed.
     pub fn new(items: Vec<WrittenSignal>) -> Self {
         Self { items }
     }

@@ -1,7 +1,7 @@
-//! Items: whatever is read or written by a name, such as variables, counters, ports, signals, points and parameters.
+//! Items: data that is read or written by name, such as variables, counters, ports, signals, points and parameters.
 //!
-//! Reads report `items[]` with `name`, `label`, `kind`, `ok`, `value` and, of one that failed, `error`; writes also `old`,
-//! `new` and `written`. Each item answers for itself.
+//! Reads report `items[]` with `name`, `label`, `kind`, `ok`, `value` and, after a failure, `error`. Writes also
+//! report `old`, `new` and `written`. Each item has its own result.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -12,44 +12,44 @@ use crate::failure::Failure;
 use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Table, View};
 
-/// Nothing beside what every item has.
+/// No family-specific fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Plain {}
 
-/// One thing that was read: what it is and what it holds.
+/// An item that was read.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Item<V, M = Plain> {
-    /// As it can be typed: `B5`, `CN05`, `19`.
+    /// Name that can be typed: `B5`, `CN05`, `19`.
     pub name: String,
-    /// What people call it; null where it has no name.
+    /// User name; null if there is none.
     pub label: Option<String>,
-    /// What it is: `variable`, `counter`, `point`, `signal`.
+    /// Kind: `variable`, `counter`, `point`, `signal`.
     pub kind: &'static str,
-    /// What the family adds.
+    /// Family-specific fields.
     #[serde(flatten)]
     pub more: M,
     /// Whether the controller answered.
     pub ok: bool,
-    /// What it holds; null where that is not defined, or was not read.
+    /// Value; null if it is undefined or was not read.
     pub value: Option<V>,
-    /// Why it was not read.
+    /// Reason why it was not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     pub error: Option<ItemError>,
-    /// What a table shows of it.
+    /// Table cells.
     #[serde(skip)]
     pub cells: Vec<Cell>,
 }
 
 impl<V> Item<V> {
-    /// An item and what it holds, or why that was not read.
+    /// Item with its value, or the reason why it was not read.
     pub fn new(kind: &'static str, name: impl Into<String>, outcome: Result<Option<V>, Failure>) -> Self {
         Self::with(kind, name, Plain {}, outcome)
     }
 }
 
 impl<V, M> Item<V, M> {
-    /// The same with what the family adds.
+    /// Item with family-specific fields.
     pub fn with(kind: &'static str, name: impl Into<String>, more: M, outcome: Result<Option<V>, Failure>) -> Self {
         let name = name.into();
         let (ok, value, error) = match outcome {
@@ -59,42 +59,42 @@ impl<V, M> Item<V, M> {
         Self { name, label: None, kind, more, ok, value, error, cells: Vec::new() }
     }
 
-    /// With what a table shows of its value.
+    /// Adds the table cells of its value.
     #[must_use]
     pub fn shown(mut self, cells: impl Fn(&V) -> Vec<Cell>) -> Self {
         self.cells.extend(self.value.iter().flat_map(cells));
         self
     }
 
-    /// With the name that people gave it.
+    /// Adds the user name.
     #[must_use]
     pub fn labelled(self, label: Option<String>) -> Self {
         Self { label, ..self }
     }
 }
 
-/// An item in messages: `point 19`, and `B5` where the name says what it is.
+/// Name of an item in messages: `point 19`, or `B5` if the name implies the kind.
 pub fn asked(kind: &str, name: &str) -> String {
     if name.starts_with(|c: char| c.is_ascii_digit()) { format!("{kind} {name}") } else { name.to_owned() }
 }
 
-/// How items look in a table.
+/// Table layout of items.
 #[derive(Debug, Clone, Default)]
 pub struct Columns {
     /// Heading of the names: `counter`.
     pub name: &'static str,
     /// Headings of the cells.
     pub values: Vec<&'static str>,
-    /// Shown where there are none.
+    /// Text for an empty table.
     pub empty: &'static str,
 }
 
-/// Items in the order in which they were asked for.
+/// Items in the order requested.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Items<V, M = Plain> {
-    /// Each answers for itself.
+    /// Items, each with its own result.
     pub items: Vec<Item<V, M>>,
-    /// How many of them were asked for: the table ends with these.
+    /// Number of requested items; the table has only these.
     #[serde(skip)]
     asked: usize,
     #[serde(skip)]
@@ -107,13 +107,13 @@ impl<V, M> Items<V, M> {
         Self { asked: items.len(), items, columns }
     }
 
-    /// The same where the controller was asked only for the first ones, as the others would fail alike.
+    /// Sets the number of items that were requested, if the others were not read because they would fail alike.
     #[must_use]
     pub fn asked(self, asked: usize) -> Self {
         Self { asked, ..self }
     }
 
-    /// Fails where there is a single item and it was not read: there is no report then.
+    /// The failure, if there is only one item and it was not read.
     pub fn or_only_failure(self) -> Result<Self, Failure> {
         match &self.items[..] {
             [Item { error: Some(error), .. }] => Err(error.failure()),
@@ -121,13 +121,13 @@ impl<V, M> Items<V, M> {
         }
     }
 
-    /// Why items were not read.
+    /// Errors of items that were not read.
     pub fn errors(&self) -> impl Iterator<Item = &ItemError> {
         self.items.iter().filter_map(|item| item.error.as_ref())
     }
 }
 
-/// A table of items: name, label, cells, and an error where one failed.
+/// Table of items: name, label, cells, and errors.
 fn table<'i, V: 'i, M: 'i>(
     Columns { name, values, empty }: &Columns,
     items: impl Iterator<Item = &'i Item<V, M>> + Clone,
@@ -145,7 +145,7 @@ fn table<'i, V: 'i, M: 'i>(
     Table { rows: items.map(row).collect(), columns, empty }.without_blank("label")
 }
 
-/// A name, to the right where it is a number.
+/// Name cell, right-aligned if it is a number.
 fn numeric(name: &str) -> Cell {
     if name.bytes().all(|byte| byte.is_ascii_digit()) { Cell::number(name) } else { name.into() }
 }
@@ -159,7 +159,7 @@ impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for Items<V, M
         let failure = verdict(self.items.len(), self.errors())?;
         Some(match self.items.len() - self.asked.min(self.items.len()) {
             0 => failure,
-            rest => Failure { message: format!("{}; {rest} were not asked for", failure.message), ..failure },
+            rest => Failure { message: format!("{}; {rest} were not read", failure.message), ..failure },
         })
     }
 
@@ -168,24 +168,24 @@ impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for Items<V, M
     }
 }
 
-/// One thing that a command wrote.
+/// An item that was written.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Written<V, M = Plain> {
-    /// The item with what it holds now.
+    /// Item with its new value.
     #[serde(flatten)]
     pub item: Item<V, M>,
-    /// What it held; null where that is not known, or was not defined.
+    /// Old value; null if it is unknown or was undefined.
     pub old: Option<V>,
-    /// What it holds now; null where that is not known.
+    /// New value; null if it is unknown.
     pub new: Option<V>,
-    /// Whether it was written; false where it held that already, or the write failed.
+    /// Whether it was written; false if the value was equal, or after a failure.
     pub written: bool,
 }
 
-/// Things that a command wrote.
+/// Items that were written.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WrittenItems<V, M = Plain> {
-    /// Each answers for itself.
+    /// Items, each with its own result.
     pub items: Vec<Written<V, M>>,
     #[serde(skip)]
     words: Option<String>,
@@ -194,19 +194,19 @@ pub struct WrittenItems<V, M = Plain> {
 }
 
 impl<V, M> WrittenItems<V, M> {
-    /// What was written, with the headings of a table.
+    /// Report with a table.
     pub fn new(columns: Columns, items: Vec<Written<V, M>>) -> Self {
         Self { items, words: None, columns }
     }
 
-    /// What was written, said in a sentence.
+    /// Report with a sentence.
     pub fn said(words: impl Into<String>, items: Vec<Written<V, M>>) -> Self {
         Self { items, words: Some(words.into()), columns: Columns::default() }
     }
 }
 
 impl<V, M> WrittenItems<V, M> {
-    /// Fails where there is a single item and it was not written: there is no report then.
+    /// The failure, if there is only one item and it was not written.
     pub fn or_only_failure(self) -> Result<Self, Failure> {
         match &self.items[..] {
             [Written { item: Item { error: Some(error), .. }, .. }] => Err(error.failure()),
@@ -216,7 +216,7 @@ impl<V, M> WrittenItems<V, M> {
 }
 
 impl<V: Clone, M> Written<V, M> {
-    /// An item that now holds `new`.
+    /// Item with the new value.
     pub fn new(item: Item<V, M>, old: Option<V>, written: bool) -> Self {
         let new = item.value.clone();
         Self { item, old, new, written }

@@ -1,4 +1,4 @@
-//! What every robot has, whatever its family: one type a concept. JSON, schemas, CSV and tables of all families follow.
+//! Data types common to all families: one type per concept. JSON, schemas, CSV and tables follow from them.
 
 pub mod alarm;
 pub mod io;

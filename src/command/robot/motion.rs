@@ -1,41 +1,42 @@
-//! Motions: the same keys in what moves, jogs, homes and runs to a point report in every family.
+//! Motions: common keys of the reports of moves, jogs, homing and runs to a point in every family.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::position::Position;
 
-/// A motion. Null: the protocol does not report it, it does not follow from the order, or nobody waited for the end.
+/// A motion. Null means that the protocol does not report it, that it does not follow from the command, or that the
+/// command did not wait.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Motion {
-    /// Whether the controller took the order.
+    /// Whether the controller accepted the command.
     pub accepted: bool,
-    /// What moves: `R1` (yerc), `unit 1` (yrcx, toyo).
+    /// Moving group: `R1` (yerc), `unit 1` (yrcx, toyo).
     pub group: Option<String>,
-    /// Where it started.
+    /// Start position.
     pub from: Option<Position>,
-    /// The target.
+    /// Target position.
     pub to: Option<Position>,
-    /// Axes that were named, with their own targets.
+    /// Named axes with their targets.
     pub targets: Vec<Target>,
-    /// The speed that was ordered.
+    /// Commanded speed.
     pub speed: Option<Speed>,
     /// Whether the target is reached.
     pub reached: Option<bool>,
-    /// Where it stands at the end.
+    /// Position at the end.
     pub position: Option<Position>,
-    /// From the acceptance to the end.
+    /// Time in ms from acceptance to the end.
     pub elapsed_ms: Option<u64>,
 }
 
 /// The target of one axis.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Target {
-    /// Its name, or its number.
+    /// Axis name or number.
     pub axis: String,
-    /// Where it started.
+    /// Start position.
     pub from: Option<f64>,
-    /// Where it moves to, or by how much.
+    /// Target position, or distance.
     pub to: Option<f64>,
     /// `mm`, `deg` or `pulses`.
     pub unit: &'static str,
@@ -44,7 +45,7 @@ pub struct Target {
 /// A speed with its unit.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Speed {
-    /// The number.
+    /// Value.
     pub value: f64,
     /// `%`, `mm/s` or `deg/s`.
     pub unit: &'static str,

@@ -1,4 +1,4 @@
-//! Positions: the same keys in `position` of every family, in `armctl position`, motions and taught points.
+//! Positions: common keys of `position` in every family, `armctl position`, motions and taught points.
 
 use std::fmt::Write as _;
 
@@ -12,12 +12,13 @@ use crate::command::frame::plot::{Past, Plot};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, Table, View};
 
-/// A position of a robot in one frame. Null: the frame has no such coordinate, or the protocol does not report it.
+/// A position of a robot in one frame. Null means that the frame has no such coordinate, or that the protocol does
+/// not report it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Position {
-    /// What has this position: `R1` (yerc), `unit 1` (yrcx, toyo); null for a stored point.
+    /// Group: `R1` (yerc), `unit 1` (yrcx, toyo); null for a stored point.
     pub group: Option<String>,
-    /// Frame of the coordinates: `base`, `robot`, `user 2`, `tool`; `joint` for positions of the axes alone.
+    /// Frame of the coordinates: `base`, `robot`, `user 2`, `tool`; `joint` if there are only axes.
     pub frame: String,
     /// X.
     pub x_mm: Option<f64>,
@@ -33,52 +34,52 @@ pub struct Position {
     pub rz_deg: Option<f64>,
     /// Angle of a seventh axis.
     pub re_deg: Option<f64>,
-    /// By axis, in the order of the controller.
+    /// Axes in the order of the controller.
     #[schemars(length(max = 8))]
     pub joints: Vec<Joint>,
-    /// Number of the tool.
+    /// Tool number.
     pub tool: Option<u32>,
-    /// Number of the user frame.
+    /// User frame number.
     pub user_frame: Option<u32>,
-    /// How the arm reaches the position, as it can be typed: `front+upper+flip` (yerc), `right` (yrcx).
+    /// Arm form in typed notation: `front+upper+flip` (yerc), `right` (yrcx).
     pub form: Option<String>,
-    /// Further words of the form (yerc), as `--extended-form` takes them.
+    /// Extended form (yerc), in the notation of `--extended-form`.
     pub extended_form: Option<String>,
-    /// The position as it can be typed.
+    /// Position in typed notation.
     pub text: Option<String>,
 }
 
-/// Where an axis stands.
+/// Position of an axis.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Joint {
-    /// The name that the teach pendant shows, or the number.
+    /// Name on the teach pendant, or number.
     pub axis: String,
-    /// Pulses of its encoder.
+    /// Encoder pulses.
     pub pulses: Option<i32>,
     /// Degrees.
     pub degrees: Option<f64>,
-    /// Millimetres; of a YRCX or Toyo axis that turns, its degrees.
+    /// Millimetres; degrees for a rotary axis of a YRCX or Toyo.
     pub mm: Option<f64>,
-    /// Decimals of the millimetres that the controller has.
+    /// Number of decimals of the controller.
     #[serde(skip)]
     pub decimals: usize,
 }
 
 impl Position {
-    /// A position of the axes in millimetres.
+    /// Position of the axes in millimetres.
     pub fn of_axes(names: [String; 4], mm: [f64; 4], decimals: usize) -> Self {
         let joints =
             names.into_iter().zip(mm).map(|(axis, mm)| Joint { axis, mm: Some(mm), decimals, ..Joint::default() });
         Self { frame: "base".to_owned(), joints: joints.collect(), ..Self::default() }
     }
 
-    /// The same of a robot.
+    /// Adds the group.
     #[must_use]
     pub fn of_group(self, group: impl Into<String>) -> Self {
         Self { group: Some(group.into()), ..self }
     }
 
-    /// Coordinates that there are: name, value, unit, decimals.
+    /// Existing coordinates: name, value, unit, decimals.
     fn coordinates(&self) -> impl Iterator<Item = (&'static str, f64, &'static str, usize)> {
         let mm = [("X", self.x_mm), ("Y", self.y_mm), ("Z", self.z_mm)].map(|(name, mm)| (name, mm, "mm", 3));
         let degrees = [("Rx", self.rx_deg), ("Ry", self.ry_deg), ("Rz", self.rz_deg), ("Re", self.re_deg)];
@@ -87,7 +88,7 @@ impl Position {
         all.filter_map(|(name, value, unit, decimals)| Some((name, value?, unit, decimals)))
     }
 
-    /// All values: name, unit, decimals, value. Axes where there are any, as they say the same.
+    /// All values: name, unit, decimals, value. Axes have priority, because they are equivalent.
     fn values(&self) -> Vec<(String, &'static str, usize, f64)> {
         let joint = |joint: &Joint| {
             let (value, unit, decimals) = match (joint.mm, joint.pulses) {
@@ -103,7 +104,7 @@ impl Position {
         self.joints.iter().filter_map(joint).collect()
     }
 
-    /// In a line: `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0 pulses`.
+    /// One line: `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0 pulses`.
     pub fn line(&self) -> String {
         let mut line = String::new();
         let values = self.values();
@@ -122,7 +123,7 @@ impl Position {
         line
     }
 
-    /// Name, value and unit of everything but the axes.
+    /// Rows with name, value and unit of everything except the axes.
     fn coordinate_rows(&self) -> Vec<Vec<Cell>> {
         let number = |(name, value, unit, decimals): (&'static str, f64, &'static str, usize)| {
             vec![name.into(), Cell::number(format!("{value:.decimals$}")), unit.into()]
@@ -137,7 +138,7 @@ impl Position {
 }
 
 impl Joint {
-    /// The value in the unit that it has: millimetres, or pulses.
+    /// Value in its unit: millimetres, or pulses.
     pub fn cell(&self) -> Cell {
         let Self { decimals, .. } = self;
         match (self.mm, self.pulses) {
@@ -147,7 +148,7 @@ impl Joint {
     }
 }
 
-/// A row an axis, with the columns that any of them has.
+/// Table with one row per axis and only the columns that have a value.
 pub fn joint_table(joints: &[Joint]) -> Table {
     let has = |value: fn(&Joint) -> bool| joints.iter().any(value);
     let (pulses, degrees) = (has(|joint| joint.pulses.is_some()), has(|joint| joint.degrees.is_some()));
@@ -161,25 +162,25 @@ pub fn joint_table(joints: &[Joint]) -> Table {
         row.extend(degrees);
         row
     };
-    Table { columns, rows: joints.iter().map(row).collect(), empty: "the controller reported no axis" }
+    Table { columns, rows: joints.iter().map(row).collect(), empty: "no axes" }
 }
 
-/// A position that was read, or why it was not.
+/// A position, or the reason why it was not read.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Row {
-    /// Group and frame stand also where the rest was not read.
+    /// Position; group and frame are present even if it was not read.
     #[serde(flatten)]
     pub position: Position,
     /// Whether it was read.
     ok: bool,
-    /// Why not.
+    /// Reason why it was not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
 }
 
 impl Row {
-    /// The position of a group in a frame.
+    /// Position of a group in a frame.
     pub fn new(group: &str, frame: &str, outcome: Result<Position, Failure>) -> Self {
         match outcome {
             Ok(position) => Self { position: position.of_group(group), ok: true, error: None },
@@ -192,22 +193,22 @@ impl Row {
     }
 }
 
-/// Where a robot stands: a row for each group and frame.
+/// Positions of a robot: one row per group and frame.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Positions {
-    /// Each group in each frame that was asked for.
+    /// Each group in each requested frame.
     pub positions: Vec<Row>,
     #[serde(skip)]
     plot: Option<Plot>,
 }
 
 impl Positions {
-    /// Of rows.
+    /// Report of these rows.
     pub fn new(positions: Vec<Row>) -> Self {
         Self { positions, plot: None }
     }
 
-    /// A single position that was read.
+    /// Report of a single position.
     pub fn one(group: &str, position: Position) -> Self {
         Self::new(vec![Row::new(group, "", Ok(position))])
     }
@@ -217,12 +218,12 @@ impl Positions {
         self.positions.iter().filter(|row| row.ok).map(|row| &row.position)
     }
 
-    /// Why others were not.
+    /// Errors of positions that were not read.
     pub fn errors(&self) -> impl Iterator<Item = &ItemError> {
         self.positions.iter().filter_map(|row| row.error.as_ref())
     }
 
-    /// Shows a chart over the rounds so far in place of the table, if one is asked for: of coordinates before axes.
+    /// Replaces the table by a chart of the rounds so far, if requested; coordinates have priority over axes.
     #[must_use]
     pub fn plotted(self, is_asked: bool, past: &Past) -> Self {
         let has_coordinates = |position: &&Position| position.joints.is_empty();
@@ -231,14 +232,14 @@ impl Positions {
         Self { plot, ..self }
     }
 
-    /// In a line for messages and fields.
+    /// One line for messages and fields.
     pub fn line(&self) -> String {
         self.read().map(Position::line).collect::<Vec<_>>().join(", ")
     }
 
-    /// Axes on the left, coordinates on the right.
+    /// Table with axes on the left and coordinates on the right.
     fn table(&self) -> Table {
-        // Coordinates of a position that has axes are the same as those of its axes.
+        // Coordinates and axes of the same position are equivalent.
         let joints = self.read().find(|position| !position.joints.is_empty());
         let coordinates = self.read().find(|position| position.joints.is_empty());
         let left = joint_table(joints.map_or(&[], |position| &position.joints));
@@ -256,7 +257,7 @@ impl Positions {
             row.resize(width, "".into());
             row
         });
-        Table { columns, rows: rows.collect(), empty: "the controller answered no axis" }
+        Table { columns, rows: rows.collect(), empty: "no axes" }
     }
 }
 
@@ -286,7 +287,7 @@ impl Report for Positions {
     }
 }
 
-/// Where a robot of any family stands.
+/// Positions of a robot of any family.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct AllPositions {
     /// Each group in each frame.
@@ -294,7 +295,7 @@ pub struct AllPositions {
 }
 
 impl Report for AllPositions {
-    /// A table, to stand among those of other robots.
+    /// Table for several robots.
     fn view(&self) -> View {
         let mut table = Table::new(&["group", "frame", "position"], "no position");
         for Row { position, error, .. } in &self.positions {

@@ -1,4 +1,4 @@
-//! Programs and jobs: the same keys in what starts, waits for and shows them in every family.
+//! Programs and jobs: the report keys that all families share.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -7,43 +7,43 @@ use super::item::Plain;
 use crate::command::frame::cycle::Cycle;
 use crate::output::view::{Cell, Tone};
 
-/// A program or job. Null: the protocol does not report it, or nobody waited for the end.
+/// A program or job. A field is null if the protocol does not report it, or without a wait for the end.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Program<M = Plain> {
-    /// Its name; its number where it has no name.
+    /// Name, or number if there is no name.
     pub program: Option<String>,
-    /// The line at which it stands.
+    /// Current line.
     pub line: Option<i64>,
-    /// The step at which it stands.
+    /// Current step.
     pub step: Option<i64>,
-    /// What it does.
+    /// State.
     pub state: Option<ProgramState>,
-    /// From the acceptance of the start to the end, of the last run if there were several.
+    /// Duration of the last run in ms, from the acceptance of the start to the end.
     pub elapsed_ms: Option<u64>,
-    /// How long each of several runs took.
+    /// Times of repeated runs.
     #[serde(flatten)]
     pub cycle: Cycle,
-    /// What the family adds.
+    /// Family-specific fields.
     #[serde(flatten)]
     pub more: M,
 }
 
-/// What a program does.
+/// State of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ProgramState {
-    /// It stands, and has not begun or was reset.
+    /// Not started, or reset.
     Stopped,
-    /// It runs.
+    /// Running.
     Running,
-    /// It stands in the middle and can continue.
+    /// Stopped before its end; it can continue.
     Held,
-    /// It has reached its end.
+    /// At its end.
     Ended,
 }
 
 impl ProgramState {
-    /// As a table shows it.
+    /// Cell of a table.
     pub fn cell(self) -> Cell {
         match self {
             Self::Stopped => "stopped".into(),
@@ -55,7 +55,7 @@ impl ProgramState {
 }
 
 impl<M> Program<M> {
-    /// What a table shows; `more` are the rows of the family, before the times.
+    /// Rows of a table; `more` are the rows of the family, before the times.
     pub fn fields(&self, more: Vec<(&'static str, Cell)>) -> Vec<(&'static str, Cell)> {
         let known = [("line", self.line.map(Cell::from)), ("step", self.step.map(Cell::from))];
         let known = known.into_iter().filter_map(|(name, cell)| Some((name, cell?)));

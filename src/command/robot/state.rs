@@ -1,4 +1,4 @@
-//! How a robot stands: the same keys in the status of every family, in `armctl status`, `top`, metrics and topics.
+//! Robot state: common keys of the status in every family, `armctl status`, `top`, metrics and topics.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -7,53 +7,54 @@ use crate::command::robot::alarm::Alarm;
 use crate::failure::Failure;
 use crate::settings::{Robot, alarms};
 
-/// What is the same of every robot. Null: the protocol does not tell, or it was not asked.
+/// State that is common to all robots. Null means that the protocol does not report it, or that it was not read.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct State {
-    /// Where it is false, all that follows is null.
+    /// Whether the robot answers; if false, all following fields are null.
     pub reachable: bool,
-    /// Who moves the robot (ISO 10218): a person, or its program.
+    /// Operating mode (ISO 10218): manual or automatic.
     pub mode: Option<Mode>,
-    /// The controller's own word: `teach`, `play` (yerc); `auto`, `manual` (yrcx); `automatic`, `step`, `program` (toyo).
+    /// Mode in the terms of the controller: `teach`, `play` (yerc); `auto`, `manual` (yrcx); `automatic`, `step`,
+    /// `program` (toyo).
     pub controller_mode: Option<&'static str>,
     /// Servo power, or motor power.
     pub servo_on: Option<bool>,
-    /// A job or program runs, or an axis moves.
+    /// A job or program is running, or an axis is moving.
     pub running: Option<bool>,
     /// Held or paused.
     pub held: Option<bool>,
-    /// The origin is known.
+    /// Origin known.
     pub homed: Option<bool>,
-    /// In emergency stop.
+    /// Emergency stop.
     pub emergency_stop: Option<bool>,
-    /// What is wrong.
+    /// Fault.
     #[serde(flatten)]
     pub fault: Fault,
-    /// The program or job that is selected or runs.
+    /// Selected or running program or job.
     pub program: Option<String>,
-    /// Of all speeds.
+    /// Override of all speeds, in percent.
     pub speed_override_percent: Option<f64>,
-    /// The first robot in base coordinates.
+    /// Position of the first robot in base coordinates.
     pub position: Option<PositionMm>,
 }
 
-/// Who moves the robot (ISO 10218-1).
+/// Operating mode (ISO 10218-1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// A person: teaching, jogging, single steps.
+    /// Motion by a person: teaching, jogging, single steps.
     Manual,
-    /// A program.
+    /// Motion by a program.
     Automatic,
 }
 
 impl Mode {
-    /// Automatic or not.
+    /// Mode from a flag.
     pub const fn automatic(is_so: bool) -> Self {
         if is_so { Self::Automatic } else { Self::Manual }
     }
 
-    /// As JSON has it.
+    /// Name in JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Manual => "manual",
@@ -62,19 +63,20 @@ impl Mode {
     }
 }
 
-/// What is wrong with a controller.
+/// Fault of a controller.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Fault {
-    /// Whether an alarm or error is present; null if that is not known.
+    /// Whether an alarm or error is present; null if unknown.
     pub faulted: Option<bool>,
-    /// Its code as the controller writes it, such as `4315`, `12.600` or `28`; null without one, or where it was not told.
+    /// Code in the notation of the controller, such as `4315`, `12.600` or `28`; null if there is none or it was not
+    /// read.
     pub fault_code: Option<String>,
-    /// What it says, or what `alarms.toml` has for the code; null like the code.
+    /// Text of the controller, or of `alarms.toml` for the code; null if there is no code.
     pub fault_text: Option<String>,
 }
 
 impl Fault {
-    /// Whether there is one, and the first of those that are present, where it was told.
+    /// Fault from its presence and the first present alarm, if read.
     pub fn new(is_present: bool, first: Option<&Alarm>) -> Self {
         let first = first.filter(|_| is_present);
         Self {
@@ -84,7 +86,7 @@ impl Fault {
         }
     }
 
-    /// Takes the text that the operator's `alarms.toml` has for the code, if it has one.
+    /// Replaces the text by that of the operator's `alarms.toml`, if it has one for the code.
     pub fn explain(&mut self, robot: &Robot) -> Result<(), Failure> {
         if let Some(code) = &self.fault_code
             && let Some(explained) = alarms::find(robot, code)?
@@ -94,7 +96,7 @@ impl Fault {
         Ok(())
     }
 
-    /// Code and text, as far as they are known.
+    /// Code and text, as far as known.
     pub fn describe(&self) -> Option<String> {
         let parts = [&self.fault_code, &self.fault_text];
         let told = parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ");
@@ -102,7 +104,7 @@ impl Fault {
     }
 }
 
-/// A place in base coordinates.
+/// Position in base coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct PositionMm {
     /// X.
@@ -114,7 +116,7 @@ pub struct PositionMm {
 }
 
 impl PositionMm {
-    /// Of a robot whose axes 1, 2 and 3 are X, Y and Z.
+    /// Position of a robot whose axes 1, 2 and 3 are X, Y and Z.
     pub fn of_axes([x_mm, y_mm, z_mm, _]: [f64; 4]) -> Self {
         Self { x_mm, y_mm, z_mm }
     }

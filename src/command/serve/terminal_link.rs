@@ -1,11 +1,11 @@
-//! A name for the pseudo-terminal of a simulator.
+//! Symbolic link to the pseudo-terminal of a simulator.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
-/// A symbolic link to the pseudo-terminal, as long as it is served.
+/// Symbolic link to the pseudo-terminal, removed at the end.
 #[derive(Debug)]
 pub struct TerminalLink {
     name: PathBuf,
@@ -13,12 +13,12 @@ pub struct TerminalLink {
 }
 
 impl TerminalLink {
-    /// Makes it. One that leads nowhere, of a simulator that was killed, is replaced; anything else is left alone.
+    /// Creates the link. A dangling link of a killed simulator is replaced; any other file is not changed.
     pub fn make(name: &Path, leads_to: &str) -> Result<Self, Failure> {
         let failed = |error: io::Error| {
             let failure = Failure::io(name.display(), &error);
             match error.kind() {
-                io::ErrorKind::AlreadyExists => failure.hint("remove it, or choose another name for --link"),
+                io::ErrorKind::AlreadyExists => failure.hint("remove it, or use another name for --link"),
                 _ => failure,
             }
         };
@@ -31,7 +31,7 @@ impl TerminalLink {
         Ok(Self { name, leads_to })
     }
 
-    /// Its path.
+    /// Path of the link.
     pub fn name(&self) -> &Path {
         &self.name
     }
@@ -39,7 +39,7 @@ impl TerminalLink {
 
 impl Drop for TerminalLink {
     fn drop(&mut self) {
-        // Somebody else's is left alone; what cannot be removed is replaced the next time.
+        // A link of another process stays; a link that cannot be removed is replaced at the next start.
         if std::fs::read_link(&self.name).is_ok_and(|leads_to| leads_to == self.leads_to) {
             std::fs::remove_file(&self.name).unwrap_or_default();
         }

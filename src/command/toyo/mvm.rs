@@ -216,8 +216,8 @@ impl Writable for Groups {
     fn draft(&self, _group: i32, texts: &[Option<&str>]) -> Result<Vec<Changes>, String> {
         let (mut sheets, mut texts) = (Vec::new(), texts.iter());
         for (index, (_, columns)) in SHEETS.iter().enumerate() {
-            let values = sheet(index).body().fields.iter().zip(*columns).zip(texts.by_ref());
-            let read = |((field, column), text): ((&field::Field, &Field), &Option<&str>)| {
+            let values = sheet(index).body().fields.iter().zip(*columns).zip(texts.by_ref().copied());
+            let read = |((field, column), text): ((&field::Field, &Field), Option<&str>)| {
                 text.map(|text| word(&named(field, column), text)).transpose()
             };
             sheets.push(Changes::of(values.map(read).collect::<Result<_, _>>()?));

@@ -106,7 +106,7 @@ mod tests {
         assert_eq!(Numbers::of(&given, field()), [7, 2, 3, 4, 5]);
         assert_eq!(Numbers::of(&[], field()).len(), 99);
         assert_eq!(parse("100").unwrap_err(), "counter: 100 is out of range (a number, 1 to 99)");
-        assert_eq!(parse("5-2").unwrap_err(), "the range ends before it begins; did you mean 2-5?");
+        assert_eq!(parse("5-2").unwrap_err(), "the end of the range is before its start; did you mean 2-5?");
         assert!(parse("0-3").is_err() && parse("x").is_err() && parse("").is_err() && parse("-3").is_err());
     }
 }

@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn what_can_be_no_block_is_rejected() {
-        assert!(objection(&["raw", "STAS"]).contains("begins with @"));
+        assert!(objection(&["raw", "STAS"]).contains("begin with @"));
         assert!(objection(&["raw", "@STAS\tSNO=0"]).contains("column 6"));
         assert!(objection(&["raw", &format!("@{}", "A".repeat(126))]).contains("128"));
         assert!(objection(&["raw", "@HSON\r\n"]).contains("line end"));

@@ -28,9 +28,9 @@ commands! {
     pub enum Alarm {
         /// Present alarms
         List(List),
-        /// Alarm history, the latest of each class first
+        /// Alarm history, latest entries of each class first
         History(History),
-        /// Print alarms as they come and go
+        /// Print alarms when they occur and when they clear
         Watch(Watch<List>),
         /// Reset the alarm
         Reset(Reset),
@@ -39,15 +39,15 @@ commands! {
     }
 }
 
-/// The alarms that are present, at most four (FS and DX 3.3.1, 3.3.37).
+/// Present alarms, at most four (FS and DX 3.3.1, 3.3.37).
 #[derive(Debug, Args)]
 pub struct List {
-    /// Ask for codes and names only, as older controllers know them (0x70 instead of 0x30A)
+    /// Read only codes and names, for older controllers (0x70 instead of 0x30A)
     #[arg(long)]
     no_texts: bool,
 }
 
-/// Alarms that can be present at a time.
+/// Maximum number of present alarms.
 pub(super) const SLOTS: u8 = 4;
 
 impl Command for List {
@@ -64,7 +64,7 @@ impl Command for List {
         let mut alarms = Vec::new();
         let mut round = Round::default();
         for slot in 1..=SLOTS {
-            // A gap between slots is not described, so all four are read.
+            // The manual does not describe gaps between slots, so all four slots are read.
             let outcome = match read(link, &mut round, &mut texts, |texts| question(slot, texts)).await? {
                 Ok(alarm) if alarm.is_none() => continue,
                 Ok(alarm) => explained(entry(&alarm, link.encoding, link.model_to_show()), context.robot, link).await,
@@ -84,16 +84,16 @@ impl Watchable for List {
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
-/// The lists of past alarms.
+/// Classes of past alarms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Class {
     /// Major failures
     Major,
     /// Monitor alarms
     Monitor,
-    /// User alarms of the system
+    /// System-defined user alarms
     System,
-    /// User alarms of the user
+    /// User-defined user alarms
     User,
     /// Off-line alarms
     Offline,
@@ -101,7 +101,7 @@ enum Class {
     All,
 }
 
-/// Every class with its name in JSON, in the order of the manual.
+/// Every class with its JSON name, in the order of the manual.
 const CLASSES: [(Class, query::AlarmClass, &str); 5] = [
     (Class::Major, query::AlarmClass::Major, "major"),
     (Class::Monitor, query::AlarmClass::Monitor, "monitor"),
@@ -110,24 +110,24 @@ const CLASSES: [(Class, query::AlarmClass, &str); 5] = [
     (Class::Offline, query::AlarmClass::OffLine, "offline"),
 ];
 
-/// The alarms of the past (FS and DX 3.3.2, 3.3.38).
+/// Past alarms (FS and DX 3.3.2, 3.3.38).
 #[derive(Debug, Args)]
 pub struct History {
-    /// Which list
+    /// Alarm class
     #[arg(long, value_enum, default_value = "all")]
     class: Class,
-    /// The first entry of each list, 1 being the latest
+    /// First entry of each list; 1 is the latest
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = within::<u8>(1, 100))]
     from: u8,
     /// At most N entries of each list
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = within::<u8>(1, 100))]
     limit: u8,
-    /// Ask for codes and names only, as older controllers know them (0x71 instead of 0x30B)
+    /// Read only codes and names, for older controllers (0x71 instead of 0x30B)
     #[arg(long)]
     no_texts: bool,
 }
 
-/// Entries of a list.
+/// Last entry of a list.
 const LAST: u8 = 100;
 
 impl Command for History {
@@ -168,8 +168,8 @@ impl Command for History {
     }
 }
 
-/// The alarms in the first `slots` slots, for a live view. `texts` goes off where the controller shows that it has none.
-/// An alarm that cannot be read hides no other.
+/// Alarms in the first `slots` slots, for a live view. `texts` is cleared if the controller has no texts. An alarm
+/// that cannot be read does not hide the others.
 pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<alarm::Alarm>, Failure> {
     let mut alarms = Vec::new();
     let mut round = Round::default();
@@ -195,24 +195,28 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
     Ok(alarms)
 }
 
-/// Notes in a dry run what is asked where there is an alarm.
+/// Notes in a dry run the request for the latest alarm.
 pub(super) fn plan_latest(link: &mut Link) -> Result<(), Failure> {
     let request = ReadAlarm::new(1, true).map_err(usage)?.request();
-    link.plan_if(&request, Reason::about("the latest alarm").depending_on("whether there is one"));
+    link.plan_if(&request, Reason::about("the latest alarm").depending_on("whether an alarm is present"));
     Ok(())
 }
 
-/// Notes in a dry run all questions, and the first one of those that an older controller is asked instead.
+/// Notes in a dry run all requests, and the first fallback request for an older controller.
 fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<(), Failure> {
     let noted = link.plan_all(all);
     if texts && link.is_dry() {
-        let about = "without texts, if the controller has none: from there on all are asked so";
-        link.plan_if(&older.request(), Reason::about(about).depending_on("whether the request before is refused"));
+        let about = "without texts, if the controller has none; all later requests are then without texts";
+        link.plan_if(
+            &older.request(),
+            Reason::about(about).depending_on("whether the controller refuses the previous request"),
+        );
     }
     noted
 }
 
-/// Reads an alarm with its texts; without, as soon as the controller has shown that it may not know the command.
+/// Reads an alarm with its texts, or without texts after the controller has indicated that it does not support the
+/// command.
 async fn read<Q: Query<Answer = payload::Alarm>>(
     link: &mut Link,
     round: &mut Round,
@@ -228,8 +232,9 @@ async fn read<Q: Query<Answer = payload::Alarm>>(
     link.ask_in(round, &question(false)?).await
 }
 
-/// How a controller before FS1.14 may say that it has no 0x30A. None prints it, so every way to say "no such thing" leads
-/// to the older command: a status of its own, or "command error", "undefined command", instance or attribute.
+/// Whether a status can mean that a controller before FS1.14 does not have 0x30A. The manuals do not define the
+/// status, so each of these selects the older command: "command error", "undefined command", undefined instance or
+/// attribute.
 fn may_be_unknown(status: Status) -> bool {
     matches!(status.code, 0x01 | 0x08 | 0x09 | 0x28)
         || (status.added_size > 0 && matches!(status.added & 0xFFFF, 0x1010 | 0xA000..=0xA002))
@@ -261,11 +266,11 @@ macro_rules! order {
 order! {
     /// Resets the alarm (FS and DX 3.3.19).
     Reset, "yerc.alarm.reset", query::ResetAlarm, "alarm" = "reset",
-    "alarm reset accepted; `yerc alarm list` shows what is left"
+    "alarm reset accepted; `yerc alarm list` shows the remaining alarms"
 }
 order! {
     /// Cancels the error (FS and DX 3.3.19).
-    Cancel, "yerc.alarm.cancel", query::CancelError, "error" = "cancelled", "the error is cancelled"
+    Cancel, "yerc.alarm.cancel", query::CancelError, "error" = "cancelled", "error cancelled"
 }
 
 #[cfg(test)]
@@ -286,7 +291,7 @@ mod tests {
 
     #[test]
     fn history_asks_each_class_from_a_number_on() {
-        // 0x71 user alarm (user) 100 is instance 3100 (golden frame R05 asks one field of it).
+        // 0x71 user alarm (user) 100 is instance 3100 (golden frame R05 reads one field of it).
         assert_eq!(
             frames("alarm history --class user --from 99 --limit 5 --no-texts").unwrap(),
             ["71001b0c00010000", "71001c0c00010000"]

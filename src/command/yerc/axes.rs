@@ -1,4 +1,4 @@
-//! `yerc axes`, `yerc position-error`, `yerc torque`: what belongs to each axis.
+//! `yerc axes`, `yerc position-error`, `yerc torque`: data per axis.
 
 use std::fmt;
 use std::str::FromStr;
@@ -23,12 +23,12 @@ use crate::controller::yerc::query::{Coordinates, ReadAxes, ReadPositionError, R
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
 
-/// One control group or all that the controller has.
+/// One control group, or all groups of the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Groups {
-    /// This one.
+    /// One group.
     One(Group),
-    /// Those that exist.
+    /// All existing groups.
     All,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn groups_of(model: Model) -> impl Iterator<Item = Group> {
 /// The names of the axes (FS and DX 3.3.5).
 #[derive(Debug, Args)]
 pub struct AxesOf {
-    /// Control group: R1 …, B1 …, S1 …, or all that exist
+    /// Control group: R1 …, B1 …, S1 …, or all
     #[arg(long, default_value_t = Groups::All)]
     group: Groups,
 }
@@ -117,7 +117,7 @@ impl Command for AxesOf {
     }
 }
 
-/// The names that are there; unused axes are empty.
+/// Names of the axes; the names of unused axes are empty.
 fn names_of(names: &AxisNames, encoding: Encoding) -> Vec<String> {
     let used = names.names.iter().filter(|name| !name.is_empty());
     used.map(|name| encoding.decode(name.as_bytes())).collect()
@@ -137,7 +137,7 @@ struct GroupAxes {
     pulse: Option<Vec<String>>,
     /// Names in cartesian coordinates; null for stations, or if the controller refused.
     base: Option<Vec<String>>,
-    /// What was refused for another reason than that it does not exist.
+    /// Refusals for other reasons than a missing group.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     errors: Vec<ItemError>,
 }
@@ -205,7 +205,7 @@ macro_rules! by_axis {
 
         impl Report for $report {
             fn view(&self) -> View {
-                let mut table = Table::new(&["axis", $column], "the controller answered no axis");
+                let mut table = Table::new(&["axis", $column], "no axes");
                 for (name, value) in self.$field.rows() {
                     table.row([name.into(), value.into()]);
                 }
@@ -216,20 +216,20 @@ macro_rules! by_axis {
 }
 
 by_axis! {
-    /// How far the axes are from where they should be (FS and DX 3.3.7).
+    /// Position deviation (following error) of the axes (FS and DX 3.3.7).
     PositionError, "yerc.position-error", ReadPositionError,
-    /// How far the axes are from where they should be.
+    /// Position deviation (following error) of the axes.
     PositionErrors {
         /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups.
         error_pulses
     }, "error (pulses)"
 }
 by_axis! {
-    /// The torque of the axes (FS and DX 3.3.8).
+    /// Torque of the axes (FS and DX 3.3.8).
     Torque, "yerc.torque", ReadTorque,
-    /// The torque of the axes.
+    /// Torque of the axes.
     Torques {
-        /// As received, by axis as in `yerc.position`: the manuals print no unit.
+        /// Raw value by axis, as in `yerc.position`; the manuals define no unit.
         torque_raw
     }, "torque (raw)"
 }

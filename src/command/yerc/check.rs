@@ -1,4 +1,4 @@
-//! The layers of a controller for `armctl robots check`.
+//! Controller layers of `armctl robots check`.
 
 use super::link::Link;
 use super::link::Yerc;
@@ -17,7 +17,7 @@ use crate::settings::names::Place;
 
 const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
 
-/// Looks at them; reads only.
+/// Checks the layers; read-only.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
     match Yerc::connect(robot, access, screen).await {
@@ -36,7 +36,7 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         Ok(status) => status,
         Err(failure) => return layers.fail("answer", &failure),
     };
-    layers.ok("answer", "it answers a status request");
+    layers.ok("answer", "answers a status request");
     match software(link).await {
         Ok(version) => layers.ok("software", version),
         Err(failure) => layers.warn("software", failure.message, failure.hint.unwrap_or_default()),
@@ -48,37 +48,38 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         "mode",
         !is_teach,
         ("play", "teach"),
-        "motion and job start want play mode: turn the mode key of the pendant",
+        "motion and job start need play mode: turn the mode key of the pendant",
     );
     layers.judge(
         "command remote",
         status.has(StatusBit::CommandRemote),
         ("on", "off"),
-        "what changes something is refused: turn the mode key to REMOTE, and CMD REMOTE (#82015) on",
+        "the controller refuses changes: turn the mode key to REMOTE and switch CMD REMOTE (#82015) on",
     );
     layers.judge(
         "hold",
         !status.held(),
         ("none", "the robot is held"),
-        "`yerc status` tells by what; `yerc hold off` releases a hold by command",
+        "`yerc status` shows the source; `yerc hold off` releases a hold by command",
     );
     if status.alarm() || status.error() {
         let what = if status.alarm() { "an alarm is present" } else { "an error is present" };
-        layers.wrong("alarm", what, "`yerc alarm list` names it, `yerc alarm reset` resets it");
+        layers.wrong("alarm", what, "see `yerc alarm list`, then reset with `yerc alarm reset`");
     } else {
         layers.ok("alarm", "none");
     }
     layers.left_over(&left_over(status));
-    // Power that nobody uses may be what somebody left; it is nothing wrong.
+    // Unused servo power may be from an earlier client. It is not a fault.
     let is_idle = !status.running() && !status.held() && !is_held(robot);
     let on =
-        if is_idle { "on; nothing runs, and no session holds it: `yerc servo off` takes power away" } else { "on" };
-    layers.judge("servo", status.servo_on(), (on, "off"), "motion wants servo power: `yerc servo on`");
+        if is_idle { "on; no job is running and no session is open: `yerc servo off` switches it off" } else { "on" };
+    layers.judge("servo", status.servo_on(), (on, "off"), "motion needs servo power: `yerc servo on`");
 }
 
-/// Which model it is taken for, and by whose word.
+/// Checks the model, and its source.
 fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
-    const NAME: &str = "name it: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME model=…`";
+    const NAME: &str = "set the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME \
+                        model=…`";
 
     let by_software = link.identity().and_then(|identity| identity.model);
     let in_words = |model: Model, by: &str| {
@@ -88,28 +89,28 @@ fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
     match (robot.model.value.named(), by_software) {
         (Some(named), Some(told)) if named != told => layers.warn(
             "model",
-            format!("named {named}, and its software is that of a {told}"),
-            "leave the model away, so that the controller is asked, or name the right one",
+            format!("set to {named}, but the software is that of a {told}"),
+            "remove the model so that armctl reads it from the controller, or set the right model",
         ),
         (Some(named), _) => layers.ok("model", in_words(named, "as named")),
         (None, Some(told)) => layers.ok("model", in_words(told, "by its software")),
         (None, None) => match link.known_model() {
-            Some(known) => layers.ok("model", in_words(known, "as it told another time")),
-            None => layers.warn("model", "it tells none that armctl knows", NAME),
+            Some(known) => layers.ok("model", in_words(known, "from an earlier connection")),
+            None => layers.warn("model", "the controller reports no known model", NAME),
         },
     }
 }
 
-/// Names that were read of the controller, where some are kept: whether they may be of another one.
+/// Checks whether stored names belong to this controller.
 fn names(robot: &Robot, link: &Link, layers: &mut Layers) {
     let Some(Ok(Some(kept))) = robot.names.place().map(Place::read) else { return };
     match link.told_software().map_or(Ok(()), |software| kept.check(&software)) {
-        Ok(()) => layers.ok("names", format!("{} kept, read on {}", kept.count(), kept.read_at.strftime("%Y-%m-%d"))),
+        Ok(()) => layers.ok("names", format!("{} stored, read on {}", kept.count(), kept.read_at.strftime("%Y-%m-%d"))),
         Err(failure) => layers.warn("names", failure.message, failure.hint.unwrap_or_default()),
     }
 }
 
-/// Asks for the version of the system software, and the name of the system.
+/// Reads the version of the system software, and the name of the system.
 pub(super) async fn software(link: &mut Link) -> Result<String, Failure> {
     let question = link.by_model(|model| ReadSystemInfo::new(model, SystemPart::Group(Group::R1))).await?;
     let encoding = link.encoding;

@@ -1,4 +1,4 @@
-//! The job that a start runs: what the question about it says, and whether it is still the same after the answer.
+//! Job that a start runs: text of the confirmation, and a check that it is unchanged after the answer.
 
 use super::link::Link;
 use crate::controller::text::Encoding;
@@ -8,23 +8,23 @@ use crate::controller::yerc::query::ReadJob;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, outdated};
 
-/// The job that a start runs, as far as the controller tells it.
+/// Job that a start runs, as the controller reports it.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Chosen {
-    /// This one, at a line, with a speed override.
+    /// This job, at a line, with a speed override.
     Job(JobInfo),
-    /// None.
+    /// No job.
     None,
-    /// Why it could not be read.
+    /// Unknown; the reason for the failed read.
     Unread(String),
 }
 
 impl Chosen {
-    /// Asks what the master task would execute (FS and DX 3.3.4).
+    /// Reads the job of the master task (FS and DX 3.3.4).
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let unread = |failure: &Failure| Self::Unread(failure.message.trim_end_matches('.').to_owned());
         let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
-        match link.is_for("which job is selected").try_ask(&question).await {
+        match link.is_for("selected job").try_ask(&question).await {
             Ok(Ok(info)) if info.name.is_empty() => Ok(Self::None),
             Ok(Ok(info)) => Ok(Self::Job(info)),
             Ok(Err(refusal)) => Ok(unread(&refusal.into())),
@@ -34,7 +34,7 @@ impl Chosen {
         }
     }
 
-    /// Its name.
+    /// Name of the job.
     pub fn name(&self, encoding: Encoding) -> Option<String> {
         match self {
             Self::Job(info) => Some(encoding.decode(info.name.as_bytes())),
@@ -42,12 +42,12 @@ impl Chosen {
         }
     }
 
-    /// Whether it is the job of this name, in the bytes of the controller.
+    /// Whether it is the job with this name, in the bytes of the controller.
     pub fn is(&self, name: &[u8]) -> bool {
         matches!(self, Self::Job(info) if info.name.as_bytes() == name)
     }
 
-    /// Its speed override, in 0.01 %.
+    /// Speed override in 0.01 %.
     pub fn speed_override(&self) -> Option<u32> {
         match self {
             Self::Job(info) => Some(info.speed_override),
@@ -55,28 +55,28 @@ impl Chosen {
         }
     }
 
-    /// What the question says where another job is selected first.
+    /// Note for a command that selects another job first.
     pub fn noted(&self, change: Change, encoding: Encoding) -> Change {
         match self {
             Self::Job(info) => {
                 let percent = units::PERCENT.show_unsigned(info.speed_override);
                 let name = encoding.decode(info.name.as_bytes());
-                change.note(format!("Selected now is {name}. The speed override is {percent} %."))
+                change.note(format!("Currently selected: {name}. The speed override is {percent} %."))
             }
-            Self::None => change.note("No job is selected now."),
-            Self::Unread(why) => change.note(format!("Which job is selected now could not be read: {why}.")),
+            Self::None => change.note("Currently no job is selected."),
+            Self::Unread(why) => change.note(format!("The selected job could not be read: {why}.")),
         }
     }
 
-    /// What the question says; `times` is how often, such as ` 20 times`.
+    /// Text of the confirmation; `times` is the number of repetitions, such as ` 20 times`.
     pub fn change(&self, encoding: Encoding, times: &str) -> Change {
         let unnamed = Change::new(format!("start the selected job{times}"));
         match self {
-            Self::None => unnamed.note("The controller names no job."),
-            Self::Unread(why) => unnamed.note(format!("Which job that is could not be read: {why}.")),
+            Self::None => unnamed.note("The controller reports no job."),
+            Self::Unread(why) => unnamed.note(format!("The job name could not be read: {why}.")),
             Self::Job(info) => {
                 let name = encoding.decode(info.name.as_bytes());
-                let from = if info.line == 0 { String::new() } else { format!(" from line {} on", info.line) };
+                let from = if info.line == 0 { String::new() } else { format!(" from line {}", info.line) };
                 let percent = units::PERCENT.show_unsigned(info.speed_override);
                 Change::new(format!("start job {name}{from}{times}"))
                     .note(format!("The speed override is {percent} %."))
@@ -84,18 +84,18 @@ impl Chosen {
         }
     }
 
-    /// Refuses to start another job than the one that was asked about.
+    /// Rejects the start if the selection has changed since the question.
     pub async fn check_again(&self, link: &mut Link) -> Result<(), Failure> {
         let now = Self::ask(link).await?;
         if now == *self {
             return Ok(());
         }
         let encoding = link.encoding;
-        let shown = |chosen: &Self| chosen.name(encoding).unwrap_or_else(|| "no job that could be read".to_owned());
+        let shown = |chosen: &Self| chosen.name(encoding).unwrap_or_else(|| "an unknown job".to_owned());
         let message = match (shown(self), shown(&now)) {
             (old, new) if old == new => format!("line or speed override of {old} changed since the question"),
             (old, new) => format!("{new} is selected now, the question was about {old}"),
         };
-        Err(outdated(format!("{message}; nothing was started")))
+        Err(outdated(format!("{message}; no job was started")))
     }
 }

@@ -1,4 +1,4 @@
-//! The commands of `yerc`, as its help lists them.
+//! Commands of `yerc` in the order of its help.
 
 use super::link::Yerc;
 use super::{
@@ -8,10 +8,10 @@ use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::{Subcommands, commands};
 
 commands! {
-    /// What can be asked of an FS100, DX100, DX200 or YRC1000.
+    /// Commands for an FS100, DX100, DX200 or YRC1000.
     pub enum Commands {
         "Status and diagnosis":
-        /// Show mode, cycle, servo, hold, alarm: every status bit
+        /// Show all status bits: mode, cycle, servo, hold, alarm
         Status(status::Status),
         /// Alarms
         Alarm(Subcommands<alarm::Alarm>),
@@ -30,7 +30,7 @@ commands! {
         "Power and operation":
         /// Switch servo power
         Servo(orders::Servo),
-        /// Stop the running job and all that moves: HOLD on
+        /// Stop the running job and all motion: HOLD on
         Stop(job::Halt),
         /// Apply (on) or release (off) HOLD
         Hold(orders::Hold),
@@ -58,7 +58,7 @@ commands! {
         Backup(Backup<Yerc>),
         /// Restore a backup
         Restore(Restore<Yerc>),
-        /// Compare a backup with another one, or with the controller
+        /// Compare a backup with another backup or with the controller
         Diff(Diff<Yerc>),
         "Signals":
         /// Signals

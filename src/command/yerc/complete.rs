@@ -1,4 +1,4 @@
-//! Candidates for arguments.
+//! Completion candidates for arguments.
 
 use futures_util::FutureExt as _;
 
@@ -7,11 +7,11 @@ use crate::command::{Candidate, ValueKind};
 use crate::controller::names::Kind;
 use crate::settings::target::Family;
 
-/// A job of the controller.
+/// Job on the controller.
 pub const JOB: ValueKind = ValueKind::Asked(Family::Yerc, |robot| jobs(robot).boxed_local());
-/// A file of the controller.
+/// File on the controller.
 pub const FILE: ValueKind = ValueKind::Asked(Family::Yerc, |robot| files(robot).boxed_local());
-/// A variable by its name, or the beginning of a reference to variables: `B`.
+/// Variable by its name, or the prefix of a variable reference: `B`.
 pub const VARIABLE: ValueKind = ValueKind::Named(
     Family::Yerc,
     Named {
@@ -20,7 +20,7 @@ pub const VARIABLE: ValueKind = ValueKind::Named(
         listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).begun()).into(),
     },
 );
-/// The same with what begins its value.
+/// Variable with the start of an assignment.
 pub const VARIABLE_VALUE: ValueKind = ValueKind::Named(
     Family::Yerc,
     Named {
@@ -29,20 +29,20 @@ pub const VARIABLE_VALUE: ValueKind = ValueKind::Named(
         listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).begun()).into(),
     },
 );
-/// A signal by its name.
+/// Signal by its name.
 pub const SIGNAL: ValueKind = named(&[Kind::Signal], &[""]);
-/// The same with the state to set.
+/// Signal with the state to set.
 pub const SIGNAL_STATE: ValueKind = named(&[Kind::Signal], &["=on", "=off"]);
-/// A register by its name.
+/// Register by its name.
 pub const REGISTER: ValueKind = named(&[Kind::Register], &[""]);
-/// The same with what begins its value.
+/// Register with the start of an assignment.
 pub const REGISTER_VALUE: ValueKind = named(&[Kind::Register], &["="]);
 
 const fn named(kinds: &'static [Kind], endings: &'static [&'static str]) -> ValueKind {
     ValueKind::Named(Family::Yerc, Named { kinds, endings, listed: Vec::new })
 }
 
-/// What references to variables begin with.
+/// Prefixes of variable references.
 const VARIABLES: [(&str, &str); 8] = [
     ("B", "byte"),
     ("I", "integer, 16 bits"),
@@ -68,7 +68,7 @@ async fn files(robot: &dyn Ask) {
     }
 }
 
-/// Names and types.
+/// Names and types of files.
 async fn files_of(robot: &dyn Ask, kind: &str) -> Vec<(String, String)> {
     let data = robot.data(&["yerc", "file", "list", "--type", kind]).await;
     rows(data.as_ref(), "files").map(|file| (text(file, "name"), text(file, "type"))).collect()

@@ -1,4 +1,4 @@
-//! The ways to a controller that a robot's target names: UDP, the simulator, a session that holds one of both.
+//! Connections to the controller of a target: UDP, the simulator, or a session.
 
 use super::failure::failure;
 use super::link::Yerc;
@@ -30,13 +30,13 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
             Ok(Endpoint::Simulator { start: Box::new(start), faults })
         }
         Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {
-            let message = format!("yerc is not reached over {}:", robot.target.value.scheme());
+            let message = format!("a yerc controller cannot be reached over {}:", robot.target.value.scheme());
             Err(Failure::usage(message).hint("use udp:// or sim:"))
         }
     }
 }
 
-/// Connects in the way that a robot's target names.
+/// Connects to the controller of a target.
 pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
     let options = Options {
         model: robot.model.value.named(),
@@ -45,7 +45,7 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
         retries: robot.retries.value,
     };
     if access.dry_run {
-        // A simulator is what its start state says; of a controller no dry run asks.
+        // A dry run knows the model of a simulator from its start state, but does not ask a controller.
         let simulated = if robot.target.value.is_simulated() { endpoint(robot)?.model() } else { None };
         return Ok(Client::dry_run(Options { model: simulated.or(options.model), ..options }));
     }
@@ -59,7 +59,8 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
     }
 }
 
-/// Opens it for a session to hold. The controller is asked something first: datagrams go out to nobody, too.
+/// Opens a connection for a session. A first request checks that a controller answers, because UDP sends without a
+/// receiver as well.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<Datagrams, Failure> {
     let robot = &Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Yerc::connect(robot, access.clone(), screen).await?;

@@ -1,4 +1,4 @@
-//! `armctl decode yerc`: frames in words.
+//! `armctl decode yerc`: explanation of frames.
 
 mod capture;
 
@@ -18,26 +18,26 @@ use crate::controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
-/// Frames of the high-speed Ethernet server, as from a packet capture
+/// Decode frames of the high-speed Ethernet server
 #[derive(Debug, Args)]
 #[command(
-    after_help = "An answer does not say what it answers: give the request before it, or --command. What is not a \
-                        whole frame is explained up to the damage, and the exit code is 5.\n\nOf a capture file, \
-                        the frames are listed in the words of --trace; NUMBER and TIME are those of Wireshark. \
-                        Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
+    after_help = "An answer does not contain its command: give the request before it, or --command. A damaged frame is \
+                  explained up to the damage, and the exit code is 5.\n\nA capture file lists the frames in the same \
+                  text as --trace. NUMBER and TIME are those of Wireshark. A file without any frames is not an error. \
+                  A damaged file is decoded up to the damage, and the exit code is 1."
 )]
 pub struct Decode {
-    /// Frames in hexadecimal (blanks, colons and 0x may stand between the bytes), - for stdin with a frame a line, or
-    /// FILE.pcap or FILE.pcapng
+    /// Frames in hexadecimal (spaces, colons and 0x are allowed between the bytes), - for stdin with one frame per
+    /// line, or FILE.pcap or FILE.pcapng
     #[arg(required = true, value_name = "HEX")]
     hex: Vec<String>,
-    /// Command whose answer it is, such as 0x75
+    /// Command of the answer, such as 0x75
     #[arg(long, value_name = "N", value_parser = number)]
     command: Option<u16>,
-    /// Instance that was asked for
+    /// Instance of the request
     #[arg(long, value_name = "N", value_parser = number, requires = "command")]
     instance: Option<u16>,
-    /// Attribute that was asked for
+    /// Attribute of the request
     #[arg(long, value_name = "N", value_parser = number, requires = "command")]
     attribute: Option<u16>,
     #[command(flatten)]
@@ -45,7 +45,7 @@ pub struct Decode {
 }
 
 fn number(text: &str) -> Result<u16, String> {
-    typed::unsigned(text).ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
+    typed::unsigned(text).ok_or_else(|| "expected a number from 0 to 65535 (0x0000 to 0xFFFF)".to_owned())
 }
 
 impl decode::Decode for Decode {
@@ -68,7 +68,7 @@ impl decode::Decode for Decode {
 }
 
 impl Decode {
-    /// The frames that were given, each as its bytes.
+    /// Bytes of each given frame.
     fn frames(&self) -> Result<Vec<Vec<u8>>, Failure> {
         let wrong = |error| Failure::usage(error).hint("give bytes as 59455243… or 59 45 52 43 …");
         let mut pieces = Vec::new();
@@ -81,10 +81,10 @@ impl Decode {
             pieces = joined(parsed.map_err(wrong)?);
         }
         let frames: Vec<Vec<u8>> = pieces.iter().flat_map(|bytes| split(bytes)).collect();
-        if frames.is_empty() { Err(wrong("there are no bytes to explain".to_owned())) } else { Ok(frames) }
+        if frames.is_empty() { Err(wrong("no bytes to decode".to_owned())) } else { Ok(frames) }
     }
 
-    /// Each frame in words. An answer is explained by the request of its id before it, or else by the flags.
+    /// Decodes each frame. An answer is decoded with the earlier request of the same id, or with the options.
     fn explained(&self, frames: &[Vec<u8>]) -> DecodedFrames {
         let mut asked: Vec<(u8, Request)> = Vec::new();
         let mut explained = Vec::new();
@@ -110,7 +110,7 @@ impl Decode {
         DecodedFrames { frames: explained }
     }
 
-    /// The request that the flags speak of; its service is in the answer.
+    /// Request from the options; its service is in the answer.
     fn request(&self, answer: &[u8]) -> Option<Request> {
         let service = answer.get(SERVICE_AT)?.wrapping_sub(ANSWER_BIT);
         let attribute = match (self.attribute, service) {
@@ -127,11 +127,11 @@ impl Decode {
 pub const ID_AT: usize = 11;
 /// Offset of the service in an answer.
 const SERVICE_AT: usize = 24;
-/// How every frame begins.
+/// First bytes of every frame.
 pub const IDENTIFIER: &[u8] = b"YERC";
 
-/// Arguments that a shell took apart at blanks, put together: one that begins as a frame, or is as long as one, begins
-/// a new frame.
+/// Joins arguments that the shell separated at spaces. An argument that starts like a frame, or is as long as a
+/// frame, starts a new frame.
 fn joined(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let mut pieces: Vec<Vec<u8>> = Vec::new();
     for bytes in arguments {
@@ -144,7 +144,7 @@ fn joined(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     pieces
 }
 
-/// Frames that follow each other without a gap: each as long as it says, if another one begins there.
+/// Splits concatenated frames: each has the length in its header, if another frame starts there.
 fn split(mut bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut frames = Vec::new();
     while let Some(size) = bytes.get(6..8) {
@@ -159,24 +159,24 @@ fn split(mut bytes: &[u8]) -> Vec<Vec<u8>> {
     frames
 }
 
-/// Frames in words.
+/// Decoded frames.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct DecodedFrames {
     frames: Vec<DecodedFrame>,
 }
 
-/// A frame in words.
+/// Decoded frame.
 #[derive(Debug, Serialize, JsonSchema)]
 struct DecodedFrame {
-    /// What it is, in a line.
+    /// One-line description.
     title: String,
-    /// Manual and section, where the command is known.
+    /// Manual and section, if the command is known.
     section: Option<String>,
     /// `client` or `controller`.
     sender: &'static str,
     bytes: usize,
     fields: Vec<FieldNote>,
-    /// What is wrong with it.
+    /// Problem found in it.
     problem: Option<String>,
 }
 
@@ -195,7 +195,7 @@ impl decode::Field for FieldNote {
     const COLUMNS: &'static [&'static str] = &["offset", "size", "field", "raw", "meaning"];
     const NONE: &'static str = "no data";
 
-    /// What is long is cut; JSON has it whole.
+    /// Long values are cut; JSON has them in full.
     fn cells(&self) -> Vec<Cell> {
         const LONGEST: usize = 32;
 

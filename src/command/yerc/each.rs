@@ -1,4 +1,4 @@
-//! Several questions of one command, each with its own outcome: one refusal hides nothing that was answered.
+//! Several requests of one command, each with its own outcome. A refusal does not hide the other answers.
 
 use super::link::Link;
 use crate::client::yerc;
@@ -6,10 +6,10 @@ pub use crate::client::yerc::Round;
 use crate::controller::yerc::query::Query;
 use crate::failure::Failure;
 
-/// Why one of several questions has no answer.
+/// Reason why a request has no answer.
 pub type Denied = yerc::Denied<Failure>;
 
-/// A question's outcome.
+/// Outcome of a request.
 pub type Outcome<T> = yerc::Outcome<T, Failure>;
 
 impl From<Denied> for Failure {
@@ -17,13 +17,13 @@ impl From<Denied> for Failure {
         match denied {
             Denied::Refused(refusal) => refusal.into(),
             Denied::Failed(failure) => failure,
-            Denied::NotAsked(failure) => Failure { message: format!("not asked: {}", failure.message), ..failure },
+            Denied::NotAsked(failure) => Failure { message: format!("not read: {}", failure.message), ..failure },
         }
     }
 }
 
-/// Asks about things that may not exist and leaves out those that do not; what was refused for another reason stays. If
-/// all are refused alike, it is not about existence: the first refusal is the failure.
+/// Reads items that may not exist and omits those that do not; other refusals are kept. If all requests are refused
+/// with the same code, the cause is not a missing item: the first refusal is the failure.
 pub async fn existing<K, Q: Query + Copy>(
     link: &mut Link,
     questions: Vec<(K, Q)>,

@@ -1,4 +1,4 @@
-//! `armctl explain yerc`: status codes in words.
+//! `armctl explain yerc`: meaning of status codes.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -15,7 +15,7 @@ use crate::settings::target::Family;
 /// Status code (1 byte) or added status code (2 bytes) of an FS100, DX100, DX200 or YRC1000
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// The code in hexadecimal, as in 0x2060, 2060 or 1F
+    /// Code in hexadecimal, as in 0x2060, 2060 or 1F
     #[arg(add = ValueKind::Code(Family::Yerc))]
     code: String,
 }
@@ -30,7 +30,8 @@ impl face::Explain for Explain {
         })?;
         let number = alarm_number(&self.code);
         if number.is_some() {
-            // What is no status code of the manuals is an alarm number, as people read it on the pendant.
+            // A number that is not a status code in the manuals is treated as an alarm number, as shown on the
+            // pendant.
             found.retain(|explanation| explanation.known);
         }
         let mut codes: Vec<_> = found.iter().map(status_code).collect();
@@ -48,7 +49,7 @@ impl face::Explain for Explain {
 /// Models whose manual lists a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listed {
-    /// None for the number of an alarm.
+    /// Models; empty for an alarm number.
     models: Vec<String>,
 }
 
@@ -58,24 +59,25 @@ impl Besides for Listed {
     }
 }
 
-/// The number of an alarm, 1 to 9999 in decimal.
+/// An alarm number, 1 to 9999 in decimal.
 fn alarm_number(text: &str) -> Option<u32> {
     let is_number = (3..=4).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit());
     text.parse().ok().filter(|number| is_number && *number > 0)
 }
 
-/// The number of an alarm: what `alarms.toml` says of it, or where to look.
+/// Meaning of an alarm number from `alarms.toml`, or where to find it.
 fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>, Failure> {
     let code = number.to_string();
     let site = alarms.find(origin, &code)?;
-    let look = "the controller's maintenance manual has it, and the controller its text: `armctl yerc alarm list`";
+    let look = "look up the number in the controller's maintenance manual, or read its text with `armctl yerc alarm \
+                list`";
     let text = site.is_none().then(|| "an alarm number".to_owned());
     let remedies: &[&str] = if site.as_ref().is_some_and(|site| site.remedy.is_some()) { &[] } else { &[look] };
     let alarm = Alarm { code: Some(code), text, kind: Some(Kind::Alarm), source: Source::Armctl, ..Alarm::default() };
     Ok(Known::new(false, alarm, [&[], remedies], site, Listed { models: Vec::new() }))
 }
 
-/// A status code of the manuals.
+/// Meaning of a status code of the manuals.
 fn status_code(found: &status::Explanation) -> Known<Listed> {
     let alarm = Alarm {
         code: Some(found.code_text.clone()),

@@ -1,4 +1,4 @@
-//! What the rest of the house may ask of `yerc`.
+//! Implementation of the family interface for `yerc`.
 
 use super::alarm;
 use super::commands::Commands;

@@ -1,4 +1,4 @@
-//! Errors of the client as failures of a command: what happened to which robot, and what to do about it.
+//! Conversion of client errors to command failures: what failed on which robot, and what to do.
 
 use std::io;
 
@@ -10,7 +10,7 @@ use crate::controller::yerc::request::Request;
 use crate::controller::yerc::status;
 use crate::failure::{Failure, Kind, plain};
 
-/// An error of the client of the robot that is called `label`.
+/// Failure for an error of the client; `label` is the robot.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
     let error_text = error.to_string();
@@ -21,21 +21,23 @@ pub fn failure(label: &str, error: Error) -> Failure {
              #82015 CMD REMOTE SEL; `armctl help yerc` lists the settings",
         ),
         Error::Garbage { .. } => about(Kind::Malformed, error.to_string())
-            .hint("is this the high-speed Ethernet server of a controller? -vvv shows the bytes"),
+            .hint("check that the address is that of a high-speed Ethernet server; -vvv shows the bytes"),
         Error::Unexpected(_) => about(Kind::Malformed, error.to_string())
             .hint("check the model (?model=fs100, dx100, dx200 or yrc1000); -vvv shows the bytes"),
         Error::OutcomeUnknown { request, waited, counters } => {
             let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
-            let what = format!("sent once, no answer within {waited:?}{seen}: it may or may not have been done");
-            about(Kind::OutcomeUnknown, what).hint(format!("ask before you repeat it: {}", verification_hint(&request)))
+            let what = format!("sent once, no answer within {waited:?}{seen}: the result is unknown");
+            about(Kind::OutcomeUnknown, what)
+                .hint(format!("check before you repeat it: {}", verification_hint(&request)))
         }
-        Error::Unconfirmed { .. } => about(Kind::OutcomeUnknown, error_text)
-            .hint("use the pendant or the emergency stop if it must not move; `yerc status` tells whether it is held"),
+        Error::Unconfirmed { .. } => about(Kind::OutcomeUnknown, error_text).hint(
+            "use the pendant or the emergency stop if the robot must not move; `yerc status` shows whether it is held",
+        ),
         Error::CutShort { request, cause } => {
             let cause = failure(label, *cause).message;
-            let message = format!("{cause}; it was sent, and may or may not have been done");
+            let message = format!("{cause}; the request was sent, and the result is unknown");
             Failure::new(Kind::OutcomeUnknown, message)
-                .hint(format!("ask before you repeat it: {}", verification_hint(&request)))
+                .hint(format!("check before you repeat it: {}", verification_hint(&request)))
         }
         Error::NotAuthorized(error) => error.into(),
         Error::Session(busy) => session_busy(label, &busy),
@@ -45,26 +47,25 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::Io { port, error } => broken(label, port, &error),
         Error::ModelRefused(refusal) => {
             let failure = Failure::from(refusal);
-            let message = format!("{error_text}; what was to be asked depends on it, and was not");
+            let message = format!("{error_text}; the request depends on it and was not sent");
             Failure { message: format!("{label}: {message}"), ..failure }.hint(NAME_MODEL)
         }
         Error::UnknownSoftware { .. } => {
-            about(Kind::Malformed, format!("{error_text}; what was to be asked depends on it, and was not"))
-                .hint(NAME_MODEL)
+            about(Kind::Malformed, format!("{error_text}; the request depends on it and was not sent")).hint(NAME_MODEL)
         }
         Error::AnotherModel { .. } => {
-            about(Kind::Refused, error_text).hint("repeat the command: from now on it is taken for what it is")
+            about(Kind::Refused, error_text).hint("repeat the command: armctl now uses the right model")
         }
         Error::NotKnown => unknown(),
         _ => about(Kind::Malformed, error.to_string()).hint("-vvv shows the bytes"),
     }
 }
 
-/// What to do where the controller does not tell its model.
+/// Hint for a controller that does not report its model.
 const NAME_MODEL: &str =
-    "name the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME model=…`";
+    "set the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME model=…`";
 
-/// The socket has bad news.
+/// Failure for a socket error.
 fn broken(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
     use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable};
 
@@ -72,40 +73,40 @@ fn broken(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
     let about = |what: String| Failure::new(Kind::NoAnswer, format!("{label}: {what}"));
     match error.kind() {
         ConnectionRefused => about(format!("nothing listens on UDP port {port}")).hint(
-            "the host is there, the server is not: check the port, and the Ethernet server function of the controller",
+            "the host answers, but not the server: check the port and the Ethernet server function of the controller",
         ),
         HostUnreachable | NetworkUnreachable => about(format!("the host cannot be reached: {}", plain(error)))
-            .hint("check the address and this machine's own network settings"),
-        _ => about(format!("UDP port {port}: {}", plain(error))).hint("check this machine's network"),
+            .hint("check the address and the network settings of this computer"),
+        _ => about(format!("UDP port {port}: {}", plain(error))).hint("check the network of this computer"),
     }
 }
 
-/// What tells whether a request that changes something was carried out.
+/// Command that shows whether a request took effect.
 fn verification_hint(request: &Request) -> &'static str {
     match request.command {
-        0 => "`yerc file list` tells what is there",
-        0x78 | 0x300 => "`yerc io get` tells",
-        0x79 | 0x301 => "`yerc register get` tells",
-        0x7A..=0x81 | 0x8C | 0x302..=0x309 | 0x30C => "`yerc var get` tells",
-        0x82 => "`yerc alarm list` and `yerc status` tell",
-        0x83 | 0x84 => "`yerc status` tells",
-        0x85 => "the pendant shows it; a message may safely be sent again",
-        0x86 => "`yerc status` and `yerc job show` tell whether it runs",
-        0x87 => "`yerc job show` tells",
-        0x8A | 0x8B => "keep clear; `yerc status` and `yerc position` tell whether it moves, and where it is",
-        _ => "`yerc status` tells how the controller stands",
+        0 => "`yerc file list` shows the files",
+        0x78 | 0x300 => "`yerc io get` shows the signals",
+        0x79 | 0x301 => "`yerc register get` shows the registers",
+        0x7A..=0x81 | 0x8C | 0x302..=0x309 | 0x30C => "`yerc var get` shows the variables",
+        0x82 => "`yerc alarm list` and `yerc status` show the alarm state",
+        0x83 | 0x84 => "`yerc status` shows the state",
+        0x85 => "look at the pendant; it is safe to send the message again",
+        0x86 => "`yerc status` and `yerc job show` show whether it runs",
+        0x87 => "`yerc job show` shows the job",
+        0x8A | 0x8B => "keep clear; `yerc status` and `yerc position` show whether the robot moves, and its position",
+        _ => "`yerc status` shows the state of the controller",
     }
 }
 
-/// The refusal of something so risky. A motion that is refused because the robot moves may be moving it: the
-/// network can double an order, and then the second copy meets the motion of the first.
+/// Failure for a refusal of a request with this risk. A refused motion may still be in progress: the network can
+/// duplicate a request, and the controller then refuses the second copy during the motion of the first.
 pub fn refused(refusal: Refusal, risk: Risk) -> Failure {
     let failure = Failure::from(refusal);
     match &failure.hint {
         Some(hint) if risk == Risk::Motion && refusal.status.added == MOVING => {
             let hint = format!(
-                "{hint}\nIf it stood still before, this order itself may be what moves it: then the network doubled \
-                 the order, and only the second copy was refused"
+                "{hint}\nIf the robot stood still before, this request may have started the motion: the network may \
+                 have duplicated it, and the controller refused only the second copy"
             );
             failure.hint(hint)
         }
@@ -113,7 +114,7 @@ pub fn refused(refusal: Refusal, risk: Risk) -> Failure {
     }
 }
 
-/// Added status: the manipulator moves (DX 5).
+/// Added status: manipulator moving (DX 5).
 const MOVING: u32 = 0x2010;
 
 impl From<Refusal> for Failure {
@@ -135,9 +136,9 @@ mod tests {
     fn a_motion_that_is_refused_for_motion_may_be_that_motion() {
         let to = Asked::Robot { command: 0x8B, instance: 1 };
         let hint = |added, risk| refused(Refusal { status: Status::refused(added), to }, risk).hint.unwrap();
-        assert!(hint(0x2010, Risk::Motion).contains("doubled the order"));
-        assert!(!hint(0x2060, Risk::Motion).contains("doubled"));
-        assert!(!hint(0x2010, Risk::Write).contains("doubled"));
+        assert!(hint(0x2010, Risk::Motion).contains("duplicated it"));
+        assert!(!hint(0x2060, Risk::Motion).contains("duplicated"));
+        assert!(!hint(0x2010, Risk::Write).contains("duplicated"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Every command line of the family before the gate: its risk, a read-only robot, a dry run that shows that risk.
+//! Tests of every command line of the family at the gate: risk, read-only robot, and a dry run with the same risk.
 
 use std::collections::BTreeSet;
 
@@ -15,10 +15,10 @@ use crate::controller::yerc::wire::RequestFrame;
 use crate::failure::Kind;
 use crate::gate::Gate;
 
-/// What sends nothing.
+/// Commands that send nothing.
 const AT_HOME: [&str; 1] = ["names forget"];
 
-/// A line for each command, with files in `DIR`; its risk, and the most that a frame of it may be.
+/// A line for each command, with files in `DIR`; its risk, and the maximum risk of its frames.
 const LINES: &[(&str, Risk, Risk)] = &[
     ("status", Read, Read),
     ("alarm list", Read, Read),
@@ -57,7 +57,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("var set B0=1 P1.tool=2", Destroy, Destroy),
     ("var set EX1=pulse:1=5", Destroy, Destroy),
     ("var dump DIR/new.json", Read, Read),
-    // Each variable may be set again; to write back many replaces what is in them.
+    // Each variable could be set individually; writing back many overwrites their content.
     ("var restore DIR/dump.json", Destroy, Write),
     ("io get 10010", Read, Read),
     ("io watch 10010", Read, Read),
@@ -92,7 +92,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("raw --command 0x90 --instance 1 --service 0x01", Motion, Motion),
 ];
 
-/// The files that the lines name.
+/// Creates the files that the lines use.
 fn prepare(folder: &std::path::Path) {
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     std::fs::write(path("A.JBI"), "/JOB\r\n//NAME A\r\nNOP\r\nEND\r\n").unwrap();
@@ -103,7 +103,7 @@ fn prepare(folder: &std::path::Path) {
     Bench::new("sim:").data(&["backup", &path("backup")]);
 }
 
-/// The risk of a frame; bytes that an answer decides count as 0.
+/// Risk of a frame; bytes that depend on an answer count as 0.
 fn risk_of(frame: &Value) -> Risk {
     let bytes = unhex(&frame["hex"].as_str().expect("hexadecimal").replace("??", "00")).expect("hexadecimal");
     let frame = RequestFrame::parse(&bytes).expect("a request");
@@ -136,7 +136,7 @@ fn every_command_passes_the_gate_by_its_risk() {
 
         let frames = dry_run(DX200, &words).unwrap_or_else(|failure| panic!("{line}: {failure:?}"));
         let shown = frames.iter().map(risk_of).max();
-        // What is kept on this machine is nobody else's matter.
+        // Data on this computer does not concern other clients.
         let expected = Some(*most).filter(|_| !AT_HOME.contains(&line.as_str()));
         assert_eq!(shown, expected, "{line}: {frames:?}");
     }

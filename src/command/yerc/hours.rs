@@ -23,7 +23,7 @@ use crate::output::view::{Cell, Table, View};
 /// Running-time counters (FS and DX 3.3.25).
 #[derive(Debug, Args)]
 pub struct Hours {
-    /// Servo, playback and motion time of a robot or station; all: every counter that exists
+    /// Servo, playback and motion time of a robot or station; all: every existing counter
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
     /// Operation time of an application
@@ -31,10 +31,10 @@ pub struct Hours {
     application: Option<u8>,
 }
 
-/// Counters of everything together.
+/// Counters of the whole controller.
 const TOTALS: [TimeCounter; 4] =
     [TimeCounter::ControlPower, TimeCounter::Servo(None), TimeCounter::Playback(None), TimeCounter::Motion(None)];
-/// Applications that may have a counter.
+/// Number of applications that can have a counter.
 const APPLICATIONS: u8 = 8;
 
 impl Hours {
@@ -71,7 +71,7 @@ impl Command for Hours {
         let questions: Vec<_> = counters.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
         let outcomes = if self.group == Some(Groups::All) {
             let mut found = existing(link, questions).await?;
-            // A controller may answer for what it does not have, with nothing.
+            // A controller may answer with empty values for a counter that does not exist.
             let is_empty = |time: &ManagementTime| time.start.is_empty() && time.elapsed.is_empty();
             found.retain(|(_, outcome)| !outcome.as_ref().is_ok_and(is_empty));
             found
@@ -98,9 +98,9 @@ pub struct Times {
 struct Time {
     /// `control_power`, `servo`, `playback`, `motion` or `application`.
     counter: &'static str,
-    /// Control group; null where the counter is not of a group.
+    /// Control group; null for other counters.
     group: Option<String>,
-    /// Number of the application; null where the counter is not of one.
+    /// Number of the application; null for other counters.
     application: Option<u8>,
     #[serde(flatten)]
     outcome: ItemOutcome<Elapsed>,
@@ -108,11 +108,11 @@ struct Time {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct Elapsed {
-    /// When counting began, as the controller shows it, `YYYY/MM/DD HH:MM`.
+    /// Start of counting, as the controller reports it: `YYYY/MM/DD HH:MM`.
     since: String,
-    /// As received, such as `000123:45'06`.
+    /// Raw value, such as `000123:45'06`.
     elapsed: String,
-    /// The same in seconds; null if the text is in no known form.
+    /// Elapsed seconds; null if the text has no known form.
     elapsed_s: Option<u64>,
 }
 
@@ -136,7 +136,7 @@ impl Time {
     }
 }
 
-/// What a counter is of.
+/// Owner of a counter.
 fn of(counter: &str, group: Option<&str>, application: Option<u8>) -> String {
     match (group, application) {
         (Some(group), _) => group.to_owned(),

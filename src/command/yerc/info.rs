@@ -23,10 +23,10 @@ use crate::output::view::{Cell, Table, View};
 /// Versions and names (FS and DX 3.3.26).
 #[derive(Debug, Args)]
 pub struct Info {
-    /// A robot or station, or all that exist with their applications [default: all]
+    /// Robot, station, or all, including applications [default: all]
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
-    /// An application
+    /// Application number
     #[arg(long, value_name = "N", conflicts_with = "group", value_parser = within::<u8>(1, 8))]
     application: Option<u8>,
 }
@@ -44,7 +44,7 @@ impl Info {
     }
 }
 
-/// Applications that can be asked about.
+/// Number of applications.
 const fn applications(model: Model) -> u8 {
     match model {
         Model::Fs100 => 1,
@@ -66,10 +66,10 @@ impl Command for Info {
         let question = |part| Ok((part, ReadSystemInfo::new(model, part)?));
         let parts = self.parts(model).into_iter();
         let questions: Vec<_> = parts.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
-        // A single part is a list of one: its refusal is the failure.
+        // A single part is a list with one entry: its refusal is the failure.
         let is_single = questions.len() == 1;
         let answers = existing(link, questions).await?;
-        // Controllers answer for groups that do not exist with the version alone.
+        // Controllers answer with only the version for groups that do not exist.
         let is_there = |info: &SystemInfo| is_single || !(info.name.is_empty() && info.parameters.is_empty());
         let first = answers.iter().find_map(|(_, outcome)| outcome.as_ref().ok());
         let software_version = first.map(|info| encoding.decode(info.version.as_bytes()));
@@ -82,7 +82,7 @@ impl Command for Info {
 /// Versions and names of the controller and its parts.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Versions {
-    /// Of the system; the same for every part.
+    /// System software; the same for every part.
     software_version: Option<String>,
     parts: Vec<Part>,
 }
@@ -101,7 +101,7 @@ struct Part {
 struct Named {
     /// Robot model or name of the application; null for stations.
     name: Option<String>,
-    /// Robots only.
+    /// Only for robots.
     parameter_version: Option<String>,
 }
 
@@ -120,7 +120,7 @@ impl Part {
     }
 }
 
-/// What a part is called.
+/// Name of a part.
 fn name_of(group: Option<&str>, application: Option<u8>) -> String {
     group.map_or_else(|| format!("application {}", application.unwrap_or_default()), ToOwned::to_owned)
 }
@@ -188,7 +188,8 @@ mod tests {
         };
         assert_eq!(
             render::csv(&versions.view()),
-            "part,name,version\ncontroller,system software,DS2.07\nR1,ES0165D-A0*,12.34\nS1,-,-\napplication 1,ES0165D-A0*,-\n"
+            "part,name,version\ncontroller,system software,DS2.07\nR1,ES0165D-A0*,12.34\nS1,-,-\napplication \
+             1,ES0165D-A0*,-\n"
         );
     }
 
@@ -199,6 +200,6 @@ mod tests {
         assert_eq!(all["software_version"], "DN2.07.00A(JP/US)-00");
         assert_eq!(all["parts"][0]["name"], "ES0165D-A0*");
         assert_eq!(all["parts"].as_array().map(Vec::len), Some(2), "{all}");
-        assert!(!one.is_ok_and(|one| one["parts"][0]["name"].is_string()), "R2 has no name to tell");
+        assert!(!one.is_ok_and(|one| one["parts"][0]["name"].is_string()), "R2 has no name");
     }
 }

@@ -42,27 +42,27 @@ commands! {
         Show(Show),
         /// Select the job to start
         Select(Select),
-        /// Start the selected job, or a job by its name
+        /// Start the selected job, or a job by name
         Start(start::Start),
         /// Stop the running job: HOLD on
         Stop(stop::Stop),
-        /// Edit a job in your editor, and write it back
+        /// Edit a job in your editor and write it back
         Edit(Edit),
     }
 }
 
-/// What a task executes (FS and DX 3.3.4).
+/// Job that a task executes (FS and DX 3.3.4).
 #[derive(Debug, Args)]
 pub struct Show {
-    /// A task, 0 being the master, or all
+    /// Task number (0 is the master task), or all
     #[arg(long, value_name = "N|all", default_value = "0")]
     task: Tasks,
-    /// Show the text of the line too, from the file of the job, which is got each time
+    /// Also show the text of the line; the job file is downloaded each time
     #[arg(long)]
     source: bool,
 }
 
-/// One task or all there are.
+/// One task, or all tasks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Tasks {
     One(u8),
@@ -77,7 +77,7 @@ impl FromStr for Tasks {
             return Ok(Self::All);
         }
         let task = typed::unsigned(text);
-        task.map(Self::One).ok_or_else(|| "a task is a number from 0 (master) on, or all".to_owned())
+        task.map(Self::One).ok_or_else(|| "a task is a number, starting with 0 (master), or all".to_owned())
     }
 }
 
@@ -92,7 +92,7 @@ impl Command for Show {
         let jobs: Vec<(u8, Outcome<JobInfo>)> = match self.task {
             Tasks::One(task) => {
                 if link.is_dry() && self.source {
-                    link.then("the file of the job, if it has one, is got");
+                    link.then("download of the job file, if it exists");
                 }
                 let job = {
                     let question = link.by_model(|model| ReadJob::new(model, task)).await?;
@@ -105,7 +105,7 @@ impl Command for Show {
                 let questions: Vec<ReadJob> = (0..=u8::MAX).map_while(|task| ReadJob::new(model, task).ok()).collect();
                 let outcomes = link.ask_each(&questions).await?;
                 if let Some(Err(denied)) = outcomes.first().filter(|_| outcomes.iter().all(Result::is_err)) {
-                    // Every controller has a master task: this is not about a task that is absent.
+                    // Every controller has a master task, so the refusal does not mean a missing task.
                     return Err(denied.clone().into());
                 }
                 (0..).zip(outcomes).collect()
@@ -121,7 +121,7 @@ impl Command for Show {
 }
 
 impl Show {
-    /// The text of the line that a task is at, where that is wanted and there is one.
+    /// Text of the current line of a task, if requested and available.
     async fn source(&self, link: &mut Link, outcome: &Outcome<JobInfo>) -> Option<ItemOutcome<Source>> {
         let job = outcome.as_ref().ok().filter(|job| self.source && !job.name.is_empty())?;
         let what = format!("{}.JBI", link.encoding.decode(job.name.as_bytes()));
@@ -129,7 +129,7 @@ impl Show {
     }
 }
 
-/// What tasks execute.
+/// Jobs of tasks.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Jobs {
     tasks: Vec<Task>,
@@ -137,31 +137,31 @@ pub struct Jobs {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct Task {
-    /// 0 is the master.
+    /// Task number; 0 is the master.
     #[serde(rename = "task")]
     number: u8,
-    /// Whether the controller has it; where not, all that follows but `refusal` is null. Null if that was not told.
+    /// Whether the task exists; if not, all following fields except `refusal` are null. Null if unknown.
     exists: Option<bool>,
-    /// Name of the job without `.JBI`; null if there is none.
+    /// Job name without `.JBI`; null if there is none.
     program: Option<String>,
-    /// The bytes of the name, where the text does not lead back to them.
+    /// Bytes of the name, if the text does not convert back to them.
     #[serde(skip_serializing_if = "Option::is_none")]
     program_hex: Option<String>,
     line: Option<u32>,
-    /// 0 while no step is executed.
+    /// Step number; 0 while no step is executed.
     step: Option<u32>,
     speed_override_percent: Option<f64>,
-    /// The text of the line; not there unless it was asked for.
+    /// Text of the line; absent unless requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<ItemOutcome<Source>>,
-    /// The controller's code where it has no such task.
+    /// Error code of the controller if the task does not exist.
     #[serde(skip_serializing_if = "Option::is_none")]
     refusal: Option<String>,
-    /// Why nothing is known of it.
+    /// Reason why the task could not be read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
-    /// The override with all its digits.
+    /// Speed override with all digits.
     #[serde(skip)]
     shown_override: Option<String>,
 }
@@ -194,7 +194,7 @@ impl Task {
     }
 }
 
-/// What a task is called.
+/// Name of a task.
 fn task_name(number: u8) -> String {
     if number == 0 { "master".to_owned() } else { format!("sub {number}") }
 }
@@ -202,12 +202,12 @@ fn task_name(number: u8) -> String {
 impl Report for Jobs {
     fn view(&self) -> View {
         let mut table = Table::new(&["task", "job", "line", "step", "override (%)"], "no task");
-        // Of all tasks only those that exist; one that was asked for says why there is nothing to show.
+        // Of all tasks, only the existing ones are shown; a single task shows why there is no job.
         let is_one = self.tasks.len() == 1;
         for task in self.tasks.iter().filter(|task| is_one || task.refusal.is_none()) {
             let name = task_name(task.number);
             let job = match (&task.refusal, &task.error) {
-                (Some(code), _) => format!("(no such task: {code})").into(),
+                (Some(code), _) => format!("(task does not exist: {code})").into(),
                 (None, Some(error)) => error.cell(),
                 (None, None) => Cell::maybe(task.program.as_deref()),
             };
@@ -218,7 +218,7 @@ impl Report for Jobs {
         let texts: Vec<Cell> = sources
             .map(|source| match (source.data(), source.error()) {
                 (_, Some(error)) => error.cell(),
-                (Some(source), None) => source.text().unwrap_or("(no such line in its file)").into(),
+                (Some(source), None) => source.text().unwrap_or("(line not in the job file)").into(),
                 (None, None) => "".into(),
             })
             .collect();
@@ -233,21 +233,21 @@ impl Report for Jobs {
     }
 }
 
-/// Chooses a job (FS and DX 3.3.24).
+/// Selects a job (FS and DX 3.3.24).
 #[derive(Debug, Args)]
 pub struct Select {
-    /// Its name, without .JBI
+    /// Job name, without .JBI
     #[arg(add = complete::JOB)]
     name: String,
-    /// Line to start at
+    /// Start line
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 9999))]
     line: u32,
-    /// Make it the master job of a task, instead of the job to start
+    /// Set the master job of this task instead of the job to start
     #[arg(long, value_name = "N", conflicts_with = "line", value_parser = within::<u8>(0, u8::MAX))]
     task: Option<u8>,
 }
 
-/// Bytes of a job name.
+/// Maximum number of bytes of a job name.
 const MAX_NAME: usize = 32;
 
 impl Select {
@@ -258,7 +258,7 @@ impl Select {
             Failure::usage(format!("the job name: {error}")).hint("--encoding or the robot's entry sets the encoding")
         })?;
         if bytes.len() > MAX_NAME {
-            let message = format!("the job name takes {} bytes in {encoding}; at most {MAX_NAME} fit", bytes.len());
+            let message = format!("the job name has {} bytes in {encoding}; the maximum is {MAX_NAME}", bytes.len());
             return Err(Failure::usage(message).hint("`yerc file list` shows the names on the controller"));
         }
         let execute = Selection::Execute { line: self.line };
@@ -267,13 +267,13 @@ impl Select {
     }
 }
 
-/// The name of a job of the name of its file.
+/// Job name from its file name.
 fn stem(file: &[u8]) -> &[u8] {
     let at = file.len().saturating_sub(b".JBI".len());
     if file[at..].eq_ignore_ascii_case(b".JBI") { &file[..at] } else { file }
 }
 
-/// The name as the controller has it; files have a suffix that jobs do not.
+/// Job name as the controller uses it, without the suffix of files.
 fn without_suffix(name: &str) -> &str {
     let at = name.len().saturating_sub(".JBI".len());
     match name.split_at_checked(at) {
@@ -292,9 +292,9 @@ impl Command for Select {
         let link = context.link;
         let name = without_suffix(&self.name);
         if name != self.name {
-            context.screen.note(&format!("jobs are selected without .JBI: '{name}'"));
+            context.screen.note(&format!("job name without .JBI: '{name}'"));
         }
-        // Of the master job of a task nothing tells which it is.
+        // The protocol cannot read the master job of a task.
         let was = match self.task {
             None => {
                 let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
@@ -306,9 +306,9 @@ impl Command for Select {
         let query = self.query(name, link).await?;
         link.ask(&query).await.map_err(|failure| about(name, failure))?;
         let words = match (self.task, self.line) {
-            (Some(task), _) => format!("{name} is the master job of task {task}"),
+            (Some(task), _) => format!("{name} is now the master job of task {task}"),
             (None, 0) => format!("{name} is selected"),
-            (None, first) => format!("{name} is selected from line {first} on"),
+            (None, first) => format!("{name} is selected, start line {first}"),
         };
         let new = New::of("program", name, words).with("program", name);
         Ok(Selected {
@@ -319,19 +319,19 @@ impl Command for Select {
     }
 }
 
-/// A refusal that says which job it is about.
+/// Failure with the job name.
 fn about(name: &str, failure: Failure) -> Failure {
     Failure { message: format!("job {name}: {}", failure.message), ..failure }
 }
 
-/// What was selected.
+/// Result of a selection.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Selected {
     #[serde(flatten)]
     done: Done,
-    /// Line of the start; null for a master job.
+    /// Start line; null for a master job.
     line: Option<u32>,
-    /// The task whose master job it is; null for the job to start.
+    /// Task of the master job; null for the job to start.
     task: Option<u8>,
 }
 
@@ -385,7 +385,7 @@ mod tests {
         assert_eq!(select(&"A".repeat(32)).unwrap().len(), 1);
         let failure = select(&"A".repeat(33)).unwrap_err();
         assert_eq!(failure.kind, Kind::Usage);
-        assert_eq!(failure.message, "the job name takes 33 bytes in shift_jis; at most 32 fit");
+        assert_eq!(failure.message, "the job name has 33 bytes in shift_jis; the maximum is 32");
         assert!(select(&"て".repeat(16)).is_ok());
         assert!(select(&"て".repeat(17)).unwrap_err().message.contains("34 bytes"));
         assert_eq!(select("한").unwrap_err().kind, Kind::Usage);
@@ -468,7 +468,10 @@ mod tests {
         let elapsed = ended.unwrap()["elapsed_ms"].as_u64().unwrap();
         assert!((1000..1200).contains(&elapsed), "the job's timer runs for a second, not {elapsed} ms");
         let failure = late.unwrap_err();
-        assert_eq!((failure.kind, failure.message.as_str()), (Kind::ConditionNotMet, "the job still runs after 2s"));
+        assert_eq!(
+            (failure.kind, failure.message.as_str()),
+            (Kind::ConditionNotMet, "the job is still running after 2s")
+        );
         assert_eq!(shown.unwrap()["tasks"][0]["program"], "TESTJOB");
     }
 
@@ -478,7 +481,7 @@ mod tests {
         let [started] = reports(state, &["job start --wait"]).await.try_into().unwrap();
         let failure = started.unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the job was started, but hold by pendant came on");
+        assert_eq!(failure.message, "the job was started, but hold by pendant was switched on");
     }
 
     #[tokio::test(start_paused = true)]

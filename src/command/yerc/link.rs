@@ -1,4 +1,4 @@
-//! The connection to a controller as commands use it: the client, with its errors in words, and its traffic on record.
+//! Controller connection of a command: the client with error conversion and trace.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -36,7 +36,8 @@ use crate::transport::tap::Direction;
 #[derive(Debug)]
 pub struct Yerc;
 
-/// A connection to one controller. What cannot fail, or fails without a word about the robot, is the client's own.
+/// Connection to one controller. Operations that cannot fail, or whose errors need no robot label, are those of the
+/// client.
 #[derive(Debug, Deref, DerefMut)]
 pub struct Link {
     #[deref]
@@ -45,13 +46,13 @@ pub struct Link {
     trace: Arc<Mutex<Trace>>,
     screen: Screen,
     label: String,
-    /// Encoding of its texts.
+    /// Encoding of the controller's texts.
     pub encoding: Encoding,
-    /// Pulses of a degree of each axis of R1, as far as the inventory says it.
+    /// Pulses per degree of each axis of R1, as far as the inventory has them.
     pulses_per_degree: Vec<f64>,
-    /// Words of a cartesian move, 25 or 26.
+    /// Number of words of a cartesian move, 25 or 26.
     pub move_words: u8,
-    /// Where it is kept what the controller told of its model.
+    /// Stored model of the controller.
     told: Told,
 }
 
@@ -73,9 +74,9 @@ impl Family for Yerc {
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
-        // What else moves there is not this command's to stop.
+        // Motion that this command did not start is not stopped.
         if !link.has_moved() {
-            return Ok("nothing was sent that moves the robot".to_owned());
+            return Ok("no motion command was sent".to_owned());
         }
         link.screen.note("stopping the robot: HOLD on");
         link.stop().await?;
@@ -98,32 +99,32 @@ impl Family for Yerc {
 }
 
 impl Link {
-    /// What was counted on the network so far.
+    /// Traffic counted on the network so far.
     pub(super) fn traffic(&self) -> Traffic {
         let Totals { sent, received, disturbances, .. } = self.client.totals();
         Traffic { sent, received, disturbances }
     }
 
-    /// Pulses of a degree of each axis of a group, as far as they are known.
+    /// Pulses per degree of each axis of a group, as far as they are known.
     pub fn pulses_per_degree(&self, group: Group) -> &[f64] {
         if group == Group::R1 { &self.pulses_per_degree } else { &[] }
     }
 
-    /// The model of the controller, which is asked if nobody knows it.
+    /// Model of the controller; read from it if unknown.
     pub async fn model(&mut self) -> Result<Model, Failure> {
         let model = self.client.model().await;
         self.keep_model();
         model.map_err(|error| self.failure(error))
     }
 
-    /// A model to make something for; the controller is asked only if it matters: [`Client::model_for`].
+    /// Model for building a request; the controller is asked only if the result depends on it: [`Client::model_for`].
     pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Failure> {
         let model = self.client.model_for(make).await;
         self.keep_model();
         model.map_err(|error| self.failure(error))
     }
 
-    /// Makes something that may depend on the model.
+    /// Builds a request that may depend on the model.
     pub async fn by_model<T: PartialEq>(
         &mut self,
         make: impl Fn(Model) -> Result<T, QueryError>,
@@ -132,12 +133,12 @@ impl Link {
         make(model).map_err(usage)
     }
 
-    /// The version of the system software, if the controller has told it on this connection.
+    /// System software version, if it was read on this connection.
     pub fn told_software(&self) -> Option<String> {
         self.client.identity().map(|identity| self.encoding.decode(identity.software.as_bytes()))
     }
 
-    /// Keeps what the controller told of its model, if it is news.
+    /// Stores the model that the controller reported, if it is new.
     fn keep_model(&mut self) {
         if let (Some(identity), Some(software)) = (self.client.identity(), self.told_software()) {
             let news = identity.model.map(|model| ToldModel::now(model, software));
@@ -145,46 +146,46 @@ impl Link {
         }
     }
 
-    /// Asks one question or gives one order; a refusal is a failure.
+    /// Sends one request; a refusal is a failure.
     pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Failure> {
         self.try_ask(query).await?.map_err(|refusal| refused(refusal, query.risk()))
     }
 
-    /// Holds the robot, as soon as one of several tries has its answer.
+    /// Holds the robot, with several attempts in parallel until one is answered.
     pub async fn stop(&mut self) -> Result<(), Failure> {
         self.client.stop().await.map_err(|error| self.failure(error))
     }
 
-    /// Asks one question or gives one order; a refusal is an answer.
+    /// Sends one request; a refusal is a result.
     pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
         self.client.try_ask(query).await.map_err(|error| self.failure(error))
     }
 
-    /// Reads what a write replaces; nothing where the controller refuses to tell, and in a dry run, which notes the
-    /// question. A line that is lost is a failure: nothing was written.
+    /// Reads the value that a write replaces; none if the controller refuses, and in a dry run, which notes the
+    /// request. A lost connection is a failure: nothing was written.
     pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
         let answer = self.is_for(BEFORE).try_ask(question).await.known().map_err(unwritten)?;
         Ok(answer.and_then(Result::ok))
     }
 
-    /// Asks several questions; each has its own outcome. A dry run notes them all.
+    /// Sends several requests; each has its own outcome. A dry run notes them all.
     pub async fn ask_each<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Outcome<Q::Answer>>, Failure> {
         let outcomes = self.client.ask_each(queries).await.map_err(|error| self.failure(error))?;
         Ok(outcomes.into_iter().map(|outcome| outcome.map_err(|denied| denied.map(|e| self.failure(e)))).collect())
     }
 
-    /// Asks one question of several.
+    /// Sends one of several requests.
     pub async fn ask_in<Q: Query>(&mut self, round: &mut Round, query: &Q) -> Result<Outcome<Q::Answer>, Failure> {
         let outcome = self.client.ask_in(round, query).await.map_err(|error| self.failure(error))?;
         Ok(outcome.map_err(|denied| denied.map(|error| self.failure(error))))
     }
 
-    /// Sends a request as it is and returns the whole answer, good or bad.
+    /// Sends a raw request and returns the whole reply, including an error reply.
     pub async fn raw(&mut self, request: &Request) -> Result<Reply, Failure> {
         self.client.raw(request).await.map_err(|error| self.failure(error))
     }
 
-    /// Fetches a file or list: [`Client::download`].
+    /// Downloads a file or list: [`Client::download`].
     pub async fn download(
         &mut self,
         request: &Request,
@@ -197,18 +198,18 @@ impl Link {
             Cause::Caller(failure) => failure,
             Cause::Client(Error::Garbage { counters, .. }) if bytes > 0 => Failure::new(
                 Kind::Malformed,
-                format!("{}: after {bytes} bytes came nothing of the protocol, but {counters}", self.label),
+                format!("{}: no valid answer after {bytes} bytes, but {counters}", self.label),
             )
-            .hint("nothing was kept of it; repeat it, and record it with --trace if it comes again"),
+            .hint("no data was saved; repeat the command, and record it with --trace if the problem persists"),
             Cause::Client(Error::NoAnswer { .. }) if bytes > 0 => {
-                Failure::new(Kind::NoAnswer, format!("{}: the transfer broke off after {bytes} bytes", self.label))
-                    .hint("nothing was kept of it; repeat the command, with a longer --timeout if the line is bad")
+                Failure::new(Kind::NoAnswer, format!("{}: the transfer stopped after {bytes} bytes", self.label))
+                    .hint("no data was saved; repeat the command, with a longer --timeout for a bad connection")
             }
             Cause::Client(error) => self.failure(error),
         })
     }
 
-    /// Sends a file: [`Client::upload`]. After the first block the controller may hold a part or all.
+    /// Uploads a file: [`Client::upload`]. After the first block, the controller may have part of it or all of it.
     pub async fn upload(
         &mut self,
         request: &Request,
@@ -223,26 +224,25 @@ impl Link {
             if bytes == 0 {
                 return failure;
             }
-            let message =
-                format!("{}; {bytes} bytes had been sent: the file may be there, whole or in part", failure.message);
+            let message = format!("{}; {bytes} bytes were sent: all or part of the file may exist", failure.message);
             let kind = if failure.kind == Kind::NoAnswer { Kind::OutcomeUnknown } else { failure.kind };
             Failure { kind, message, ..failure }
-                .hint("compare it with `yerc file diff` before anybody runs it, or send it again")
+                .hint("before you use the file, compare it with `yerc file diff` or send it again")
         })
     }
 
-    /// In a dry run, notes all the questions, whose answers are not known then.
+    /// Notes all requests in a dry run, in which the answers are unknown.
     pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Failure> {
         self.client.plan_all(queries).map_err(|error| self.failure(error))
     }
 
-    /// Says what the next request is for, where a dry run notes it.
+    /// Sets the purpose of the next request, for a dry run.
     pub fn is_for(&mut self, purpose: &'static str) -> &mut Self {
         self.client.is_for(purpose);
         self
     }
 
-    /// A text as the controller stores it.
+    /// Text in the encoding of the controller.
     pub fn encode(&self, what: &str, text: &str) -> Result<Vec<u8>, Failure> {
         self.encoding.encode(text).map_err(|error| {
             Failure::usage(format!("{what}: {error}")).hint("--encoding or the robot's entry sets the encoding")
@@ -254,7 +254,7 @@ impl Link {
     }
 }
 
-/// Keeps the record of the traffic, and says at `-v` what else was on the line.
+/// Observer that records the traffic and prints other traffic at `-v`.
 #[derive(Debug)]
 struct Onlooker {
     trace: Arc<Mutex<Trace>>,

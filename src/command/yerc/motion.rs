@@ -1,4 +1,4 @@
-//! What can stop a motion or a job while somebody waits for its end.
+//! Events that can stop a motion or a job while a command waits for its end.
 
 use std::time::Duration;
 
@@ -10,9 +10,9 @@ use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
 use crate::controller::yerc::query::{Query as _, ReadAlarm};
 use crate::failure::{Failure, Kind};
 
-/// Pause between two looks: a controller answers in 5 to 20 ms, and nothing is gained by pressing it.
+/// Interval of status reads. A controller answers in 5 to 20 ms, and a shorter interval has no benefit.
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// How long a controller may take to begin what it has accepted.
+/// Maximum time for a controller to start an accepted motion or job.
 pub(super) const START_WITHIN: Duration = Duration::from_secs(3);
 
 /// A state of the controller in which nothing moves.
@@ -22,15 +22,15 @@ pub(super) enum StandstillCause {
     Alarm,
     /// An error is present.
     Error,
-    /// Held, by what.
+    /// Held, with the source.
     Hold(&'static str),
     /// Servo power is off.
     ServoOff,
-    /// The mode switch stands on teach.
+    /// The mode switch is in teach position.
     Teach,
 }
 
-/// What can hold a robot, and what releases it.
+/// Sources of a hold, and how to release each.
 const HOLDS: [(StatusBit, &str, &str); 3] = [
     (StatusBit::HoldPendant, "pendant", "release HOLD on the pendant"),
     (StatusBit::HoldExternal, "external signal", "clear the external hold (PLC, door, interlock)"),
@@ -38,7 +38,7 @@ const HOLDS: [(StatusBit, &str, &str); 3] = [
 ];
 
 impl StandstillCause {
-    /// What a status says, the weightiest first; there was none of it when the controller accepted the order.
+    /// Most important standstill cause of a status. The status had none when the controller accepted the request.
     pub(super) fn of(status: ControllerStatus) -> Option<Self> {
         let hold = HOLDS.iter().find(|row| status.has(row.0));
         if status.alarm() {
@@ -56,61 +56,62 @@ impl StandstillCause {
         }
     }
 
-    /// The failure that tells it: what had been `done` before, and where the robot stands.
+    /// Failure with the result so far (`done`) and the current position.
     pub(super) async fn failure(self, link: &mut Link, done: &str, place: Option<&str>) -> Failure {
         let (what, code) = match self {
             Self::Alarm => present_alarm(link).await,
-            Self::Error => ("an error came up".to_owned(), None),
-            Self::Hold(by) => (format!("hold by {by} came on"), None),
-            Self::ServoOff => ("servo power went off".to_owned(), None),
+            Self::Error => ("an error occurred".to_owned(), None),
+            Self::Hold(by) => (format!("hold by {by} was switched on"), None),
+            Self::ServoOff => ("servo power was switched off".to_owned(), None),
             Self::Teach => ("the mode was switched to teach".to_owned(), None),
         };
-        let place = place.map(|place| format!("; it stands at {place}")).unwrap_or_default();
+        let place = place.map(|place| format!("; position: {place}")).unwrap_or_default();
         let hint = match self {
-            Self::Alarm => "`yerc alarm list` tells more; remove the cause, then `yerc alarm reset`".to_owned(),
+            Self::Alarm => {
+                "`yerc alarm list` shows the alarm; remove the cause, then use `yerc alarm reset`".to_owned()
+            }
             Self::Error => "read the pendant; `yerc alarm cancel` clears the error".to_owned(),
             Self::Hold(by) => {
                 let how = HOLDS.iter().find(|row| row.1 == by).map_or("release it", |row| row.2);
-                format!("{how}; what was interrupted may then go on")
+                format!("{how}; the interrupted motion may then continue")
             }
-            Self::ServoOff => "look for a stop or an open door before `yerc servo on`".to_owned(),
-            Self::Teach => "somebody is at the pendant; ask before going on".to_owned(),
+            Self::ServoOff => "check for a stop or an open door before `yerc servo on`".to_owned(),
+            Self::Teach => "another person may be at the pendant; ask before you continue".to_owned(),
         };
         let failure = Failure::new(Kind::ConditionNotMet, format!("{done}, but {what}{place}")).hint(hint);
         Failure { code, ..failure }
     }
 }
 
-/// The latest alarm in words, and its code; that there is one must be told even if it cannot be read.
+/// Text and code of the latest alarm. The alarm is reported even if it cannot be read.
 async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
     let question = match ReadAlarm::new(1, false).map_err(usage) {
         Ok(question) => question,
-        Err(failure) => return (format!("an alarm came up ({failure})"), None),
+        Err(failure) => return (format!("an alarm occurred ({failure})"), None),
     };
     match link.ask(&question).await {
         Ok(alarm) if !alarm.is_none() => {
             let words = alarm::in_a_line(&alarm, link.encoding, link.model_to_show());
-            (format!("{words} came up"), Some(alarm.code.to_string()))
+            (format!("{words} occurred"), Some(alarm.code.to_string()))
         }
-        Ok(_) => ("an alarm came up and is gone again".to_owned(), None),
-        Err(failure) => (format!("an alarm came up, which could not be read: {failure}"), None),
+        Ok(_) => ("an alarm occurred and was reset".to_owned(), None),
+        Err(failure) => (format!("an alarm occurred but could not be read: {failure}"), None),
     }
 }
 
-/// Notes in a dry run what is asked if an alarm ends it.
+/// Notes in a dry run the request after an alarm.
 pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
     let question = ReadAlarm::new(1, false).map_err(usage)?;
-    let reason =
-        Reason::about("which alarm, if one comes up").depending_on("whether the status says that there is one");
+    let reason = Reason::about("alarm number, after an alarm").depending_on("whether the status shows an alarm");
     link.plan_if(&question.request(), reason);
     Ok(())
 }
 
-/// Contact lost while waiting: what was `done` goes on unseen, so its outcome is unknown.
+/// Failure for a lost connection during a wait. The action continues without supervision, so its outcome is unknown.
 pub(super) fn lost(done: &str, failure: Failure) -> Failure {
-    let message = format!("{done}, but its end was not seen: {failure}");
+    let message = format!("{done}, but its end was not reported: {failure}");
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-        .hint("do not send it again; `yerc status` and `yerc position` tell what came of it")
+        .hint("do not send it again; `yerc status` and `yerc position` show the result")
 }
 
 #[cfg(test)]
@@ -134,6 +135,6 @@ mod tests {
     fn a_lost_contact_leaves_the_outcome_open() {
         let failure = lost("the job was started", Failure::new(Kind::NoAnswer, "silence").code("0x1"));
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert_eq!(failure.message, "the job was started, but its end was not seen: silence");
+        assert_eq!(failure.message, "the job was started, but its end was not reported: silence");
     }
 }

@@ -53,15 +53,15 @@ commands! {
     }
 }
 
-/// How a motion goes, in the words of a question.
+/// Kind of motion, for the confirmation.
 fn way(kind: MoveKind) -> &'static str {
     match kind {
-        MoveKind::Link => "by its joints",
+        MoveKind::Link => "with joint interpolation",
         MoveKind::Straight | MoveKind::Incremental => "in a straight line",
     }
 }
 
-/// A cartesian target with everything that goes with it.
+/// Cartesian target with its options.
 #[derive(Debug, Args)]
 struct Target {
     #[command(flatten)]
@@ -70,10 +70,10 @@ struct Target {
     frame: Frame,
     #[command(flatten)]
     forms: Forms,
-    /// Axes of the robot's base, in mm
+    /// Base axes of the robot, in mm
     #[arg(long, value_name = "MM,…", allow_hyphen_values = true, value_parser = base_lengths)]
     base_axes: Option<Values>,
-    /// Axes of a station, in pulses
+    /// Station axes, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = station_pulses)]
     station_axes: Option<Values>,
     #[command(flatten)]
@@ -97,7 +97,7 @@ impl Target {
         }
     }
 
-    /// Moves to the coordinates that were typed, to those of a variable, or by degrees.
+    /// Moves to the typed coordinates, to the coordinates of a variable, or to joint angles in degrees.
     async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport, Failure> {
         match self.to.destination() {
             Some(destination) => Motion { target: self, kind, speed }.run(context, &destination).await,
@@ -105,7 +105,7 @@ impl Target {
         }
     }
 
-    /// Refuses what a variable or pulses say already.
+    /// Rejects options whose value the variable or the pulses already contain.
     fn refuse_besides(&self, flag: &str, has_frame: bool) -> Result<(), Failure> {
         let given = [
             ("--coordinate", self.frame.coordinate.is_some()),
@@ -117,8 +117,8 @@ impl Target {
         match given.iter().find(|(_, is_given)| *is_given) {
             None => Ok(()),
             Some((other, _)) => {
-                Err(Failure::usage(format!("{other} cannot be used with {flag}, which says it already"))
-                    .hint(format!("remove {other}, or type the target by its coordinates")))
+                Err(Failure::usage(format!("{other} cannot be used with {flag}, which already defines it"))
+                    .hint(format!("remove {other}, or type the target as coordinates")))
             }
         }
     }
@@ -150,7 +150,7 @@ impl Target {
     }
 }
 
-/// A cartesian move without a target yet.
+/// Cartesian move without a target.
 fn plain(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> CartesianMove {
     let (robot, station) = mover.words();
     CartesianMove {
@@ -171,7 +171,7 @@ fn plain(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> CartesianMo
     }
 }
 
-/// The base that carries a robot has the robot's number; its axes move along with the robot.
+/// The base of a robot has the robot's number, and its axes move with the robot.
 fn unnamed_base(group: Group, base: Option<&Values>) -> Vec<(Group, usize, &'static str)> {
     match group {
         Group::Robot(number) => vec![(Group::Base(number), base.map_or(0, |base| base.0.len()), "--base-axes")],
@@ -218,7 +218,7 @@ macro_rules! motion {
 }
 
 motion! {
-    /// Moves to a position, axes interpolated (0x8A, instance 1).
+    /// Moves to a position with joint interpolation (0x8A, instance 1).
     Joint {
         /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: Target
@@ -245,7 +245,7 @@ motion! {
     this.distance.going(context.link, this.speed).await?.run(context, &this.distance.question(this.speed))
 }
 motion! {
-    /// Moves to pulses, axes interpolated (0x8B, instance 1).
+    /// Moves to pulses with joint interpolation (0x8B, instance 1).
     PulseJoint {
         /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: PulseTarget
@@ -263,17 +263,17 @@ motion! {
     this.target.run(context, MoveKind::Straight, this.speed)
 }
 
-/// A distance with everything that goes with it.
+/// Distance with its options.
 #[derive(Debug, Args)]
 struct Distance {
     #[command(flatten)]
     by: By,
     #[command(flatten)]
     frame: Frame,
-    /// Distances of the axes of the robot's base, in mm
+    /// Distances of the base axes of the robot, in mm
     #[arg(long, value_name = "MM,…", allow_hyphen_values = true, value_parser = base_lengths)]
     base_axes: Option<Values>,
-    /// Distances of the axes of a station, in pulses
+    /// Distances of the station axes, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = station_pulses)]
     station_axes: Option<Values>,
     #[command(flatten)]
@@ -281,7 +281,7 @@ struct Distance {
 }
 
 impl Distance {
-    /// The distances of a robot, unless only a station moves.
+    /// Distances of a robot; none if only a station moves.
     fn robot(&self) -> Option<[i32; 6]> {
         let by = self.by.distances();
         (self.station_axes.is_none() || by != [0; 6]).then_some(by)
@@ -320,7 +320,7 @@ impl Distance {
             }
         };
         if order.target == [0; 6] && order.base == [0; 3] && order.station_axes == [0; 6] {
-            return Err(Failure::usage("every distance is 0: nothing would move")
+            return Err(Failure::usage("all distances are 0, so no axis would move")
                 .hint("give at least one of --x --y --z --rx --ry --rz, or --by"));
         }
         let order = link.by_model(|model| MoveCartesian::new(model, MoveKind::Incremental, order)).await?;
@@ -328,20 +328,20 @@ impl Distance {
     }
 }
 
-/// A target in pulses with everything that goes with it.
+/// Target in pulses with its options.
 #[derive(Debug, Args)]
 struct PulseTarget {
-    /// The target: pulses of six axes, and of a seventh and eighth where there are
+    /// Target: pulses of six axes, or seven or eight if the robot has them
     #[arg(long, value_name = "S,L,U,R,B,T[,E]", allow_hyphen_values = true, value_parser = robot_pulses,
         required_unless_present = "station_axes")]
     pulses: Option<Values>,
     /// Tool number
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 63))]
     tool: u32,
-    /// Axes of the robot's base, in pulses
+    /// Base axes of the robot, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = base_pulses)]
     base_axes: Option<Values>,
-    /// Axes of a station, in pulses
+    /// Station axes, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = station_pulses)]
     station_axes: Option<Values>,
     #[command(flatten)]
@@ -415,7 +415,7 @@ mod tests {
         (&frame[..16], words.collect())
     }
 
-    /// The one order among the frames of a dry run.
+    /// The only move request in the frames of a dry run.
     fn order_on(target: &str, line: &str) -> String {
         let sent = frames_on(target, line).unwrap();
         let orders: Vec<&String> =
@@ -431,7 +431,7 @@ mod tests {
     #[test]
     fn a_dry_run_shows_what_is_asked_before_and_after() {
         let heads = |line: &str| frames(line).unwrap().iter().map(|frame| frame[..8].to_owned()).collect::<Vec<_>>();
-        // Where the base stands and which axes it has, where the robot stands and which it has; the order; the looks.
+        // Position and axes of the base, position and axes of the robot, the move request, the status reads.
         let before = ["75000b00", "74000b00", "75006500", "74006500"];
         let after = ["72000100", "75006500", "70000100"];
         assert_eq!(heads(FAR), [&before[..], &["8a000200"], &after].concat());
@@ -462,7 +462,7 @@ mod tests {
         let axes = [1500, -2000, 0, 0, 0, 0, 0, 0, 0];
         let sent = order(line);
         assert_eq!(words(&sent), ("8a00010001020000", [&expected[..], &axes[..]].concat()));
-        // FS 3.3.39 prints one reserved word less.
+        // FS 3.3.39 prints one reserved word fewer.
         let sent = order_on("udp://h?model=fs100&move_words=25", line);
         assert_eq!(words(&sent).1, [&expected[..11], &expected[12..], &axes[..]].concat());
     }
@@ -476,7 +476,7 @@ mod tests {
         assert_eq!(order("move relative --by 0,0,-50,0,0,0.5 --speed 20deg/s --coordinate tool"), sent);
         for nothing in ["--x 0", "--by 0,0,0,0,0,0", "--base-axes 0"] {
             let failure = frames(&format!("move relative {nothing} --speed 1mm/s")).unwrap_err();
-            assert_eq!((failure.kind, &failure.message[..19]), (Kind::Usage, "every distance is 0"));
+            assert_eq!((failure.kind, &failure.message[..19]), (Kind::Usage, "all distances are 0"));
         }
         assert!(objection("move relative --speed 1mm/s").contains("--by"));
     }
@@ -529,7 +529,7 @@ mod tests {
         );
         assert_eq!(
             intent("move pulse joint --pulses 0,0,0,0,-90000,0 --speed 10%"),
-            "move R1 by its joints to s=0 l=0 u=0 r=0 b=-90000 t=0 in pulses, tool 0, at 10.00 %"
+            "move R1 with joint interpolation to s=0 l=0 u=0 r=0 b=-90000 t=0 in pulses, tool 0, at 10.00 %"
         );
         assert_eq!(
             intent("move relative --z -5 --speed 1mm/s --base-axes 1"),
@@ -550,7 +550,7 @@ mod tests {
         let elapsed = far["elapsed_ms"].as_u64().unwrap();
         assert!((3000..3500).contains(&elapsed), "300 mm at 100 mm/s take {elapsed} ms");
         assert!(again["elapsed_ms"].as_u64().unwrap() < 200, "the robot is there already: {again}");
-        assert_eq!(up["reached"], json!(null), "base coordinates do not tell");
+        assert_eq!(up["reached"], json!(null), "base coordinates are not conclusive");
         let position = &position["positions"][0];
         assert_eq!(position["text"], up["position"]["text"]);
         assert_ne!(position["z_mm"], json!(1200.0));
@@ -573,7 +573,7 @@ mod tests {
             assert!(failure.message.contains(told), "{failure}");
             let x_mm = position.unwrap()["positions"][1]["x_mm"].as_f64().unwrap();
             assert!((1001.0..1299.0).contains(&x_mm), "{x_mm}");
-            assert!(failure.message.contains(&format!("it stands at x={x_mm:.3} ")), "{failure}");
+            assert!(failure.message.contains(&format!("position: x={x_mm:.3} ")), "{failure}");
         }
     }
 
@@ -585,8 +585,8 @@ mod tests {
         let [far, station, base, still] = reports(state, &lines).await.try_into().unwrap();
         let failure = far.unwrap_err();
         assert_eq!(failure.kind, Kind::Usage);
-        assert_eq!(failure.message, "axis 1 of B1 stands at 5000 pulses and has no target: it would move to 0");
-        assert!(station.unwrap_err().message.starts_with("axis 2 of S1 stands at 70 pulses"));
+        assert_eq!(failure.message, "axis 1 of B1 is at 5000 pulses and has no target, so it would move to 0");
+        assert!(station.unwrap_err().message.starts_with("axis 2 of S1 is at 70 pulses"));
         assert_eq!(base.unwrap()["positions"][0]["text"], "pulse:1=5000");
         assert_eq!(still.unwrap()["positions"][0]["text"], "pulse:1=0,2=70");
     }

@@ -1,4 +1,4 @@
-//! `yerc names`: what people call signals, variables and registers.
+//! `yerc names`: user names of signals, variables and registers.
 
 use clap::Args;
 use jiff::Timestamp;
@@ -16,26 +16,27 @@ use crate::output::view::{Cell, Table, View};
 use crate::settings::names::{Kept, KeptFile, Place};
 
 commands! {
-    /// What can be done with names.
+    /// Commands for names.
     pub enum Names {
-        /// Read the names on the controller and keep them
+        /// Read the names from the controller and store them
         Get(Get),
-        /// Remove the names that were kept
+        /// Remove the stored names
         Forget(Forget),
     }
 }
 
-/// Reads the names that the controller keeps in its files, and keeps them on this machine for its address.
+/// Reads the names in the files of the controller, and stores them on this computer for its address.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The files are IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; one that the controller does not have \
-                  has no names. A name can then be typed in place of its number: `io get`, `io set`, `var get`, `var set`, \
-                  `register get`, `teach`, `move --to`. Names of the robot's entry in robots.toml come before them \
-                  (`armctl help inventory`). `armctl names list` shows them. Names that are changed on the controller are read again by this command."
+    after_help = "The files are IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; a missing file has no names. \
+                  You can then type a name instead of its number: `io get`, `io set`, `var get`, `var set`, `register \
+                  get`, `teach`, `move --to`. Names of the robot in robots.toml have priority (`armctl help \
+                  inventory`). `armctl names list` shows all names. After a change on the controller, run this command \
+                  again."
 )]
 pub struct Get {}
 
-/// Removes the names that were kept for the controller; those of robots.toml stay.
+/// Removes the stored names of the controller; those in robots.toml stay.
 #[derive(Debug, Args)]
 pub struct Forget {}
 
@@ -76,7 +77,7 @@ impl Command for Get {
         }
         items::nothing(files.len(), files.iter().filter_map(|file| file.error.as_ref()))?;
         let mut report = Fetched { files, names: names.len(), kept: false, read_at: None };
-        // Half of them in place of all that were kept would hide what is missing.
+        // An incomplete set must not replace a complete one.
         if report.failure().is_none()
             && let Some(place) = robot.names.place()
         {
@@ -85,48 +86,48 @@ impl Command for Get {
             (report.kept, report.read_at) = (true, Some(kept.read_at));
         }
         if !report.kept && robot.target.value.is_simulated() {
-            screen.note("A simulator in this process keeps no names: they are always those that its files begin with.");
+            screen.note("Names of a simulator in this process are not stored: they always come from its start files.");
         }
         Ok(report)
     }
 }
 
-/// The software of the controller; nothing where it does not tell.
+/// Software of the controller; none if it refuses to report it.
 async fn told_software(link: &mut Link) -> Option<String> {
     if link.told_software().is_none() {
-        // Names without it are names all the same.
+        // The names are valid without it.
         let _refused = software(link).await;
     }
     link.told_software()
 }
 
-/// A file of names has some ten thousand lines.
+/// Maximum size of a name file, which has some ten thousand lines.
 const MOST: u64 = 8 << 20;
 const ANOTHER_FORM: &str =
-    "only the form that FS100, DX200 and YRC1000 write is known; names can be given in robots.toml";
+    "armctl reads only the format of FS100, DX200 and YRC1000; define names in robots.toml instead";
 
-/// What was read.
+/// Names that were read.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Fetched {
     files: Vec<OfFile>,
-    /// In all files.
+    /// Number of names in all files.
     names: usize,
-    /// Whether they are kept for later commands.
+    /// Whether they are stored for later commands.
     kept: bool,
-    /// When they were read, if they are kept.
+    /// Time of reading, if they are stored.
     #[schemars(with = "Option<String>", extend("format" = "date-time"))]
     read_at: Option<Timestamp>,
 }
 
-/// A file and what is in it.
+/// A file and its names.
 #[derive(Debug, Serialize, JsonSchema)]
 struct OfFile {
     file: &'static str,
     state: State,
     names: usize,
-    /// Lines that have another form.
+    /// Number of lines in another format.
     passed_over: usize,
-    /// Why it was not read.
+    /// Reason why it was not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
@@ -136,7 +137,7 @@ struct OfFile {
 #[serde(rename_all = "snake_case")]
 enum State {
     Read,
-    /// The controller has no such file, or an empty one.
+    /// The file does not exist or is empty.
     Missing,
     Failed,
 }
@@ -146,7 +147,7 @@ impl Report for Fetched {
         let mut table = Table::new(&["file", "names", "passed over", "result"], "no files");
         for file in &self.files {
             let result = match (file.state, &file.error) {
-                (State::Missing, _) => "the controller has none".into(),
+                (State::Missing, _) => "no such file".into(),
                 (_, Some(error)) => error.cell(),
                 (_, None) if self.kept => "kept".into(),
                 (_, None) => "read".into(),
@@ -173,15 +174,15 @@ impl Command for Forget {
     }
 }
 
-/// What became of names that were kept.
+/// Result of removing stored names.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Forgotten {
-    /// Whether there were some.
+    /// Whether names were stored.
     forgotten: bool,
 }
 
 impl Report for Forgotten {
     fn view(&self) -> View {
-        View::text(if self.forgotten { "forgotten" } else { "nothing was kept" })
+        View::text(if self.forgotten { "forgotten" } else { "no names were stored" })
     }
 }

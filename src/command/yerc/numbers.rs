@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use crate::controller::typed::integer;
 
-/// Reads whole numbers from `first` to `last`.
+/// Parser for whole numbers from `first` to `last`.
 pub fn within<T>(first: T, last: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
 where
     T: TryFrom<i64> + PartialOrd + Display + Copy + Send + Sync + 'static,

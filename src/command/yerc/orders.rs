@@ -1,4 +1,4 @@
-//! Orders of one frame: servo, hold, hlock, cycle, say.
+//! Commands with one frame: servo, hold, hlock, cycle, say.
 
 use clap::{Args, ValueEnum};
 
@@ -12,8 +12,7 @@ use crate::controller::yerc::query::{self, Query};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 
-/// A command whose risk and effect are those of a single order: its type, arguments, id, the order as a query, what it
-/// will do, and what it did.
+/// Declares a command with a single request: type, arguments, id, the request, its intent, and its result.
 macro_rules! order {
     (
         $(#[$doc:meta])*
@@ -40,7 +39,7 @@ macro_rules! order {
 
             fn intent(&self) -> String {
                 let $this = self;
-                // Most are the same whatever the arguments.
+                // Most requests do not depend on the arguments.
                 let _ = $this;
                 $intent.to_owned()
             }
@@ -58,7 +57,7 @@ macro_rules! order {
                 let ($this, Context { link, authority, .. }) = (self, context);
                 let new = New::of($set, $new, $done);
                 let old = Old::UNREAD;
-                // A stop waits for nothing.
+                // A stop must not be delayed by a read.
                 $(let old = if self.is_stop() {
                     old
                 } else {
@@ -87,28 +86,29 @@ order! {
         switch: Switch
     }, "yerc.servo",
     |this| query::Servo(this.switch == Switch::On),
-    if this.switch == Switch::On { "switch servo power on" } else { "switch servo power off: an axis without brake may sink" },
+    if this.switch == Switch::On { "switch servo power on" } else { "switch servo power off: an axis without brake may \
+        sink" },
     "servo_on" = this.switch == Switch::On,
-    if this.switch == Switch::On { "servo power is switched on" } else { "servo power is switched off" },
+    if this.switch == Switch::On { "servo power is on" } else { "servo power is off" },
     was |status| status.map(ControllerStatus::servo_on)
 }
 impl Hold {
-    /// What stops the robot.
+    /// The switch state that stops the robot.
     pub const fn on() -> Self {
         Self { switch: Switch::On }
     }
 }
 
 order! {
-    /// Holds the robot, or lets it go on (FS and DX 3.3.20).
+    /// Applies (on) or releases (off) HOLD (FS and DX 3.3.20).
     Hold {
-        /// on holds the robot, off lets it go on
+        /// on applies HOLD, off releases it
         #[arg(value_name = "on|off")]
         switch: Switch
     }, "yerc.hold",
     |this| query::Hold(this.switch == Switch::On), "release the hold",
     "held" = this.switch == Switch::On,
-    if this.switch == Switch::On { "hold is on" } else { "hold is off" },
+    if this.switch == Switch::On { "HOLD is on" } else { "HOLD is off" },
     was |status| status.map(ControllerStatus::held),
     stops if this.switch == Switch::On
 }
@@ -121,17 +121,18 @@ order! {
     }, "yerc.hlock",
     |this| query::Hlock(this.switch == Switch::On), "",
     "hlock_on" = this.switch == Switch::On,
-    if this.switch == Switch::On { "pendant and operation signals are locked" } else { "pendant and operation signals are free" }
+    if this.switch == Switch::On { "pendant and operation signals are locked" } else { "pendant and operation signals \
+        are unlocked" }
 }
 
-/// The cycle switch.
+/// Cycle modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum CycleName {
-    /// A step a start
+    /// One step per start
     Step,
-    /// A cycle a start
+    /// One cycle per start
     Once,
-    /// Again and again
+    /// Continuous
     Continuous,
 }
 
@@ -146,17 +147,17 @@ impl From<CycleName> for CycleMode {
 }
 
 order! {
-    /// Chooses how far a start goes (FS and DX 3.3.21).
+    /// Selects the cycle mode (FS and DX 3.3.21).
     Cycle {
-        /// How far a start goes
+        /// Cycle mode
         mode: CycleName
     }, "yerc.cycle",
     |this| query::SetCycle(this.mode.into()), "",
     "cycle" = cycle_name(this.mode.into()),
     match this.mode {
-        CycleName::Step => "the cycle is step",
-        CycleName::Once => "the cycle is one cycle",
-        CycleName::Continuous => "the cycle is continuous",
+        CycleName::Step => "the cycle mode is step",
+        CycleName::Once => "the cycle mode is one cycle",
+        CycleName::Continuous => "the cycle mode is continuous",
     },
     was |status| status.and_then(ControllerStatus::cycle).map(cycle_name)
 }
@@ -164,7 +165,7 @@ order! {
 /// Shows a message on the pendant (FS and DX 3.3.22).
 #[derive(Debug, Args)]
 pub struct Say {
-    /// At most 30 half-width or 15 full-width characters; an empty text clears it
+    /// At most 30 half-width or 15 full-width characters; an empty text clears the message
     text: String,
 }
 
@@ -178,22 +179,23 @@ impl Command for Say {
         refuse_controls("the message", &self.text)?;
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
-        let words = if self.text.is_empty() { "the message is cleared" } else { "the message is on the pendant" };
+        let words = if self.text.is_empty() { "the message is cleared" } else { "the pendant shows the message" };
         Ok(New::of("pendant_message", self.text.as_str(), words).replaces(Old::UNREAD))
     }
 }
 
-/// Texts for a display and names of jobs have no control characters: what one would do there is anybody's guess.
+/// Display texts and job names must not contain control characters, because their effect is unknown.
 pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
     match text.chars().find(|c| c.is_control()) {
         None => Ok(()),
-        Some(found) => Err(Failure::usage(format!("{what} has a control character in it: {}", found.escape_debug()))
-            .hint("leave it out")),
+        Some(found) => {
+            Err(Failure::usage(format!("{what} contains a control character: {}", found.escape_debug()))
+                .hint("remove it"))
+        }
     }
 }
 
-/// A query that cannot be built: the operator asked for something that does not exist.
+/// Failure for a request that cannot be built from the arguments.
 pub(super) fn usage(error: impl std::fmt::Display) -> Failure {
-    Failure::usage(error.to_string())
-        .hint("the --help of the command tells what it takes, `armctl help yerc` which commands there are")
+    Failure::usage(error.to_string()).hint("see --help of the command, or `armctl help yerc` for all commands")
 }

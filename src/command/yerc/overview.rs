@@ -1,4 +1,4 @@
-//! A robot of the family in the line that `armctl status` prints.
+//! Summary of a robot for `armctl status`.
 
 use super::alarm::plan_latest;
 use super::link::Link;
@@ -11,7 +11,7 @@ use crate::controller::yerc::payload::{ControllerStatus, Position, StatusBit};
 use crate::controller::yerc::query::{Coordinates, ReadPosition, ReadStatus};
 use crate::failure::Failure;
 
-/// Asks for status and position.
+/// Reads status and position.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let status = link.ask(&ReadStatus).await.known()?;
     let fault = match status {
@@ -19,17 +19,17 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
         None => plan_latest(link).map(|()| Fault::default())?,
     };
     let query = link.by_model(|model| ReadPosition::new(model, Group::R1, Coordinates::Base)).await?;
-    // A controller without a first robot has no position to show; that is no failure.
+    // A controller without a first robot has no position, which is not a failure.
     let position = link.try_ask(&query).await.known()?.and_then(Result::ok);
     Ok(report(status.ok_or_else(unknown)?, fault, position.as_ref()))
 }
 
-/// What the answers say.
+/// Report from the answers.
 pub(super) fn report(status: ControllerStatus, fault: Fault, base: Option<&Position>) -> OverviewReport {
     OverviewReport { state: state(status, fault, base), left_over: left_over(status), ..OverviewReport::default() }
 }
 
-/// The state that the status words tell (FS and DX 3.3.3).
+/// State from the status words (FS and DX 3.3.3).
 pub(super) fn state(status: ControllerStatus, fault: Fault, base: Option<&Position>) -> State {
     let position = base.map(|position| {
         let axes = position.axes.padded();
@@ -39,7 +39,7 @@ pub(super) fn state(status: ControllerStatus, fault: Fault, base: Option<&Positi
     let is_play = match (status.has(StatusBit::Teach), status.has(StatusBit::Play)) {
         (true, false) => Some(false),
         (false, true) => Some(true),
-        // The controller says neither or both.
+        // The controller reports neither or both.
         _ => None,
     };
     State {
@@ -55,13 +55,17 @@ pub(super) fn state(status: ControllerStatus, fault: Fault, base: Option<&Positi
     }
 }
 
-/// What a client that is gone left behind, as far as the status tells it.
+/// State that a previous client left, derived from the status.
 pub(super) fn left_over(status: ControllerStatus) -> Vec<LeftOver> {
     let is_held = status.has(StatusBit::HoldCommand);
     let with_power = is_held && status.servo_on();
     [
-        LeftOver::new(is_held, "HOLD by a command is on", "`yerc hold off` releases it: what it holds may go on"),
-        LeftOver::new(with_power, "servo power is on meanwhile", "`yerc servo off` takes it away"),
+        LeftOver::new(
+            is_held,
+            "HOLD by a command is on",
+            "`yerc hold off` releases it, and the held motion may continue",
+        ),
+        LeftOver::new(with_power, "servo power is on", "`yerc servo off` switches it off"),
     ]
     .into_iter()
     .flatten()

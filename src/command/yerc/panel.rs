@@ -1,4 +1,4 @@
-//! The keys of `armctl teach` as command lines of `yerc`.
+//! Keys of `armctl teach` as `yerc` command lines.
 
 use serde_json::Value;
 
@@ -58,7 +58,7 @@ fn relative(step: &Step<'_>, system: &str) -> Option<Vec<String>> {
     Some(words(&format!("move relative {flag} {} --coordinate {system} --speed {}{unit}", step.by, step.speed)))
 }
 
-/// The controller knows no relative motion of joints: the target is made of where they are.
+/// The protocol has no relative joint motion, so the target is computed from the current position.
 fn joint(step: &Step<'_>) -> Option<Vec<String>> {
     let pulse = &step.from["pulse"];
     let axes = pulse["pulses"].as_object()?;

@@ -1,4 +1,4 @@
-//! Many things read in few requests; what a run of them is refused for is found by reading it again in parts.
+//! Reads of many items in few requests. A refused run is read again in parts to find the refused items.
 
 use std::collections::{HashMap, VecDeque};
 
@@ -9,18 +9,18 @@ use crate::controller::yerc::request::Request;
 use crate::controller::yerc::variables::PlannedRead;
 use crate::failure::{Failure, Kind};
 
-/// How the parts of a refused run are read.
+/// Division of a refused run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parts {
-    /// By halves, since numbers end somewhere.
+    /// Halves, because the valid numbers end somewhere.
     Halves,
-    /// One by one, since each may be refused, or since the controller has no request for several.
+    /// Single items, because each can be refused, or because the controller has no request for several items.
     Single,
 }
 
-/// Asks the requests of a plan. A run that the controller refuses is planned and read again in parts, down to the things
-/// that are refused themselves. `parts` tells how a run is parted, `progress` is told what is asked for, and how many
-/// things are known by then. A dry run notes the plan.
+/// Sends the requests of a plan. A refused run is planned and read again in parts, down to the refused items. `parts`
+/// defines how a run is divided. `progress` receives the current items and the number of items known so far. A dry
+/// run notes the plan.
 pub async fn read_in_parts<S: PlannedRead>(
     link: &mut Link,
     mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
@@ -63,7 +63,7 @@ pub async fn read_in_parts<S: PlannedRead>(
     Ok(known)
 }
 
-/// Whether a request asks for one thing; it may ask for others with it that nobody wants.
+/// Whether a request is for one item; it may include others that are not requested.
 fn is_alone<S: PlannedRead>(
     step: &S,
     plan: &mut impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
@@ -72,9 +72,9 @@ fn is_alone<S: PlannedRead>(
     Ok(asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request()))
 }
 
-/// Notes in a dry run what [`read_in_parts`] sends, each run with what is asked if it is refused. Of a long one these are
-/// its halves, which are halved again, and the request for a single thing, which stands for those of all. `about` tells
-/// what a run is for.
+/// Notes in a dry run the requests of [`read_in_parts`], each run with the requests after a refusal. For a long run
+/// these are its halves, which are divided again, and one request for a single item as an example. `about` is the
+/// purpose of a run.
 pub fn plan_in_parts<S: PlannedRead>(
     link: &mut Link,
     mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
@@ -96,17 +96,17 @@ pub fn plan_in_parts<S: PlannedRead>(
             (Parts::Halves, [first, _, .., last]) => {
                 let (one, other) = asked.split_at(asked.len().div_ceil(2));
                 for (half, which) in [(one, "first"), (other, "second")] {
-                    let about = format!("its {which} half, if it is refused; likewise down to what is refused alone");
+                    let about = format!("its {which} half, if it is refused; divided again down to single items");
                     for step in plan(half)? {
                         link.plan_if(&step.request(), Reason::about(&about).depending_on(REFUSED));
                     }
                 }
-                let about = "each alone, if the controller has no request for several";
+                let about = "each item alone, if the controller has no request for several";
                 link.plan_depending(first, last, Reason::about(about).depending_on(REFUSED));
             }
             _ => {
                 for single in &singles {
-                    link.plan_if(single, Reason::about("alone, if it is refused").depending_on(REFUSED));
+                    link.plan_if(single, Reason::about("each item alone, if the run is refused").depending_on(REFUSED));
                 }
             }
         }
@@ -114,10 +114,10 @@ pub fn plan_in_parts<S: PlannedRead>(
     Ok(())
 }
 
-/// What the requests behind a run depend on.
-const REFUSED: &str = "whether the run is refused";
+/// Condition of the requests after a run.
+const REFUSED: &str = "whether the controller refuses the run";
 
-/// How a run is read again after this; `None` where that leads nowhere.
+/// Division of a run after this refusal; `None` if a new read would not help.
 fn how(denied: &Denied, usual: Parts) -> Option<Parts> {
     /// Added status: "command error", "undefined command".
     const UNKNOWN: [u32; 2] = [0x1010, 0xA000];

@@ -23,13 +23,13 @@ use crate::controller::yerc::query::{Coordinates, ReadPosition};
 use crate::controller::yerc::variables;
 use crate::failure::{Failure, Kind};
 
-/// Where a group stands (FS and DX 3.3.6).
+/// Current position of a group (FS and DX 3.3.6).
 #[derive(Debug, Args)]
 pub struct Position {
     /// Control group: R1 …, B1 …, S1 …
     #[arg(long, default_value = "R1")]
     group: Group,
-    /// In pulses, in base coordinates (robots only), or both [default: what the group has]
+    /// Pulses, base coordinates (robots only), or both [default: all that the group has]
     #[arg(long, value_enum)]
     coordinates: Option<Which>,
     /// Show a small chart of each axis over the rounds of --watch
@@ -97,7 +97,7 @@ impl Command for Position {
     }
 }
 
-/// Asks where a group stands.
+/// Reads the position of a group.
 pub(super) async fn ask(
     link: &mut Link,
     group: Group,
@@ -114,7 +114,7 @@ pub(super) async fn ask(
     Ok((position, report.of_group(group.to_string())))
 }
 
-/// The concept of a frame: `joint` for pulses.
+/// Frame of the report: `joint` for pulses.
 const fn frame(coordinates: Coordinates) -> &'static str {
     match coordinates {
         Coordinates::Pulse => "joint",
@@ -122,7 +122,7 @@ const fn frame(coordinates: Coordinates) -> &'static str {
     }
 }
 
-/// The row of a group in these coordinates.
+/// Row of a group in these coordinates.
 fn row(
     group: Group,
     coordinates: Coordinates,
@@ -133,7 +133,7 @@ fn row(
     Row::new(&group.to_string(), frame(coordinates), position)
 }
 
-/// What was read, if it is in the coordinates that were asked for.
+/// Position in the report, if it has the requested coordinates.
 fn reported(
     group: Group,
     coordinates: Coordinates,
@@ -145,13 +145,13 @@ fn reported(
             Ok(as_reported(group, position, fitted, per_degree))
         }
         (_, kind) => {
-            let message = format!("unexpected answer: a position of type {} was not asked for", kind.word());
+            let message = format!("unexpected answer: position type {} was not requested", kind.word());
             Err(Failure::new(Kind::Malformed, message).hint("-vvv shows the bytes"))
         }
     }
 }
 
-/// What a position variable of a group holds: axes that it does not use are left out.
+/// Position in a variable of a group; unused axes are left out.
 pub(super) fn taught(group: Group, value: &variables::Value, per_degree: &[f64]) -> robot::Position {
     let position = as_position(value);
     let used = &position.axes.as_slice()[..position.shown_axes().min(position.axes.as_slice().len())];
@@ -159,7 +159,7 @@ pub(super) fn taught(group: Group, value: &variables::Value, per_degree: &[f64])
     as_reported(group, payload::Position { axes, ..position }, Fitted::ALL, per_degree)
 }
 
-/// A position of a group, in any frame.
+/// Position of a group in any coordinate system.
 pub(super) fn as_reported(
     group: Group,
     position: payload::Position,
@@ -173,14 +173,14 @@ pub(super) fn as_reported(
     }
 }
 
-/// A position by axis, in degrees too where the pulses of a degree are known.
+/// Position by axis, also in degrees if the pulses per degree are known.
 fn pulses(group: Group, position: payload::Position, fitted: Fitted, per_degree: &[f64]) -> robot::Position {
     let axes = ByAxis::new(position.axes, matches!(group, Group::Robot(_)), fitted);
     let per_degree = per_degree.iter().copied().map(Some).chain(std::iter::repeat(None));
     let joint = |((name, pulses), per): ((&'static str, i32), Option<f64>)| Joint {
         axis: name.to_owned(),
         pulses: Some(pulses),
-        // To a ten-thousandth, as controllers have angles.
+        // Rounded to 0.0001 degree, the resolution of controllers.
         degrees: per.map(|per| (f64::from(pulses) / per * 1e4).round() / 1e4),
         ..Joint::default()
     };
@@ -193,7 +193,7 @@ fn pulses(group: Group, position: payload::Position, fitted: Fitted, per_degree:
     }
 }
 
-/// A position in coordinates.
+/// Position in coordinates.
 fn cartesian(group: Group, position: payload::Position, fitted: Fitted) -> robot::Position {
     let axes = position.axes.as_slice();
     let value = |axis: usize| {
@@ -221,22 +221,23 @@ fn cartesian(group: Group, position: payload::Position, fitted: Fitted) -> robot
     }
 }
 
-/// A position of a group as `var set` takes it.
+/// Position of a group in the notation of `var set`.
 fn text(group: Group, position: payload::Position) -> String {
     PositionData::of(&held(group, position)).map(|data| data.text().to_owned()).unwrap_or_default()
 }
 
-/// The value of a wire integer. It is the binary number nearest to the decimal one, so it prints with the same digits.
+/// Value of a protocol integer. It is the binary number nearest to the decimal number, so it prints with the same
+/// digits.
 pub(super) fn decimal(value: i32, unit: Unit) -> f64 {
     f64::from(value) / 10_f64.powi(unit.decimals.into())
 }
 
-/// Names of the axes of a robot; other groups have numbers (FS and DX 3.3.5). An eighth is not named by the manuals.
+/// Axis names of a robot; other groups have numbers (FS and DX 3.3.5). The manuals do not name an eighth axis.
 pub(super) const ROBOT_AXES: [&str; MAX_AXES] = ["S", "L", "U", "R", "B", "T", "E", "8"];
 pub(super) const CARTESIAN_AXES: [&str; MAX_AXES] = ["X", "Y", "Z", "Rx", "Ry", "Rz", "Re", "8"];
 const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"];
 
-/// A number for each axis, under its name.
+/// A number for each axis, with the axis name as key.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ByAxis {
     axes: Axes,
@@ -245,12 +246,12 @@ pub(super) struct ByAxis {
 }
 
 impl ByAxis {
-    /// `is_robot` decides about the names.
+    /// `is_robot` selects the names.
     pub(super) fn new(axes: Axes, is_robot: bool, fitted: Fitted) -> Self {
         Self { axes, is_robot, fitted }
     }
 
-    /// Names as people know them, and the values that are there.
+    /// Names and the existing values.
     pub(super) fn rows(&self) -> impl Iterator<Item = (&'static str, i32)> {
         let names = if self.is_robot { ROBOT_AXES } else { NUMBERED_AXES };
         let rows = names.into_iter().zip(self.axes.as_slice().iter().copied()).enumerate();
@@ -281,29 +282,29 @@ impl JsonSchema for ByAxis {
     }
 }
 
-/// The key of an axis in JSON.
+/// JSON key of an axis.
 fn key(name: &str) -> String {
     let is_number = name.starts_with(|first: char| first.is_ascii_digit());
     if is_number { format!("axis_{name}") } else { name.to_lowercase() }
 }
 
-/// The first `always` words of a form whatever they are, the others where they are set.
+/// The first `always` words of a form in any case, the others only if they are set.
 fn short(words: &[&str], bits: u32, always: usize) -> String {
     let told = words.iter().enumerate().filter(|(bit, _)| *bit < always || bits >> bit & 1 == 1);
     told.map(|(_, word)| *word).collect::<Vec<_>>().join("+")
 }
 
-/// The words of a form in short, as `--form` takes them.
+/// Short words of a form, as `--form` accepts them.
 pub(super) fn form_words(form: Form) -> String {
     short(&form.words().collect::<Vec<_>>(), form.0, 3)
 }
 
-/// The words of an extended form that are set.
+/// Words of an extended form that are set.
 pub(super) fn extended_words(form: ExtendedForm) -> String {
     short(&form.words().collect::<Vec<_>>(), form.0, 0)
 }
 
-/// What the axes of a group are called.
+/// Axis names of a group.
 pub(super) fn axis_names(kind: PositionKind, group: Group) -> [&'static str; MAX_AXES] {
     names(kind, matches!(group, Group::Robot(_)))
 }
@@ -316,7 +317,7 @@ fn names(kind: PositionKind, is_robot: bool) -> [&'static str; MAX_AXES] {
     }
 }
 
-/// Axes in a line for messages: `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0`.
+/// Axes in one line: `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0`.
 pub(super) fn in_a_line(kind: PositionKind, axes: &[i32], is_robot: bool) -> String {
     let names = names(kind, is_robot);
     let mut line = String::new();

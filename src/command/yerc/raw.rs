@@ -28,34 +28,34 @@ use crate::failure::Failure;
 use crate::gate::Confirmation;
 use crate::output::view::{Cell, View};
 
-/// A request as it is.
+/// Sends a raw request.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Numbers are decimal, or hexadecimal after 0x. A request that the manuals do not list is sent with \
-                        a warning, or refused with --strict; what armctl does not know counts as a motion, so it asks \
-                        before it sends. List (0x32) and save (0x16) show all blocks of the transfer as one; a \
-                        file is sent by `yerc file put`. If the controller refuses, its answer is printed and the exit code is 3."
+    after_help = "Numbers are decimal, or hexadecimal after 0x. A request that the manuals do not list is sent with a \
+                  warning, or rejected with --strict. armctl treats an unknown request as a motion and asks for \
+                  confirmation. List (0x32) and save (0x16) show all blocks of the transfer as one. To send a file, \
+                  use `yerc file put`. If the controller refuses, its answer is printed and the exit code is 3."
 )]
 pub struct Raw {
     /// Command number, such as 0x72
     #[arg(long, value_name = "N", value_parser = word, required_unless_present = "file")]
     command: Option<u16>,
-    /// Instance: which of the things that the command addresses
+    /// Instance: number of the item that the command addresses
     #[arg(long, value_name = "N", value_parser = word, required_unless_present = "file")]
     instance: Option<u16>,
-    /// Attribute: which field; 0 for all
+    /// Attribute: number of the field; 0 for all
     #[arg(long, value_name = "N", value_parser = byte, default_value = "0")]
     attribute: u8,
     /// Service: 0x01 or 0x0E read, 0x02 or 0x10 write, 0x33 and 0x34 read and write several
     #[arg(long, value_name = "N", value_parser = byte)]
     service: u8,
-    /// Data of the request in hexadecimal; blanks, colons and 0x may stand between
+    /// Data of the request in hexadecimal; spaces, colons and 0x are allowed
     #[arg(long, value_name = "HEX", value_parser = Bytes::parse)]
     data: Option<Bytes>,
-    /// Ask the file server instead of the robot server
+    /// Send to the file server instead of the robot server
     #[arg(long, conflicts_with_all = ["command", "instance"])]
     file: bool,
-    /// Refuse here what the manuals do not list for this model
+    /// Reject requests that the manuals do not list for this model
     #[arg(long)]
     strict: bool,
 }
@@ -67,7 +67,7 @@ impl Bytes {
     fn parse(text: &str) -> Result<Self, String> {
         let bytes = parse_hex(text)?;
         if bytes.len() > MAX_DATA {
-            return Err(format!("{} bytes; at most {MAX_DATA} fit a frame", bytes.len()));
+            return Err(format!("{} bytes; a frame has at most {MAX_DATA}", bytes.len()));
         }
         Ok(Self(bytes))
     }
@@ -75,12 +75,12 @@ impl Bytes {
 
 fn word(text: &str) -> Result<u16, String> {
     let number = typed::unsigned(text);
-    number.ok_or_else(|| "a number from 0 to 65535 (0x0000 to 0xFFFF) is expected".to_owned())
+    number.ok_or_else(|| "expected a number from 0 to 65535 (0x0000 to 0xFFFF)".to_owned())
 }
 
 fn byte(text: &str) -> Result<u8, String> {
     let number = typed::unsigned(text);
-    number.ok_or_else(|| "a number from 0 to 255 (0x00 to 0xFF) is expected".to_owned())
+    number.ok_or_else(|| "expected a number from 0 to 255 (0x00 to 0xFF)".to_owned())
 }
 
 impl Raw {
@@ -107,17 +107,17 @@ impl Command for Raw {
     fn intent(&self) -> String {
         let request = self.request();
         if let (true, Ok(file)) = (self.file, std::str::from_utf8(&request.data)) {
-            let what = if request.service == service::DELETE { "delete the file" } else { "ask for the file" };
-            return format!("{what} {:?} by a raw request (file service {:#04x})", file, request.service);
+            let what = if request.service == service::DELETE { "delete the file" } else { "request the file" };
+            return format!("{what} {:?} with a raw request (file service {:#04x})", file, request.service);
         }
-        let name = request.row().map_or("unknown to armctl", |row| row.name);
+        let name = request.row().map_or("unknown", |row| row.name);
         format!(
             "send a raw request ({name}: command {:#04x}, instance {}, attribute {}, service {:#04x})",
             request.command, request.instance, request.attribute, request.service
         )
     }
 
-    /// What positions hold is read first.
+    /// A write of positions first reads their content.
     fn confirmation(&self) -> Confirmation {
         let is_known = !self.file && self.risk() == Risk::Destroy;
         if is_known { Confirmation::WhenKnown } else { Confirmation::Question }
@@ -127,13 +127,13 @@ impl Command for Raw {
         let Context { link, screen, authority, .. } = context;
         let request = self.request();
         if !self.file && request.division() == Division::File {
-            return Err(Failure::usage("command 0 is that of the file server").hint("use --file without --command"));
+            return Err(Failure::usage("command 0 belongs to the file server").hint("use --file without --command"));
         }
         if self.file && request.service == service::LOAD {
             return Err(Failure::usage(format!("file service {:#04x} sends blocks", request.service))
                 .hint("use `yerc file put`"));
         }
-        // What some model takes is no mistake as long as nobody knows which one it is.
+        // A request that some model supports is not an error as long as the model is unknown.
         let doubt = match link.known_model() {
             Some(model) => request.check(model).err(),
             None if Model::ALL.iter().any(|model| request.check(*model).is_ok()) => None,
@@ -142,7 +142,7 @@ impl Command for Raw {
         let doubt = doubt.map(|error| error.to_string());
         if let Some(doubt) = &doubt {
             if self.strict {
-                return Err(Failure::usage(doubt.clone()).hint("without --strict it is sent all the same"));
+                return Err(Failure::usage(doubt.clone()).hint("remove --strict to send it anyway"));
             }
             screen.note(&format!("warning: {doubt}"));
         }
@@ -158,16 +158,16 @@ impl Command for Raw {
     }
 }
 
-/// Most bytes of a transfer that are shown.
+/// Maximum number of bytes of a transfer that are shown.
 const MOST: u64 = 4 << 20;
-/// How long the first answer may take where the controller writes its batch backup first.
+/// Maximum time for the first answer, if the controller writes its batch backup first.
 const BACKUP: Duration = Duration::from_secs(15 * 60);
 
 /// All blocks of a transfer as the data of one answer.
 async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> {
     let began = Instant::now();
     let mut data = Vec::new();
-    // The backup must not be asked for twice.
+    // The backup must not be requested twice.
     let first_wait = (request.data == BATCH_BACKUP_PATH).then_some(BACKUP);
     let end = link
         .download(request, MOST, first_wait, |piece| {
@@ -186,31 +186,31 @@ async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> 
     Ok(Reply { status, data, elapsed: began.elapsed(), attempts: 1 })
 }
 
-/// What was asked and what came back.
+/// Request and answer.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Answer {
     request: Asked,
     /// `0x00` is success.
     status: String,
-    /// Null where the answer has none.
+    /// Null if the answer has none.
     added_status: Option<String>,
-    /// The status in words.
+    /// Meaning of the status.
     meaning: String,
     cause: String,
     remedy: String,
     /// Data part of the answer.
     data_hex: String,
     data_bytes: usize,
-    /// The data part field by field.
+    /// Decoded fields of the data part.
     fields: Vec<FieldNote>,
     round_trip_ms: f64,
-    /// Copies of the request that were sent.
+    /// Number of copies of the request that were sent.
     attempts: u32,
     #[serde(skip)]
     refusal: Option<Failure>,
 }
 
-/// A request in numbers and words.
+/// Decoded request.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Asked {
     command: String,
@@ -218,11 +218,11 @@ struct Asked {
     attribute: u8,
     service: String,
     data_hex: String,
-    /// What the command is called, if it is known.
+    /// Name of the command, if known.
     name: Option<&'static str>,
-    /// Manual and section, if it is known.
+    /// Manual and section, if known.
     section: Option<String>,
-    /// What the manuals have against it.
+    /// Conflict with the manuals.
     warning: Option<String>,
 }
 

@@ -25,7 +25,7 @@ use crate::controller::yerc::variables::{WriteRegisterStep, parse_numbers, plan_
 use crate::failure::Failure;
 
 commands! {
-    /// What can be done with registers.
+    /// Commands for registers.
     pub enum Register {
         /// Read registers: 0 to 999
         Get(Get),
@@ -36,10 +36,10 @@ commands! {
     }
 }
 
-/// Registers to read.
+/// Reads registers.
 #[derive(Debug, Args)]
 pub struct Get {
-    /// Such as 5, M5 or 0..20, or a name
+    /// Registers, such as 5, M5 or 0..20, or a name
     #[arg(required = true, value_name = "N", value_delimiter = ',', value_parser = Numbers::parse, add = complete::REGISTER)]
     registers: Vec<Numbers>,
 }
@@ -53,7 +53,7 @@ impl Numbers {
     }
 }
 
-/// Numbers of registers as typed: `5`, `M5`, `0..20`, or a name.
+/// Parses register numbers: `5`, `M5`, `0..20`, or a name.
 fn numbers(text: &str) -> Result<Vec<u16>, String> {
     names::read(&[Kind::Register], "0", text, |text| match register(text) {
         Some(number) => Ok(vec![number]),
@@ -61,14 +61,14 @@ fn numbers(text: &str) -> Result<Vec<u16>, String> {
     })
 }
 
-/// Registers to write.
+/// Writes registers.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A register that the ladder program writes takes the value and loses it again at once: read it \
-                        back where that matters."
+    after_help = "The ladder program can overwrite a register immediately after the write. Read the register back if \
+                  that matters."
 )]
 pub struct Set {
-    /// Such as 5=1000 or 5=0x03E8, or NAME=1000
+    /// 5=1000 or 5=0x03E8, or NAME=1000
     #[arg(required = true, value_name = "N=VALUE", add = complete::REGISTER_VALUE)]
     assignments: Vec<Assignment>,
 }
@@ -85,7 +85,7 @@ impl FromStr for Assignment {
     fn from_str(text: &str) -> Result<Self, String> {
         let (number, value) = typed::setting(text, "a number", "a value", "5=1000")?;
         let numbers = numbers(number)?;
-        let [number] = numbers[..] else { return Err(format!("'{number}' are several; give each its value")) };
+        let [number] = numbers[..] else { return Err(format!("'{number}' is a range; give each register its value")) };
         let value = typed::unsigned(value)
             .ok_or_else(|| format!("'{value}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))?;
         Ok(Self { number, value })
@@ -157,11 +157,11 @@ impl WriteOrder for WriteRegisterStep {
     }
 }
 
-/// What a register has besides.
+/// Family-specific fields of a register.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Word {
     number: u16,
-    /// `0x03e8`; null where it was not read.
+    /// `0x03e8`; null if it was not read.
     value_hex: Option<String>,
 }
 

@@ -19,7 +19,7 @@ use crate::output::view::View;
 use crate::transport::fault::{FaultSpec, Faults};
 use crate::transport::server::Server;
 
-/// An FS100, DX100, DX200 or YRC1000 on two UDP ports
+/// Simulate an FS100, DX100, DX200 or YRC1000 on two UDP ports
 #[derive(Debug, Args)]
 pub struct Serve {
     /// Address to listen on, with the port of the robot server; port 0 lets the system choose
@@ -31,7 +31,7 @@ pub struct Serve {
         value_parser = |text: &str| address(text, ROBOT_PORT)
     )]
     bind: SocketAddr,
-    /// Port of the file server; one above the robot server's unless given
+    /// Port of the file server; default: port of the robot server + 1
     #[arg(long, value_name = "PORT")]
     file_port: Option<u16>,
     /// Controller model: fs100, dx100, dx200, yrc1000 [default: dx200]
@@ -43,12 +43,12 @@ pub struct Serve {
     /// Faults on the line, such as drop=5%,dup=2%,delay=0..50ms,seed=7; also reorder, corrupt, busy
     #[arg(long, value_name = "FAULTS")]
     fault: Option<FaultSpec>,
-    /// Take lines on stdin: `alarm 4315`, `mode teach`, `io 20010 on`, `help`
+    /// Read console lines on stdin: `alarm 4315`, `mode teach`, `io 20010 on`, `help`
     #[arg(long)]
     console: bool,
 }
 
-/// Port of the robot server where the address names none.
+/// Default port of the robot server.
 const ROBOT_PORT: u16 = 10040;
 
 impl Default for Serve {
@@ -69,7 +69,7 @@ impl serve::Serve for Serve {
         let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
             let message = format!("the start state is for model {}, not {model}", start.model());
-            return Err(Failure::usage(message).hint("leave --model away, or change the file"));
+            return Err(Failure::usage(message).hint("remove --model, or change the file"));
         }
         let model = start.model();
         let robot = self.bind;
@@ -107,12 +107,12 @@ impl serve::Server for Yerc {
     }
 }
 
-/// A simulator that listens.
+/// A simulator that is ready for connections.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Serving {
     family: &'static str,
     model: &'static str,
-    /// The URL to reach it by.
+    /// URL of the simulator.
     target: String,
 }
 

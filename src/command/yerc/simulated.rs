@@ -1,4 +1,4 @@
-//! How a simulated controller starts.
+//! Start of a simulated controller.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::transport::fault::FaultSpec;
 
-/// The start state: a file's, or the built-in one of the model; busy as often as the faults say.
+/// Start state: from a file, or the built-in state of the model, with the busy rate of the faults.
 pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> Result<Start, Failure> {
     let start = file.map_or_else(|| Ok(Start::for_model(model)), load)?;
     Ok(match faults {
@@ -20,12 +20,12 @@ pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> R
     })
 }
 
-/// More than a controller has room for.
+/// Maximum size of a file: more than a controller can store.
 const MOST: u64 = 256 << 20;
 
 fn load(path: &Path) -> Result<Start, Failure> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
-    // Files that the state names lie beside it.
+    // Files that the state refers to are relative to its folder.
     let folder = path.parent().unwrap_or(Path::new(""));
     let read = |name: &str| {
         let path = folder.join(name);

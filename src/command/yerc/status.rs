@@ -15,7 +15,7 @@ use crate::controller::yerc::query::ReadStatus;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Tone, View};
 
-/// Every status bit of the controller.
+/// Shows all status bits of the controller.
 #[derive(Debug, Args)]
 pub struct Status {}
 
@@ -34,30 +34,30 @@ impl Command for Status {
     }
 }
 
-/// What is wrong: the latest alarm, which is asked for where there is one. An error has no number here.
+/// Present fault: the latest alarm, read if there is one. An error has no number here.
 pub(super) async fn fault(link: &mut Link, status: ControllerStatus) -> Result<Fault, Failure> {
     let alarms = if status.alarm() { present(link, &mut true, 1).await? } else { Vec::new() };
     Ok(Fault::new(status.faulted(), alarms.first()))
 }
 
-/// The controller's state (FS and DX 3.3.3).
+/// Controller state (FS and DX 3.3.3).
 #[derive(Debug, Serialize, JsonSchema)]
 #[expect(clippy::struct_excessive_bools, reason = "the controller reports bits")]
 pub struct StatusReport {
     #[serde(flatten)]
     state: State,
-    /// Whether commands from outside are taken (CMD REMOTE).
+    /// Whether the controller accepts external commands (CMD REMOTE).
     command_remote: bool,
-    /// `step`, `one_cycle` or `continuous`; null if the controller says none or several.
+    /// `step`, `one_cycle` or `continuous`; null if the controller reports none or several.
     cycle: Option<&'static str>,
-    /// What holds it: `pendant`, `external`, `command`.
+    /// Sources of the hold: `pendant`, `external`, `command`.
     hold_sources: Vec<&'static str>,
     alarm: bool,
     #[serde(rename = "has_error")]
     error: bool,
     /// In-guard safe operation.
     safe_operation: bool,
-    /// The two words as received.
+    /// The two status words.
     raw: RawStatus,
 }
 
@@ -68,7 +68,7 @@ struct RawStatus {
     data_2: String,
 }
 
-/// What can hold a robot.
+/// Sources of a hold.
 const HOLDS: [(StatusBit, &str); 3] =
     [(StatusBit::HoldPendant, "pendant"), (StatusBit::HoldExternal, "external"), (StatusBit::HoldCommand, "command")];
 
@@ -88,7 +88,7 @@ impl StatusReport {
     }
 }
 
-/// How far a start goes, for programs.
+/// Cycle mode in JSON.
 pub(super) const fn cycle_name(cycle: CycleMode) -> &'static str {
     match cycle {
         CycleMode::Step => "step",

@@ -1,4 +1,5 @@
-//! `yerc teach`: stores where a group stands in a position variable. `position teach P5` and `var set P5=here` are this.
+//! `yerc teach`: stores the current position of a group in a position variable. `position teach P5` and `var set
+//! P5=here` are aliases.
 
 use clap::{Args, ValueEnum};
 
@@ -22,26 +23,27 @@ use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 use crate::failure::Failure;
 use crate::gate::{Change, Confirmation};
 
-/// Stores where a group stands in a position variable, and reads it back (FS and DX 3.3.6, 3.3.16 to 3.3.18).
+/// Stores the current position of a group in a position variable and reads it back (FS and DX 3.3.6, 3.3.16 to
+/// 3.3.18).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "What is stored is what `yerc position` tells at that moment, with servo power on or off. A robot is \
-    taught in P, its base in BP, a station in EX. Without --coordinates the variable keeps its kind; one that is not \
-    defined gets pulses. `yerc position teach P5` and `yerc var set P5=here` are the same."
+    after_help = "The stored position is that of `yerc position`, with servo power on or off. Use P for a robot, BP \
+                  for its base, and EX for a station. Without --coordinates, the variable keeps its type; an undefined \
+                  variable gets pulses. `yerc position teach P5` and `yerc var set P5=here` do the same."
 )]
 pub struct Teach {
-    /// The variable: P5, BP1, EX1, or its name
+    /// Position variable: P5, BP1, EX1, or a name
     #[arg(value_name = "REF", value_parser = variable, add = complete::VARIABLE)]
     variable: Reference,
-    /// Control group whose position it is [default: R1 for P, B1 for BP, S1 for EX]
+    /// Control group to read [default: R1 for P, B1 for BP, S1 for EX]
     #[arg(long)]
     group: Option<Group>,
-    /// Store pulses or base coordinates [default: what the variable holds]
+    /// Store pulses or base coordinates [default: type of the variable]
     #[arg(long, value_enum)]
     coordinates: Option<StoredAs>,
 }
 
-/// What is stored.
+/// Types of stored positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum StoredAs {
     /// Pulses of each axis
@@ -68,7 +70,7 @@ fn position_variable(text: &str) -> Result<Reference, String> {
     if reference.kind.is_position() {
         Ok(reference)
     } else {
-        Err(format!("{reference} holds no position; P, BP and EX do"))
+        Err(format!("{reference} is not a position variable; use P, BP or EX"))
     }
 }
 
@@ -87,7 +89,7 @@ impl Command for Teach {
         let Context { link, authority, robot, screen, .. } = context;
         let called = called(names::of(robot, screen), self.variable);
         let (name, group) = (self.variable.to_string(), self.group()?);
-        let Some(old) = self.read(link.is_for("what the variable holds")).await.known()? else {
+        let Some(old) = self.read(link.is_for("content of the variable")).await.known()? else {
             return Err(self.plan(link, group).await?);
         };
         let coordinates = self.coordinates(old.as_ref())?;
@@ -120,7 +122,7 @@ impl Command for Teach {
 }
 
 impl Teach {
-    /// Whose position it is: the group must be of the variable's kind.
+    /// Control group of the position; it must match the type of the variable.
     fn group(&self) -> Result<Group, Failure> {
         let (first, what) = match self.variable.kind {
             VariableKind::Bp => (Group::Base(1), "bases, such as B1"),
@@ -131,15 +133,16 @@ impl Teach {
         if std::mem::discriminant(&group) == std::mem::discriminant(&first) {
             return Ok(group);
         }
-        let message = format!("{} holds no position of {group}: {} are for {what}", self.variable, self.letters());
-        Err(Failure::usage(message).hint("a robot is taught in P, its base in BP, a station in EX"))
+        let message =
+            format!("{} cannot store a position of {group}: {} are for {what}", self.variable, self.letters());
+        Err(Failure::usage(message).hint("use P for a robot, BP for its base, EX for a station"))
     }
 
     fn letters(&self) -> &'static str {
         self.variable.kind.letters()
     }
 
-    /// What the variable holds; nothing where it is not defined.
+    /// Content of the variable; none if it is undefined.
     async fn read(&self, link: &mut Link) -> Result<Option<Value>, Failure> {
         match link.try_ask(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
             Ok(value) => Ok(Some(value)),
@@ -148,7 +151,7 @@ impl Teach {
         }
     }
 
-    /// What is stored: as asked for, as it was, or pulses.
+    /// Type to store: as requested, as the variable has, or pulses.
     fn coordinates(&self, old: Option<&Value>) -> Result<Coordinates, Failure> {
         match (self.coordinates, old.map(as_position).map(|old| old.kind)) {
             (Some(stored), _) => Ok(stored.into()),
@@ -156,13 +159,14 @@ impl Teach {
             (None, Some(PositionKind::Base)) => Ok(Coordinates::Base),
             (None, Some(_)) => {
                 let text = old.and_then(PositionData::of).map(|data| data.text().to_owned()).unwrap_or_default();
-                let message = format!("{} holds {text}, and a position is told as pulses or base", self.variable);
-                Err(Failure::usage(message).hint("add --coordinates pulse or --coordinates base to change its kind"))
+                let message =
+                    format!("{} contains {text}, but armctl stores only pulses or base coordinates", self.variable);
+                Err(Failure::usage(message).hint("add --coordinates pulse or --coordinates base to change its type"))
             }
         }
     }
 
-    /// What the question says.
+    /// Text of the confirmation.
     fn change(&self, link: &Link, group: Group, called: &str, old: Option<&Value>, here: &Position) -> Change {
         let Some(old) = old.map(as_position) else { return Change::nothing() };
         let per_degree = link.pulses_per_degree(group);
@@ -182,24 +186,25 @@ impl Teach {
             .fold(change, |change, (what, old, new)| change.replaces(what, &old.to_string(), &new.to_string()))
     }
 
-    /// Notes in a dry run what follows the first question.
+    /// Notes in a dry run what follows the first read.
     async fn plan(&self, link: &mut Link, group: Group) -> Result<Failure, Failure> {
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         let asked = |coordinates| ReadPosition::new(model, group, coordinates).map_err(usage);
         let coordinates = self.coordinates.map_or(Coordinates::Pulse, Coordinates::from);
         let one = asked(coordinates)?;
-        // Only positions of robots are stored otherwise than in pulses.
+        // Only robot positions can be stored in other types than pulses.
         let is_robot = matches!(group, Group::Robot(_));
         let is_open = self.coordinates.is_none() && is_robot;
         let other = if is_open { asked(Coordinates::Base)? } else { one };
-        let reason = Reason::about("where it stands");
-        let reason = if is_open { reason.depending_on("what the variable holds") } else { reason };
+        let reason = Reason::about("current position");
+        let reason = if is_open { reason.depending_on("the content of the variable") } else { reason };
         link.plan_depending(&one.request(), &other.request(), reason);
         link.plan_fit(group, coordinates);
         let [one, other] = unlike()
             .map(|position| Position { kind: if is_robot { position.kind } else { PositionKind::Pulse }, ..position });
         let write = |position| WriteVariable::new(self.variable.number, held(group, position)).map_err(usage);
-        let reason = Reason::about("stores it").depending_on("where it stands, and whether it is there already");
+        let reason = Reason::about("stores it")
+            .depending_on("the current position, and whether the variable already contains it");
         link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
         let back = ReadVariable::new(self.variable.kind, self.variable.number);
         link.plan_if(&back.request(), Reason::about("reads it back").depending_on("whether it was written"));

@@ -1,4 +1,4 @@
-//! For tests: what a command line would send, and what becomes of it on a simulator in virtual time.
+//! Test support: sent frames of a command line, and command execution on a simulator in virtual time.
 
 use clap::Parser as _;
 use serde_json::Value;
@@ -20,25 +20,25 @@ use crate::settings::{Robot, Selection, Sources};
 pub(super) const DX200: &str = "udp://127.0.0.1?model=dx200";
 pub(super) const FS100: &str = "udp://127.0.0.1?model=fs100";
 
-/// What the parser of the command line objects to.
+/// Error of the command-line parser.
 pub(super) fn objection(words: &str) -> String {
     let words: Vec<&str> = words.split_ascii_whitespace().collect();
     parsed(DX200, &words).expect_err("the parser objects").to_string()
 }
 
-/// The question before the command, without "This will".
+/// Question before the command, without "This will".
 pub(super) fn intent(words: &str) -> String {
     resolved(DX200, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap().1.intent(None).text
 }
 
-/// What `armctl yerc -t TARGET WORDS…` would send: the `data.frames` of a dry run. A command line that cannot be parsed
-/// fails with the parser's message.
+/// Frames that `armctl yerc -t TARGET WORDS…` would send: `data.frames` of a dry run. A parser error is returned as a
+/// failure.
 pub(super) fn dry_run(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolved(target, words)?;
     Ok(testing::frames(&planned::<Yerc>(&robot, &*command, |_| ())?))
 }
 
-/// The frames of a dry run, in hexadecimal, without the header: command, instance, attribute, service, padding, data.
+/// Frames of a dry run in hexadecimal, without the header: command, instance, attribute, service, padding, data.
 pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>, Failure> {
     let frames = dry_run(target, &words.split_ascii_whitespace().collect::<Vec<_>>())?;
     Ok(frames.iter().map(without_header).collect())
@@ -49,13 +49,13 @@ pub(super) fn frames(words: &str) -> Result<Vec<String>, Failure> {
     frames_on(DX200, words)
 }
 
-/// A golden frame of the manuals, in the form of [`frames`].
+/// Golden frame of the manuals, in the form of [`frames`].
 pub(super) fn golden(id: &str) -> String {
     without_header(&golden_frame(id))
 }
 
-/// Demands that a command line sends one frame whatever is answered, and that this is the golden one; only the request id
-/// is taken over.
+/// Asserts that a command line sends exactly one unconditional frame, and that it equals the golden frame, except for
+/// the request id.
 #[track_caller]
 pub(super) fn same(id: &str, target: &str, words: &[&str]) {
     let frames = dry_run(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
@@ -66,7 +66,7 @@ pub(super) fn same(id: &str, target: &str, words: &[&str]) {
     assert_eq!(sent.collect::<Vec<_>>(), [golden], "{id}: {words:?}");
 }
 
-/// The data of the reports of command lines, one after the other on one simulator that starts in `state` (TOML).
+/// Data of the reports of several command lines on one simulator that starts in `state` (TOML).
 pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Failure>> {
     let mut file = tempfile::NamedTempFile::new().unwrap();
     std::io::Write::write_all(&mut file, state.as_bytes()).unwrap();
@@ -88,7 +88,7 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
     reports
 }
 
-/// A simulated controller and a link to it that last for several command lines, in virtual time.
+/// Simulated controller with a link for several command lines, in virtual time.
 pub(super) struct Bench {
     runtime: tokio::runtime::Runtime,
     robot: Robot,
@@ -96,7 +96,7 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    /// A simulator by its URL.
+    /// Bench for the simulator of a URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
@@ -105,7 +105,7 @@ impl Bench {
         Self { runtime, robot, link }
     }
 
-    /// Runs `armctl yerc WORDS…`: the data of the report, and why it is not a success although there is one.
+    /// Runs `armctl yerc WORDS…`. Returns the data of the report, and the failure of an unsuccessful report.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
@@ -113,7 +113,7 @@ impl Bench {
         Ok((report.data()?, report.failure()))
     }
 
-    /// The data of a command line that must succeed.
+    /// Data of a command line that must succeed.
     #[track_caller]
     pub(super) fn data(&mut self, words: &[&str]) -> Value {
         match self.run(words) {
@@ -139,7 +139,7 @@ pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn A
     }
 }
 
-/// Where tests write: nowhere.
+/// Screen without output.
 fn quiet() -> Screen {
     Screen::new(Format::Json, ColorChoice::Never, true, 0)
 }
@@ -153,7 +153,7 @@ fn digits(frame: &Value) -> String {
     frame["hex"].as_str().expect("frames are hexadecimal").to_owned()
 }
 
-/// The digits of a frame behind its header.
+/// Hexadecimal digits of a frame after its header.
 pub(super) fn without_header(frame: &Value) -> String {
     let frame = digits(frame);
     assert_eq!(&frame[..12], hex(b"YERC\x20\0"));

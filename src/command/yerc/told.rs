@@ -1,4 +1,4 @@
-//! What a controller told of its model another time: taken for granted for a day, and dropped when it says something else.
+//! Stored model of a controller: used for a day, and dropped if the controller reports a different model.
 
 use crate::client::yerc::Client;
 use crate::output::Screen;
@@ -6,7 +6,7 @@ use crate::settings::Robot;
 use crate::settings::model::{ToldModel, ToldModels};
 use crate::settings::target::Address;
 
-/// Where it is kept, and what is there.
+/// Location and content of the stored model.
 #[derive(Debug)]
 pub(super) struct Told {
     store: Option<ToldModels>,
@@ -15,8 +15,8 @@ pub(super) struct Told {
 }
 
 impl Told {
-    /// Tells a client what its controller was, where nobody names its model and that is not too long ago. A dry run, which
-    /// asks nobody, takes an older word too.
+    /// Passes the stored model to a client, if the user selects no model and the stored one is recent. A dry run,
+    /// which asks no controller, also uses an older one.
     pub(super) fn recall(robot: &Robot, client: &mut Client) -> Self {
         let target = &robot.target.value;
         let address = target.address();
@@ -29,18 +29,15 @@ impl Told {
         Self { store, address, kept }
     }
 
-    /// Keeps what the controller told now, unless that is kept and fresh. `news` is `None` where its software is that of no
-    /// model: then what was kept is wrong.
+    /// Stores the model that the controller reported, unless it is already stored and recent. `news` is `None` if its
+    /// software belongs to no known model: then the stored model is wrong.
     pub(super) fn keep(&mut self, news: Option<ToldModel>, screen: &Screen, label: &str) {
         let Some(store) = &self.store else { return };
         let Some(news) = news else {
             if self.kept.take().is_some()
                 && let Err(error) = store.forget(&self.address)
             {
-                screen.detail(
-                    1,
-                    &format!("{label}: the model that was kept is wrong, and could not be removed: {error}"),
-                );
+                screen.detail(1, &format!("{label}: the stored model is wrong and could not be removed: {error}"));
             }
             return;
         };
@@ -50,9 +47,9 @@ impl Told {
         }
         let (model, software) = (news.model(), news.software());
         let unproven = model.unproven().map(|what| format!("; unproven: {what}")).unwrap_or_default();
-        screen.detail(1, &format!("{label}: {model}, by its software {software}; kept for a day{unproven}"));
+        screen.detail(1, &format!("{label}: {model}, from software {software}; stored for one day{unproven}"));
         if let Err(error) = store.keep(&self.address, news.clone()) {
-            screen.detail(1, &format!("{label}: its model could not be kept, and is asked each time: {error}"));
+            screen.detail(1, &format!("{label}: the model could not be stored and is read each time: {error}"));
         }
         self.kept = Some(news);
     }

@@ -1,4 +1,4 @@
-//! A robot of the family in a live view: status and position in a line; axes, torque, alarms and signals on a screen.
+//! Live view of a robot: status and position in a line; axes, torque, alarms and signals in detail.
 
 use super::alarm::{SLOTS, present};
 use super::link::{Link, Yerc};
@@ -19,15 +19,15 @@ use crate::output::Screen;
 use crate::output::view::Tone;
 use crate::settings::Robot;
 
-/// An poller on one controller.
+/// Poller for one controller.
 #[derive(Debug)]
 pub struct Poller {
     link: Link,
-    /// Whether the controller knows alarms with their texts, as far as is known.
+    /// Whether the controller supports alarm texts, as far as known.
     texts: bool,
 }
 
-/// Signals that are shown, by kind: the first ones of the user's, and so many groups of eight.
+/// Signals on display, by kind: first general-purpose signal, and number of groups of eight.
 const BANKS: [(&str, u16); 2] = [("inputs", 1), ("outputs", 1001)];
 const GROUPS: u16 = 4;
 
@@ -41,7 +41,7 @@ impl declared::Poller for Poller {
     async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
         let (status, answered_in) = clocked(self.link.ask(&ReadStatus)).await;
         let status = status?;
-        // A controller without a first robot has no position to show; that is no failure.
+        // A controller without a first robot has no position, which is not a failure.
         let base = self.position(Coordinates::Base).await?;
         let slots = if detail == Detail::Full { SLOTS } else { 1 };
         let alarms = if status.alarm() { present(&mut self.link, &mut self.texts, slots).await? } else { Vec::new() };
@@ -94,7 +94,7 @@ impl Poller {
         Ok(Some(Position { axes, ..position }))
     }
 
-    /// Asks for what need not be there: a refusal is `None`.
+    /// Reads an optional value: a refusal is `None`.
     async fn ask<Q: Query>(&mut self, query: Result<Q, QueryError>) -> Result<Option<Q::Answer>, Failure> {
         let query = query.map_err(|error| Failure::local(error.to_string()))?;
         Ok(self.link.try_ask(&query).await?.ok())

@@ -1,4 +1,4 @@
-//! Datagrams in the record of the traffic.
+//! Trace of datagrams.
 
 use std::net::SocketAddr;
 
@@ -11,21 +11,21 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::transport::tap::Direction;
 
-/// The record of one link.
+/// Trace of one link.
 #[derive(Debug)]
 pub struct Trace {
     record: trace::Trace,
-    /// The last request: an answer does not repeat what it is about.
+    /// Last request, because an answer does not identify its command.
     asked: Option<Request>,
 }
 
 impl Trace {
-    /// As flags want it.
+    /// Opens the trace that the options request.
     pub fn open(access: &Access, screen: &Screen) -> Result<Self, Failure> {
         Ok(Self { record: trace::Trace::of_network(access, screen)?, asked: None })
     }
 
-    /// Records a datagram between the two addresses, own one first.
+    /// Records a datagram; `ends` has the own address first.
     pub fn record(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
         if self.record.level() > 0 {
             let sender = match direction {
@@ -40,7 +40,7 @@ impl Trace {
         self.record.datagram(direction, ends, bytes);
     }
 
-    /// Tells whether the record is whole.
+    /// Closes the trace and reports whether it is complete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.record.finish()
     }

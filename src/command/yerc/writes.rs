@@ -1,4 +1,4 @@
-//! Several writes in a row, with an exact account of what was done when one of them fails.
+//! Several writes in a row, with an exact report if one of them fails.
 
 use std::collections::HashMap;
 
@@ -9,20 +9,20 @@ use crate::controller::yerc::variables::PlannedRead;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// A write and the names of what it writes.
+/// A write request and the names of its items.
 pub trait WriteOrder: Query<Answer = ()> {
-    /// What it writes: a variable, a register, a group of signals.
+    /// Item type: a variable, a register, a group of signals.
     type Item: Clone;
 
-    /// All that it writes.
+    /// All items that it writes.
     fn items(&self) -> Vec<Self::Item>;
 
-    /// Names in a few words.
+    /// Short list of names.
     fn listed(items: Vec<Self::Item>) -> String;
 }
 
-/// Reads what orders replace, each run with one request; what the controller refuses to tell is missing. A dry run notes
-/// the requests.
+/// Reads the values that requests replace, one request per run; refused values are missing. A dry run notes the
+/// requests.
 pub async fn before<S: PlannedRead>(link: &mut Link, reads: &[S]) -> Result<HashMap<S::Item, S::Value>, Failure> {
     let mut found = HashMap::new();
     for read in reads {
@@ -31,13 +31,13 @@ pub async fn before<S: PlannedRead>(link: &mut Link, reads: &[S]) -> Result<Hash
     Ok(found)
 }
 
-/// Sends the orders one after the other. The first that fails ends it, and the failure says what was written, what may
-/// have been, and what was not. So does Ctrl-C.
+/// Sends the requests one after the other. The first failure or Ctrl-C ends the sequence. The failure lists what was
+/// written, what may have been written, and what was not.
 pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: &[O]) -> Result<(), Failure> {
     link.plan_all(orders)?;
     let mut done = 0;
     let progress = (orders.len() > 1).then(|| screen.spinner("writing"));
-    // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+    // Ctrl-C ends the work here, before the caller handles it, so that the result is reported.
     let outcome = interruptible(async {
         for order in orders {
             if let Some(progress) = &progress {
@@ -56,9 +56,9 @@ pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: 
     Err(account(failure, orders, done))
 }
 
-/// The failure, and what became of each order; `done` of them were confirmed, the next one failed.
+/// Failure with the result of each request; the first `done` were confirmed, the next one failed.
 fn account<O: WriteOrder>(failure: Failure, orders: &[O], done: usize) -> Failure {
-    // Where nobody listens, nothing was done either.
+    // If the controller refuses or does not answer, nothing was written.
     let refused = matches!(failure.kind, Kind::Refused | Kind::NoAnswer);
     if refused && orders.len() == 1 {
         return failure;
@@ -77,7 +77,7 @@ fn account<O: WriteOrder>(failure: Failure, orders: &[O], done: usize) -> Failur
         }
     }
     let message = parts.join("; ");
-    let hint = failure.hint.clone().unwrap_or_else(|| "read them back before you repeat the command".to_owned());
+    let hint = failure.hint.clone().unwrap_or_else(|| "read the values back before you repeat the command".to_owned());
     let kind = if failure.kind == Kind::Refused && !written.is_empty() { Kind::Mixed } else { failure.kind };
     Failure { kind, message, ..failure }.hint(hint)
 }

@@ -26,20 +26,22 @@ use crate::settings::{Robot, alarms};
 commands! {
     /// Alarms.
     pub enum Alarm {
-        /// Show the present alarm with what to do
+        /// Show the present alarm and what to do
         List(List),
-        /// Alarm history, the latest first
+        /// Alarm history, latest first
         History(History),
-        /// Print alarms as they come and go
+        /// Print alarms when they occur and when they clear
         Watch(Watch<List>),
         /// Reset the alarm
         Reset(Reset),
     }
 }
 
-/// The alarm that is present: the latest of the history while SO(03) or SO(15) is on.
+/// Present alarm: the latest entry of the history while SO(03) or SO(15) is on.
 #[derive(Debug, Args)]
-#[command(after_help = "`yrcx info alarm` tells the latest alarm of a remote command, which may be none any more.")]
+#[command(
+    after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. It may have been reset since."
+)]
 pub struct List {}
 
 impl Command for List {
@@ -54,7 +56,7 @@ impl Command for List {
             link.plan_depending(
                 &latest,
                 &latest,
-                Reason::about("which").depending_on("the signals: it is asked if SO(03) or SO(15) is on"),
+                Reason::about("which").depending_on("the signals: it is read if SO(03) or SO(15) is on"),
             );
         }
         let image = link.look().await?;
@@ -70,7 +72,7 @@ impl Command for List {
     }
 }
 
-/// The same with what `alarms.toml` says of it.
+/// Adds the text of `alarms.toml`.
 fn explained(entry: AlarmEntry<Part>, robot: &Robot) -> Result<AlarmEntry<Part>, Failure> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
@@ -82,28 +84,28 @@ impl Watchable for List {
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
-/// The signals of alarms.
+/// Alarm signals.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Signals {
-    /// SO(03): there is an alarm.
+    /// SO(03): alarm present.
     alarm: bool,
-    /// SO(15): there is a warning.
+    /// SO(15): warning present.
     warning: bool,
 }
 
 impl Standing for Signals {
     fn none(&self) -> &'static str {
         match (self.alarm, self.warning) {
-            (true, _) => "an alarm (SO(03) is on), of which the history tells nothing",
-            (false, true) => "a warning (SO(15) is on), of which the history tells nothing",
+            (true, _) => "an alarm (SO(03) is on) that is not in the history",
+            (false, true) => "a warning (SO(15) is on) that is not in the history",
             (false, false) => "no alarm",
         }
     }
 }
 
-/// Reads alarms of the history, one after the other (4.7.7).
+/// Reads entries of the alarm history, one request per entry (4.7.7).
 #[derive(Debug, Args)]
-#[command(after_help = "`armctl explain yrcx CODE` says what to do about one.")]
+#[command(after_help = "`armctl explain yrcx CODE` shows what to do about an alarm.")]
 pub struct History {
     /// Numbers in the history, 1 (the latest) to 500: 10, or 1..50
     #[arg(value_name = "N", value_delimiter = ',', default_value = "1..10",
@@ -136,7 +138,8 @@ impl Command for History {
 /// Resets the alarm.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "`yrcx io pulse alarm-reset` does the same by a signal, also where remote commands are not taken."
+    after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works when remote commands \
+                  are not accepted."
 )]
 pub struct Reset {}
 
@@ -156,7 +159,7 @@ impl Command for Reset {
         link.ask(&order).await?;
         let Some(image) = link.look().await.known()? else { return Err(unknown()) };
         let (alarm, servo_on) = (output::ALARM.is_on(&image), output::SERVO_ON.is_on(&image));
-        let words = if alarm { "alarm reset accepted; there is still an alarm" } else { "alarm reset" };
+        let words = if alarm { "alarm reset accepted; an alarm is still present" } else { "alarm reset" };
         let report = WasReset { done: New::of("alarm", alarm, words).replaces(old), alarm, servo_on };
         if !report.servo_on {
             if link.is_held() {
@@ -164,8 +167,8 @@ impl Command for Reset {
             } else {
                 let alarm = link.link_alarm();
                 screen.note(&format!(
-                    "hint: motor power is off, and the end of this connection raises alarm {alarm} again: keep one open with \
-                     `armctl session open`, then `yrcx alarm reset` and `yrcx recover`"
+                    "hint: motor power is off, and closing this connection raises alarm {alarm} again. Keep it open \
+                     with `armctl session open`, then `yrcx alarm reset` and `yrcx recover`"
                 ));
             }
         }
@@ -173,15 +176,15 @@ impl Command for Reset {
     }
 }
 
-/// What comes next where an alarm has switched the motors off.
-const POWER_OFF: &str = "hint: motor power is off: `yrcx recover` clears the emergency stop and switches the servos on";
+/// Next step when an alarm has switched the motors off.
+const POWER_OFF: &str = "hint: motor power is off. `yrcx recover` clears the emergency stop and switches the servos on";
 
-/// An alarm that was reset.
+/// Result of an alarm reset.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WasReset {
     #[serde(flatten)]
     done: Done,
-    /// SO(03) after it: there is still one.
+    /// SO(03) after the reset: an alarm is still present.
     alarm: bool,
     /// SO(02): motor power is on.
     servo_on: bool,

@@ -1,5 +1,5 @@
-//! Arguments that motions share. Numbers are handed on as they were typed: the codec reads them in the unit of their
-//! field and checks their range.
+//! Arguments that motion commands share. Numbers stay text: the codec reads them in the unit of their field and
+//! checks their range.
 
 use clap::{Args, ValueEnum};
 
@@ -11,7 +11,7 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
-/// Which robot of the controller, as `--unit` says; for the question before a motion.
+/// Robot of the controller (`--unit`), for the question before a motion.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct Which {
     #[arg(from_global)]
@@ -19,21 +19,21 @@ pub struct Which {
 }
 
 impl Which {
-    /// `robot 2`; where none is named, the first.
+    /// `robot 2`; robot 1 without `--unit`.
     pub fn name(self) -> String {
         format!("robot {}", self.unit.max(1))
     }
 
-    /// `robot 2`; where none is named, all of them.
+    /// `robot 2`; all robots without `--unit`.
     pub fn name_or_all(self) -> String {
         if self.unit == 0 { "all robots".to_owned() } else { self.name() }
     }
 }
 
-/// How fast.
+/// Speed options.
 #[derive(Debug, Args)]
 pub struct Pace {
-    /// Percent, as in 50 or 50%, in place of the program speed
+    /// Percent, as in 50 or 50%, instead of the program speed
     #[arg(long, value_name = "SPEED", value_parser = speed)]
     pub speed: Option<Speed>,
     /// Percent of the robot's maximum, in steps of 0.01
@@ -44,9 +44,9 @@ pub struct Pace {
 /// A speed as typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Speed {
-    /// In place of the program speed.
+    /// Percent, instead of the program speed.
     Percent(String),
-    /// Of the tool.
+    /// Speed of the tool.
     MmS(String),
 }
 
@@ -65,16 +65,16 @@ fn speed(text: &str) -> Result<Speed, String> {
 }
 
 impl Pace {
-    /// Fills in the speed of axes.
+    /// Sets the speed of axes.
     pub fn put(&self, draft: Draft) -> Result<Draft, Failure> {
         match &self.speed {
-            Some(Speed::MmS(_)) => Err(Failure::usage("a speed in mm/s is that of a tool along a line or an arc")
-                .hint("give percent, as in --speed 50, or the way, as in --linear")),
+            Some(Speed::MmS(_)) => Err(Failure::usage("a speed in mm/s needs a linear or circular move")
+                .hint("use percent, as in --speed 50, or add --linear")),
             _ => Ok(self.put_linear(draft)),
         }
     }
 
-    /// Fills in the speed of a tool along a line or an arc.
+    /// Sets the speed of the tool along a line or an arc.
     pub fn put_linear(&self, draft: Draft) -> Draft {
         let draft = draft.with_some(Key::SpeedOfMax, self.speed_of_max.clone());
         match self.speed.clone() {
@@ -95,7 +95,7 @@ impl Pace {
     }
 }
 
-/// How quickly it gets going.
+/// Acceleration and deceleration options.
 #[derive(Debug, Args)]
 pub struct Ramps {
     /// Acceleration in percent
@@ -107,32 +107,34 @@ pub struct Ramps {
 }
 
 impl Ramps {
-    /// Fills it in, where the command has a place for it.
+    /// Sets both, if the command has the fields.
     pub fn put(&self, draft: Draft, command: Command) -> Result<Draft, Failure> {
         let row = command.row();
         if (self.accel.is_some() || self.decel.is_some()) && row.request().all(|field| field.key != Key::Accel) {
-            return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id))
-                .hint("motions to a point have, without an arch; others go by the robot's parameters"));
+            return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id)).hint(
+                "remove them: only moves to a point without an arch accept them. Other moves use the robot's \
+                 parameters",
+            ));
         }
         Ok(draft.with_some(Key::Accel, self.accel.clone()).with_some(Key::Decel, self.decel.clone()))
     }
 }
 
-/// Which axes move.
+/// Selection of the axes that move.
 #[derive(Debug, Args)]
 pub struct Axes {
-    /// Axes that move, as in 1,3; all unless given
+    /// Axes that move, as in 1,3; default: all
     #[arg(long, value_name = "AXES")]
     axes: Option<String>,
 }
 
 impl Axes {
-    /// Fills them in.
+    /// Sets the selection.
     pub fn put(&self, draft: Draft) -> Draft {
         draft.with_some(Key::Axes, self.axes.clone())
     }
 
-    /// Fills them in, with a number for each of them; see [`Axes::pairs`].
+    /// Sets the selection, with a number for each axis; see [`Axes::pairs`].
     pub fn put_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft, Failure> {
         let pairs = self.pairs(given)?;
         let draft = if self.names_some(given) {
@@ -144,14 +146,14 @@ impl Axes {
         Ok(pairs.into_iter().fold(draft, |draft, (axis, text)| draft.with(Key::AXES[axis - 1], text)))
     }
 
-    /// Which number is for which axis, 1 to 4, in the order typed: `--axes 3,2 --to 10,20` and `--to 3=10,2=20` say the
+    /// Pairs of axis (1 to 4) and number, in the order typed: `--axes 3,2 --to 10,20` and `--to 3=10,2=20` mean the
     /// same.
     pub fn pairs<'a>(&self, given: &'a [String]) -> Result<Vec<(usize, &'a str)>, Failure> {
         let named: Vec<Option<(&str, &str)>> = given.iter().map(|text| text.split_once('=')).collect();
         let pairs: Vec<(usize, &str)> = match named.into_iter().collect::<Option<Vec<_>>>() {
             Some(_) if self.axes.is_some() => {
-                return Err(Failure::usage("the axes are named twice, by --axes and beside the numbers")
-                    .hint("name them once, as in --to 1=300,3=10"));
+                return Err(Failure::usage("the axes are named twice: by --axes and with the numbers")
+                    .hint("name each axis once, as in --to 1=300,3=10"));
             }
             Some(named) => {
                 let pairs = named.into_iter().map(|(name, text)| axis(name).map(|axis| (axis, text.trim())));
@@ -166,7 +168,7 @@ impl Axes {
                 if axes.len() != given.len() {
                     let message = format!("{} numbers for {} axes", given.len(), axes.len());
                     return Err(Failure::usage(message)
-                        .hint("give one for each axis; if not all move, name them, as in --to 1=300,3=10"));
+                        .hint("give one number for each axis, or name the axes that move, as in --to 1=300,3=10"));
                 }
                 axes.into_iter().zip(given.iter().map(|text| text.trim())).collect()
             }
@@ -180,7 +182,7 @@ impl Axes {
         Ok(pairs)
     }
 
-    /// Whether the axes are named, so that those that are not stay.
+    /// Whether the axes are named, so that all other axes do not move.
     fn names_some(&self, given: &[String]) -> bool {
         self.axes.is_some() || given.iter().any(|text| text.contains('='))
     }
@@ -190,19 +192,18 @@ impl Axes {
         let wrong = || format!("'{axes}' is not a valid list of axes of 1 to 4, as in 1,3");
         let number = |text: &str| axis(text).map_err(|_| wrong());
         let ranges = axes.split(',').map(|text| typed::range(text, number)).collect::<Result<Vec<_>, String>>();
-        let ranges =
-            ranges.map_err(|why| Failure::usage(why).hint("name axes by their numbers, with commas between"))?;
+        let ranges = ranges.map_err(|why| Failure::usage(why).hint("give axis numbers with commas, as in 1,3"))?;
         Ok(ranges.into_iter().flatten().collect())
     }
 
-    /// Axes 1 and 2 as far as they are not named beside these numbers (4.2.1); none where all axes move.
+    /// Axes 1 and 2, if these numbers do not name them (4.2.1); empty if all axes move.
     pub fn unnamed(&self, given: &[String]) -> Vec<usize> {
         let named = self.pairs(given).unwrap_or_default();
         let is_named = |axis: &usize| named.iter().any(|(named, _)| named == axis);
         if named.is_empty() { Vec::new() } else { (1..=2).filter(|axis| !is_named(axis)).collect() }
     }
 
-    /// Whether a motion to these points is for others than axes 1 and 2.
+    /// Whether a motion to these points leaves out axis 1 or 2.
     pub fn leaves_out(&self, points: &[String]) -> bool {
         let named = self.numbers().unwrap_or_default();
         !points.is_empty() && self.axes.is_some() && !(named.contains(&1) && named.contains(&2))
@@ -215,12 +216,12 @@ impl Axes {
                 let told = pairs.iter().map(|(axis, text)| format!("axis {axis}: {text} {}", unit.symbol()));
                 told.collect::<Vec<_>>().join(", ")
             }
-            // It is refused before anything moves.
+            // An invalid number is rejected before anything moves.
             Err(_) => format!("{} {}", given.join(", "), unit.symbol()),
         }
     }
 
-    /// `all axes`, `axes 3, 1 alone`; with the numbers that may name them.
+    /// `all axes`, `axes 3, 1 alone`; `given` may name the axes.
     pub fn describe(&self, given: &[String]) -> String {
         let axes = match (&self.axes, self.pairs(given)) {
             (_, Ok(pairs)) if !given.is_empty() && self.names_some(given) => {
@@ -234,27 +235,27 @@ impl Axes {
     }
 }
 
-/// The number of an axis as typed.
+/// Parses an axis number.
 fn axis(text: &str) -> Result<usize, Failure> {
     match text.trim().parse() {
         Ok(axis @ 1..=4) => Ok(axis),
-        _ => Err(Failure::usage(format!("'{text}' is not a valid axis of 1 to 4")).hint("name axes by their numbers")),
+        _ => Err(Failure::usage(format!("'{text}' is not a valid axis of 1 to 4")).hint("use an axis number")),
     }
 }
 
-/// Over which axis an arch goes, and how high.
+/// Options of an arch motion.
 #[derive(Debug, Args)]
 pub struct Arch {
-    /// In an arch: this axis goes to this position first, as in 3:10.0
+    /// Arch motion: axis and position that it passes over, as in 3:10.0
     #[arg(long = "arch", group = "way", value_name = "AXIS:POS", value_parser = peak)]
     peak: Option<Peak>,
-    /// Where the arch begins; 0 unless given
+    /// Start of the arch; default: 0
     #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
     arch_start: Option<String>,
-    /// Where the arch ends; 0 unless given
+    /// End of the arch; default: 0
     #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
     arch_end: Option<String>,
-    /// What positions of the arch are measured in
+    /// Unit of the arch positions
     #[arg(long, value_name = "UNIT", requires = "peak", default_value = "mm", hide_default_value = true)]
     arch_unit: Unit,
 }
@@ -272,12 +273,12 @@ fn peak(text: &str) -> Result<Peak, String> {
 }
 
 impl Arch {
-    /// Whether there is one.
+    /// Whether an arch is requested.
     pub fn is_wanted(&self) -> bool {
         self.peak.is_some()
     }
 
-    /// Fills it in, if there is one.
+    /// Sets the arch, if requested.
     pub fn put(&self, draft: Draft) -> Draft {
         let Some(Peak { axis, position }) = &self.peak else { return draft };
         draft
@@ -288,14 +289,14 @@ impl Arch {
             .with_some(Key::ArchEnd, self.arch_end.clone())
     }
 
-    /// ` in an arch over axis 3 at 10.0 mm`; empty where there is none.
+    /// ` in an arch over axis 3 at 10.0 mm`; empty without an arch.
     pub fn describe(&self) -> String {
         let Some(Peak { axis, position }) = &self.peak else { return String::new() };
         format!(" in an arch over axis {axis} at {position} {}", self.arch_unit.symbol())
     }
 }
 
-/// On which side the elbow is.
+/// Arm side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Hand {
     /// Right-handed
@@ -305,7 +306,7 @@ pub enum Hand {
 }
 
 impl Hand {
-    /// As a target in mm has it, which is not how the selection of the arm has it.
+    /// Value in a target in mm. The arm selection command uses other values.
     pub fn of_target(self) -> i32 {
         match self {
             Self::Right => 1,
@@ -314,24 +315,24 @@ impl Hand {
     }
 }
 
-/// Along which axes a jog or an inch goes.
+/// Coordinate system of a jog or an inch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum System {
-    /// An axis of the robot by itself
+    /// A single axis of the robot
     Pulse,
-    /// Along an axis of its Cartesian coordinates
+    /// Along an axis of the Cartesian coordinates
     Cartesian,
-    /// Along an axis of the coordinates of its tool
+    /// Along an axis of the tool coordinates
     Tool,
 }
 
 impl System {
-    /// In which unit positions are told.
+    /// Unit of reported positions.
     pub fn unit(self) -> Unit {
         if self == Self::Pulse { Unit::Pulse } else { Unit::Mm }
     }
 
-    /// ` in Cartesian coordinates`; empty for an axis by itself.
+    /// ` in Cartesian coordinates`; empty for a single axis.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Pulse => "",
@@ -341,7 +342,7 @@ impl System {
     }
 }
 
-/// Which way.
+/// Direction of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Direction {
     /// Plus
@@ -353,7 +354,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// As a field.
+    /// Field value.
     pub fn value(self) -> i32 {
         (self == Self::Minus).into()
     }
@@ -367,10 +368,10 @@ impl Direction {
     }
 }
 
-/// What to tell at the end.
+/// Report after a motion.
 #[derive(Debug, Args)]
 pub struct Ending {
-    /// Report the position at the end, in this unit
+    /// Report the position after the motion, in this unit
     #[arg(long, value_name = "UNIT")]
     pub report: Option<Unit>,
     #[command(flatten)]
@@ -378,7 +379,7 @@ pub struct Ending {
 }
 
 impl Ending {
-    /// Asks for the position at the end in this unit.
+    /// Requests the position after the motion in this unit.
     pub fn put(draft: Draft, unit: Option<Unit>) -> Draft {
         draft.with_some(Key::Report, unit.map(Unit::report))
     }

@@ -1,4 +1,4 @@
-//! What a remote command replaces that sets a value: which command reads it, and what of its answer tells it.
+//! Old values before a remote command that sets a value: the command that reads them, and the field of its answer.
 
 use serde_json::Value as Json;
 
@@ -13,14 +13,14 @@ use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::gate::Change;
 
-/// Reads what an order replaces; what is not told stays unknown. A dry run notes the question.
+/// Reads the values that a command replaces. Without an answer they stay unknown. A dry run notes the request.
 pub async fn before(link: &mut Link, order: &Order) -> Result<Old, Failure> {
     let Some(read) = reader(order) else { return Ok(Old::UNREAD) };
     let values = there(link, &read.build()?, BEFORE).await.map_err(unwritten)?;
     Ok(Old::read(values.and_then(|values| told(order, &values))))
 }
 
-/// What is asked before an order that sets a value: what it will do, and old and new where old was read.
+/// Question before a command that sets a value: the intent, and old and new values if the old value was read.
 pub fn question(order: &Order, intent: String, old: &Old) -> Change {
     let change = Change::new(if intent.is_empty() { order.row().name.to_owned() } else { intent });
     let new = match order.command() {
@@ -35,7 +35,8 @@ pub fn question(order: &Order, intent: String, old: &Old) -> Change {
     }
 }
 
-/// What reads what an order sets. There is nothing that reads a torque limit, a selected shift or hand, and motor power.
+/// Read command for the values that a command sets. There is none for a torque limit, a selected shift or hand, and
+/// motor power.
 fn reader(order: &Order) -> Option<Draft> {
     let values = order.values();
     let (read, keys): (_, &[Key]) = match order.command() {
@@ -60,7 +61,7 @@ fn reader(order: &Order) -> Option<Draft> {
     Some(given.fold(read.order(), |draft, (key, number)| draft.with(key, number)))
 }
 
-/// What the answer says of it, as the report of the order names values.
+/// Old values from an answer, under the names of the command's report.
 fn told(order: &Order, answer: &Values) -> Option<Json> {
     let number = |key| answer.int(key).map(Json::from);
     match order.command() {
@@ -79,7 +80,8 @@ fn told(order: &Order, answer: &Values) -> Option<Json> {
     }
 }
 
-/// `on`, `off` or `free` where all axes that are meant are alike; else that of each, null for one that is not there.
+/// `on`, `off` or `free` if all selected axes agree; otherwise one value per axis, null for an axis that does not
+/// exist.
 fn servo(order: &Values, answer: &Values) -> Option<Json> {
     let mask = order.int(Key::Axes).unwrap_or_default();
     let state = |key| match shown(Command::ServoStatus, answer, key).as_deref() {

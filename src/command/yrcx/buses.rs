@@ -1,10 +1,10 @@
-//! The fieldbuses that a controller may be reached over. A new one is a folder whose `bus.rs` says what `fieldbus.rs` asks,
-//! and a line here; its URLs are registered in `settings/target/bus.rs`.
+//! Fieldbuses of a controller. To add one, add a folder whose `bus.rs` supplies what `fieldbus.rs` requires, and a
+//! line here; register its URLs in `settings/target/bus.rs`.
 
 use clap::{Arg, Args, Command};
 use schemars::{JsonSchema as _, Schema, SchemaGenerator};
 
-// Not its folder as a whole, whose commands know the link, which knows this list.
+// Only the `bus` module, because the commands of the folder depend on the link, and the link on this list.
 use super::devicenet::bus as devicenet;
 use super::eip::bus as eip;
 use super::fieldbus::{Fieldbus, Search, Serve};
@@ -12,13 +12,13 @@ use super::profibus::bus as profibus;
 #[cfg(target_os = "linux")]
 use super::profinet::bus as profinet;
 
-/// Makes the lists that the house goes by.
+/// Generates the lists of fieldbuses.
 macro_rules! fieldbuses {
     ($($(#[$cfg:meta])* $bus:ident,)*) => {
-        /// All of them. The first is the one that a simulator is on unless its URL says otherwise.
+        /// All fieldbuses. The first is the default of a simulator URL.
         pub const BUSES: &[&Fieldbus] = &[$($(#[$cfg])* &$bus::BUS,)*];
 
-        /// How each is searched by `robots discover`: arguments of the command line.
+        /// Command-line arguments of `robots discover`, per fieldbus.
         #[derive(Debug, Args)]
         #[group(skip)]
         pub struct Searches {
@@ -26,13 +26,13 @@ macro_rules! fieldbuses {
         }
 
         impl Searches {
-            /// Each with its fieldbus.
+            /// Each search with its fieldbus.
             pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Search)> {
                 vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
             }
         }
 
-        /// How each serves a simulated controller to others: arguments of `armctl sim yrcx`.
+        /// Command-line arguments of `armctl sim yrcx`, per fieldbus.
         #[derive(Debug, Args)]
         #[group(skip)]
         pub struct Servers {
@@ -40,19 +40,19 @@ macro_rules! fieldbuses {
         }
 
         impl Servers {
-            /// Each with its fieldbus.
+            /// Each server with its fieldbus.
             pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Serve)> {
                 vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
             }
 
-            /// Each fieldbus with the arguments that are for it alone.
+            /// Each fieldbus with the arguments that only it has.
             pub fn arguments() -> Vec<(&'static Fieldbus, Vec<Arg>)> {
                 let of = |command: Command| command.get_arguments().cloned().collect();
                 vec![$($(#[$cfg])* (&$bus::BUS, of($bus::ServeArgs::augment_args(Command::new("sim")))),)*]
             }
         }
 
-        /// What devices of each say of themselves.
+        /// Schemas of device identities, per fieldbus.
         pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
             vec![$($(#[$cfg])* $bus::Identity::json_schema(generator),)*]
         }
@@ -67,7 +67,7 @@ fieldbuses! {
     profinet,
 }
 
-/// The fieldbus of this name.
+/// Finds a fieldbus by name.
 pub fn by_name(name: &str) -> Option<&'static Fieldbus> {
     BUSES.iter().copied().find(|bus| bus.name == name)
 }

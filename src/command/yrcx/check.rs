@@ -1,4 +1,4 @@
-//! The layers of a controller for `armctl robots check`. No connection for images is opened.
+//! Controller layers of `armctl robots check`. The check opens no connection for images.
 
 use super::connect::endpoint;
 use super::link::Yrcx;
@@ -13,10 +13,10 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::{Robot, Sessions};
 
-/// The layers behind those of the fieldbus.
+/// Layers after those of the fieldbus.
 const SIGNALS: [&str; 8] = ["CPU", "emergency stop", "alarm", "remote command", "program", "mode", "servo", "origin"];
 
-/// Looks at them; reads only. What a session sees is asked of it, and no link besides.
+/// Checks the layers; read-only. If a session is open, the check uses its image and opens no other connection.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let fieldbus = endpoint(robot)?.fieldbus();
     let [first, .., last] = fieldbus.layers else {
@@ -26,7 +26,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
     let held = is_held(robot);
     let mut image = None;
     if held && !fieldbus.has_room {
-        layers.ok(first, "a session holds the link, and nobody else can ask there");
+        layers.ok(first, "an open session uses the connection, so other clients cannot read");
     } else {
         match Yrcx::connect(robot, access.clone(), screen).await {
             Err(failure) => layers.fail(first, &failure),
@@ -40,7 +40,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
         match through_session(robot, access, screen).await {
             Err(failure) => layers.fail(last, &failure),
             Ok(seen) => {
-                layers.ok(last, "seen through the session");
+                layers.ok(last, "read through the session");
                 image = Some(seen);
             }
         }
@@ -51,7 +51,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
     Ok(layers.finish())
 }
 
-/// What the controller shows to the session that holds its link.
+/// Image of the controller in the session that holds its link.
 async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Result<Image, Failure> {
     let robot = Robot { sessions: Sessions::Only, ..robot.clone() };
     let access = Access { mode: ConnectMode::Monitor, trace: None, ..access };
@@ -66,57 +66,57 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
         if is_well { layers.ok(layer, well) } else { layers.wrong(layer, ill, advice) }
     };
     let is_stopped = output::EMERGENCY_STOP.is_on(image);
-    must("CPU", output::CPU_OK.is_on(image), ("it works", "SO(01) is off"), "look at the controller's display");
+    must("CPU", output::CPU_OK.is_on(image), ("ready", "SO(01) is off"), "read the controller's display");
     must(
         "emergency stop",
         !is_stopped,
-        ("released", "pressed, or no master shows SI(00)"),
+        ("released", "pressed, or no master sets SI(00)"),
         "release it, then `yrcx recover`",
     );
     must(
         "alarm",
         !output::ALARM.is_on(image),
         ("none", "SO(03) is on"),
-        "`yrcx alarm list` names it, `yrcx alarm reset` resets it",
+        "see `yrcx alarm list`, then reset with `yrcx alarm reset`",
     );
     let status = Status::from_word(image.0[0]);
     layers.judge(
         "remote command",
         status == Status::Ready,
         ("ready", &format!("its status is: {status}")),
-        "another command runs, or was left over",
+        "another command is running, or an earlier one did not finish",
     );
     layers.left_over(&left_over(image));
     let runs = output::PROGRAM_RUNNING.is_on(image);
     let is_idle = !runs && !held;
-    // Whose it is the signals do not tell; that one runs is nothing wrong.
+    // The signals do not identify the program. A running program is not a fault.
     layers.ok(
         "program",
-        if runs { "one runs; `yrcx info tasks` tells which, `yrcx stop` stops it" } else { "none runs" },
+        if runs { "running; `yrcx info tasks` shows the program, `yrcx stop` stops it" } else { "not running" },
     );
     layers.judge(
         "mode",
         output::AUTO_MODE.is_on(image),
         ("auto", "manual"),
-        "programs want AUTO mode: select it at the SAFETY connector and the programming box",
+        "programs need AUTO mode: select it at the SAFETY connector and the programming box",
     );
     layers.judge(
         "servo",
         output::SERVO_ON.is_on(image),
         (
             if is_idle {
-                "motor power on; nothing runs, and no session holds it: `yrcx motor off`"
+                "motor power on; no program is running and no session is open: `yrcx motor off`"
             } else {
                 "motor power on"
             },
             "motor power off",
         ),
-        "motion wants it: `yrcx power-on`, or `yrcx motor on`",
+        "motion needs motor power: `yrcx power-on`, or `yrcx motor on`",
     );
     layers.judge(
         "origin",
         output::ORIGIN_COMPLETE.is_on(image),
         ("complete", "incomplete"),
-        "motion to positions wants it: `yrcx origin`",
+        "moves to positions need it: `yrcx origin`",
     );
 }

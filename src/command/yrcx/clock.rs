@@ -1,4 +1,4 @@
-//! `yrcx clock` (4.7.13, 4.7.14, 4.8.1, 4.8.2): date and time of the controller, without a time zone.
+//! `yrcx clock` (4.7.13, 4.7.14, 4.8.1, 4.8.2): date and time of the controller, without time zone.
 
 use clap::Args;
 use jiff::Zoned;
@@ -21,7 +21,7 @@ use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, View};
 
 commands! {
-    /// What can be done with the controller's clock.
+    /// Commands for the controller clock.
     pub enum Clock {
         /// Read date and time
         Get(Get),
@@ -32,7 +32,7 @@ commands! {
 
 const DATE: [Key; 3] = [Key::Year, Key::Month, Key::Day];
 const TIME: [Key; 3] = [Key::Hour, Key::Minute, Key::Second];
-/// The controller keeps two digits of the year.
+/// The controller stores two digits of the year.
 const CENTURY: i16 = 2000;
 
 /// Reads date and time of the controller.
@@ -52,7 +52,7 @@ impl Command for Get {
         let mut of_next = || outcomes.next().unwrap_or_else(|| Err(Failure::local("the clock was not read")));
         let mut date = of_next().and_then(|values| date_of(&values));
         let time = of_next().and_then(|values| time_of(&values));
-        // Midnight may have come between the two.
+        // Midnight may have passed between the two requests.
         if let (Ok(_), Ok(moment)) = (&date, &time)
             && moment.hour() == 0
             && moment.minute() == 0
@@ -68,32 +68,33 @@ impl Command for Get {
 fn date_of(values: &Values) -> Result<Date, Failure> {
     let [year, month, day] = DATE.map(|key| values.int(key).and_then(|number| i8::try_from(number).ok()).unwrap_or(-1));
     let date = if year < 0 { None } else { Date::new(CENTURY + i16::from(year), month, day).ok() };
-    date.ok_or_else(|| malformed(format!("the controller tells a date that does not exist: {year}-{month}-{day}")))
+    date.ok_or_else(|| malformed(format!("the controller reported an invalid date: {year}-{month}-{day}")))
 }
 
 fn time_of(values: &Values) -> Result<Time, Failure> {
     let [hour, minute, second] =
         TIME.map(|key| values.int(key).and_then(|number| i8::try_from(number).ok()).unwrap_or(-1));
     let time = Time::new(hour, minute, second, 0);
-    time.map_err(|_| malformed(format!("the controller tells a time that does not exist: {hour}:{minute}:{second}")))
+    time.map_err(|_| malformed(format!("the controller reported an invalid time: {hour}:{minute}:{second}")))
 }
 
 fn malformed(message: String) -> Failure {
     Failure::new(Kind::Malformed, message).hint("`yrcx clock set now` sets its clock")
 }
 
-/// What the clock shows.
+/// Clock reading.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Reading {
-    /// Local time of the controller, as in `2026-03-01T08:45:00`; null unless both its parts were told.
+    /// Local time of the controller, as in `2026-03-01T08:45:00`; null if the date or the time could not be read.
     time: Option<String>,
-    /// `2026-03-01`; null if it was not told.
+    /// `2026-03-01`; null if it could not be read.
     date: Option<String>,
-    /// `08:45:00`; null if it was not told.
+    /// `08:45:00`; null if it could not be read.
     time_of_day: Option<String>,
-    /// By how much the clock is ahead of this machine's; negative if it is behind; null unless both parts were told.
+    /// Difference to the clock of this computer in seconds; negative if the controller is behind; null if the date or
+    /// the time could not be read.
     ahead_s: Option<i64>,
-    /// What was not told, and why.
+    /// Values that could not be read, and the reason.
     errors: Vec<ItemError>,
 }
 
@@ -124,9 +125,9 @@ impl Report for Reading {
             return View::fields(fields.map(|(name, value)| (name, Cell::maybe(value))));
         };
         let difference = match ahead_s {
-            0 => "that of this machine".to_owned(),
-            ahead @ 1.. => format!("{} ahead of this machine", in_words(ahead.unsigned_abs())),
-            behind => format!("{} behind this machine", in_words(behind.unsigned_abs())),
+            0 => "same as this computer".to_owned(),
+            ahead @ 1.. => format!("{} ahead of this computer", in_words(ahead.unsigned_abs())),
+            behind => format!("{} behind this computer", in_words(behind.unsigned_abs())),
         };
         let clock = self.time.as_ref().map(|time| time.replacen('T', " ", 1));
         View::fields([("clock", Cell::maybe(clock.as_deref())), ("compared", difference.into())])
@@ -152,14 +153,14 @@ fn in_words(seconds: u64) -> String {
 
 /// Sets date and time of the controller, or one of them.
 #[derive(Debug, Args)]
-#[command(after_help = "The controller keeps local time, and the years 2000 to 2099.")]
+#[command(after_help = "The controller clock has local time and the years 2000 to 2099.")]
 pub struct Set {
     /// now, or a date, a time or both: 2026-03-01T08:45:00, 2026-03-01, 08:45
     #[arg(value_name = "TIME", value_parser = moment)]
     moment: Moment,
 }
 
-/// What to set the clock to.
+/// Date and time to set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Moment {
     Now,
@@ -188,7 +189,7 @@ fn parse_date(text: &str) -> Result<Date, String> {
     let date = date.ok_or_else(|| format!("'{text}' is not a valid date, such as 2026-03-01"))?;
     match date.year() - CENTURY {
         0..=99 => Ok(date),
-        _ => Err("the controller keeps the years 2000 to 2099".to_owned()),
+        _ => Err("the year must be 2000 to 2099".to_owned()),
     }
 }
 
@@ -202,7 +203,7 @@ fn parse_time(text: &str) -> Result<Time, String> {
     time.ok_or_else(|| format!("'{text}' is not a valid time, such as 08:45 or 08:45:00"))
 }
 
-/// A number of so many digits.
+/// A number with exactly `count` digits.
 fn digits<N: std::str::FromStr>(text: &str, count: usize) -> Option<N> {
     let fits = text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit());
     text.parse().ok().filter(|_| fits)
@@ -221,7 +222,7 @@ impl Command for Set {
             Moment::Now => (None, Some(Zoned::now().time())),
         };
         let found = read_before(link, time.is_some(), date.is_some() || self.moment == Moment::Now).await?;
-        // The time goes first: the clock must not pass midnight by its old time with the new date.
+        // The time is set first: otherwise midnight could pass on the old time and advance the new date.
         if let Some(time) = time {
             let order = time_order(link, time)?;
             link.ask(&order).await?;
@@ -246,7 +247,7 @@ impl Command for Set {
     }
 }
 
-/// Reads date and time as they are, as far as they will be set and are told.
+/// Reads the current date and time, as far as they will be set. Unreadable values stay unknown.
 async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<String>; 2], Failure> {
     let mut found = [None, None];
     if date {
@@ -268,16 +269,16 @@ struct Part {
     name: &'static str,
 }
 
-/// What the clock was set to.
+/// Result of setting the clock.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WasSet {
     /// `2026-03-01`; null if it was not set.
     date: Option<String>,
     /// `08:45:00`; null if it was not set.
     time: Option<String>,
-    /// What was set, with what the clock showed before.
+    /// Values that were set, with the old values.
     items: Vec<Written<Part>>,
-    /// What could not be set, and why.
+    /// Values that could not be set, and the reason.
     errors: Vec<ItemError>,
 }
 

@@ -1,4 +1,4 @@
-//! The commands of `yrcx`, as its help lists them.
+//! Commands of `yrcx` in the order of its help.
 
 use super::link::Yrcx;
 use super::motion::Moving;
@@ -10,12 +10,12 @@ use crate::command::backup::words::{Diff, Restore};
 use crate::command::{Subcommands, commands};
 
 commands! {
-    /// What can be asked of a YRCX controller.
+    /// Commands for a YRCX controller.
     pub enum Commands {
         "Status and diagnosis":
-        /// Signals, servos and position in words
+        /// Show signals, servos and position
         Status(status::Status),
-        /// What the controller tells
+        /// Information from the controller
         Info(Subcommands<info::Info>),
         /// Alarms
         Alarm(Subcommands<alarm::Alarm>),
@@ -57,7 +57,7 @@ commands! {
         Pallet(Moving<motion::Pallet>),
         /// Push with one axis
         Push(Moving<motion::Push>),
-        /// Move an axis until it is stopped
+        /// Jog: move an axis until you stop it
         Jog(motion::Jog),
         /// Move an axis by the inching distance
         Inch(Moving<motion::Inch>),
@@ -105,7 +105,7 @@ commands! {
         Backup(backup::Backup),
         /// Restore a backup
         Restore(Restore<Yrcx>),
-        /// Compare a backup with another one, or with the controller
+        /// Compare a backup with another backup or with the controller
         Diff(Diff<Yrcx>),
         "Signals":
         /// Read and switch dedicated and general I/O (SI / SO)

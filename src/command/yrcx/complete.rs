@@ -1,4 +1,4 @@
-//! Candidates for arguments.
+//! Completion candidates for arguments.
 
 use std::ops::RangeInclusive;
 
@@ -11,16 +11,16 @@ use crate::controller::yrcx::signal::{Side, Signal};
 use crate::controller::yrcx::table::parameter::PARAMETERS;
 use crate::settings::target::Family;
 
-/// A signal that the controller is shown, by a name of it.
+/// Name of an input signal.
 pub const INPUT: ValueKind = named(&[Kind::Signal], &[""], || signals(Side::Input, ""));
-/// The same with the state to set.
+/// Name of an input signal with the state to set.
 pub const INPUT_STATE: ValueKind =
     named(&[Kind::Signal], &["=on", "=off"], || [signals(Side::Input, "=on"), signals(Side::Input, "=off")].concat());
-/// A signal that the controller shows, by a name of it.
+/// Name of an output signal.
 pub const OUTPUT: ValueKind = named(&[Kind::Signal], &[""], || signals(Side::Output, ""));
 /// A port.
 pub const PORT: ValueKind = named(&[Kind::Port, Kind::Signal], &[""], || inputs().chain(outputs(0)).collect());
-/// A port that can be switched.
+/// Output port.
 pub const OUTPUT_PORT: ValueKind = named(&[Kind::Port, Kind::Signal], &[""], || outputs(2).collect());
 /// A parameter.
 pub const PARAMETER: ValueKind =
@@ -30,7 +30,7 @@ pub const VARIABLE: ValueKind = named(&[Kind::Variable], &[""], || {
     let whole = numbered("SGI", 0..=31, "whole number");
     whole.chain(numbered("SGR", 0..=31, "real number")).collect()
 });
-/// A task with a program in it.
+/// Task with a program.
 pub const TASK: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     async {
         for (task, state) in tasks(robot).await {
@@ -39,11 +39,11 @@ pub const TASK: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     }
     .boxed_local()
 });
-/// The program of a task by its number.
+/// Number of the program of a task.
 pub const PROGRAM: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     programs(robot, |number, name, about| Candidate::new(number, format!("{name}: {about}"))).boxed_local()
 });
-/// The program of a task by its name.
+/// Name of the program of a task.
 pub const PROGRAM_NAME: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     programs(robot, |number, name, about| Candidate::new(name, format!("program {number}: {about}"))).boxed_local()
 });
@@ -84,7 +84,7 @@ fn numbered(
     numbers.map(move |number| Candidate::new(format!("{letters}{number}"), about))
 }
 
-/// What `candidate` makes of number, name and whereabouts of each program.
+/// Applies `candidate` to number, name and location of each program.
 async fn programs(robot: &dyn Ask, candidate: fn(&str, &str, &str) -> Candidate) {
     for (task, state) in tasks(robot).await {
         if let Some(shown) = robot.data(&["yrcx", "program", "show", "--task", &task]).await {

@@ -1,4 +1,4 @@
-//! How a controller is connected to: over a fieldbus, or as a simulator in this process.
+//! Connection to a controller: over a fieldbus, or a simulator in this process.
 
 use std::fmt;
 
@@ -16,7 +16,7 @@ use crate::settings::target::{self, Bus, Place};
 use crate::transport::image::ImageLink;
 use crate::transport::image::tap::Tap;
 
-/// What a target leads to.
+/// Endpoint of a target.
 #[derive(Debug, Clone, Copy)]
 pub enum Endpoint<'a> {
     /// A controller on a fieldbus.
@@ -25,28 +25,28 @@ pub enum Endpoint<'a> {
     Sim(&'a target::Sim),
 }
 
-/// What a robot's target leads to.
+/// Endpoint of a robot's target.
 pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
     match &robot.target.value.place {
         Place::Bus(bus) => match buses::by_name(bus.scheme.bus) {
             Some(fieldbus) => Ok(Endpoint::Bus(bus, fieldbus)),
-            None => Err(Failure::local(format!("nothing is known of {}", bus.scheme.bus))),
+            None => Err(Failure::local(format!("internal error: fieldbus {} is not supported", bus.scheme.bus))),
         },
         Place::Sim(sim) => Ok(Endpoint::Sim(sim)),
         Place::Udp(_) | Place::Serial(_) | Place::Tcp(_) => {
             let schemes: Vec<String> = target::BUSES.iter().map(|scheme| format!("{}://", scheme.name)).collect();
             let schemes = schemes.join(", ");
-            Err(Failure::usage(format!("yrcx is not reached over {}:", robot.target.value.scheme()))
+            Err(Failure::usage(format!("a yrcx controller cannot be reached over {}:", robot.target.value.scheme()))
                 .hint(format!("use {schemes} or sim:")))
         }
     }
 }
 
-/// What asks a device without a link for images, with whatever must live as long.
+/// Explicit messaging client, with a simulator that must live as long.
 pub type OpenBoard = (Box<dyn Board>, Option<Box<dyn fmt::Debug>>);
 
 impl Endpoint<'_> {
-    /// Opens a link, with a record of its packets where that is wanted.
+    /// Opens a link, with a packet recorder if requested.
     pub async fn open(
         &self,
         robot: &Robot,
@@ -65,13 +65,13 @@ impl Endpoint<'_> {
                         if let Some(opening) = opening {
                             opening.show(screen);
                         }
-                        // Why it did not open is worth more than what became of the record of it.
+                        // The failure to open matters more than the failure to finish the recording.
                         let _ = recorder.map_or(Ok(()), Recorder::finish);
                         Err(not_open(&robot.label(), bus.scheme, &error))
                     }
                 }
             }
-            // What goes wrong on a network takes one.
+            // Network faults need a network.
             Self::Sim(sim) if sim.bus.is_some() || simulated::has_faults(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
                 let opened = (fieldbus.open)(At { robot, bus: &bus, tap: Tap::default() }, Purpose::Command).await;
@@ -82,7 +82,7 @@ impl Endpoint<'_> {
         }
     }
 
-    /// Opens what can be asked without a link for images.
+    /// Opens the explicit messaging client.
     pub async fn board(
         &self,
         robot: &Robot,
@@ -110,7 +110,7 @@ impl Endpoint<'_> {
         }
     }
 
-    /// The fieldbus of it; of a simulator, the one that it would be on.
+    /// Fieldbus of the endpoint; for a simulator, the fieldbus that it simulates.
     pub fn fieldbus(&self) -> &'static Fieldbus {
         match self {
             Self::Bus(_, fieldbus) => fieldbus,
@@ -118,7 +118,7 @@ impl Endpoint<'_> {
         }
     }
 
-    /// Whether a link to it commands the controller, if its command wants that.
+    /// Whether a link in control mode commands the controller.
     pub fn is_owner(&self) -> bool {
         match self {
             Self::Bus(bus, _) => bus.is_owner,
@@ -127,7 +127,7 @@ impl Endpoint<'_> {
     }
 }
 
-/// The fieldbus that a simulator is on.
+/// Fieldbus of a simulator.
 fn simulated_on(sim: &target::Sim) -> &'static Fieldbus {
     let named = sim.bus.and_then(|wanted| simulators().find(|(name, _)| *name == wanted));
     named.and_then(|(_, bus)| buses::by_name(bus)).unwrap_or(BUSES[0])

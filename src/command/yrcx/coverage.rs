@@ -1,4 +1,4 @@
-//! Which remote commands named command lines reach.
+//! Remote commands that the command lines cover.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use super::testing::{words, written};
 use crate::controller::Risk;
 use crate::controller::yrcx::table::{Command, ROWS, Row};
 
-/// A command line for each row, in the order of the codes.
+/// A command line for each row of the command table, in the order of the codes.
 const LINES: &[&str] = &[
     "status-reset",
     "move --point 19",
@@ -128,7 +128,7 @@ fn every_line_sends_the_row_it_is_for() {
         let written = written(&line.split(' ').collect::<Vec<_>>()).unwrap();
         let own = row(written.first().unwrap_or(&sent[0])).command;
         assert!(!reached.contains(&own) || own.row().risk == Risk::Read, "{line}: {own:?} has a line already");
-        // A line may send several.
+        // A command line may send several commands.
         reached.extend(sent.iter().map(|words| row(words).command));
     }
     let missing: Vec<Command> = ROWS.iter().map(|row| row.command).filter(|row| !reached.contains(row)).collect();

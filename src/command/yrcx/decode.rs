@@ -1,4 +1,4 @@
-//! `armctl decode yrcx`: words of a remote command and its answer, in words.
+//! `armctl decode yrcx`: explanation of remote command words and answers.
 
 mod capture;
 pub mod images;
@@ -19,15 +19,16 @@ use crate::controller::yrcx::image::Words;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 
-/// Words of YRCX remote commands and their answers
+/// Decode words of YRCX remote commands and answers
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Words that are left away are 0. An answer is explained by its command, where that is given. Words that \
-    must not be sent are explained as far as they go, and the exit code is 5.\n\nTelegrams of PROFIBUS may be given as \
-    bytes, one after the other; so may a file of them be, in hexadecimal or as they are. A telegram is its own packet \
-    then, and has no time.\n\nOf a capture file, what the images \
-    say is listed in the words of --trace when it is new, with the messages of the fieldbus around it; NUMBER and TIME are \
-    those of Wireshark. Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
+    after_help = "Missing words are 0. An answer is explained with its command if you give both. Invalid words are \
+                  explained as far as possible, and the exit code is 5.\n\nGive PROFIBUS telegrams as bytes, one \
+                  telegram after the other, or as a file in hexadecimal or binary. Each telegram then counts as a \
+                  packet without a time.\n\nA capture file lists the new content of images, in the same text as \
+                  --trace, with the fieldbus messages around it. NUMBER and TIME are those of Wireshark. A file \
+                  without any messages is not an error. A damaged file is decoded up to the damage, and the exit code \
+                  is 1."
 )]
 pub struct Decode {
     /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
@@ -36,13 +37,13 @@ pub struct Decode {
     /// WO0 to WO15, as in 0x4000,0x0002,0x014E
     #[arg(long, value_name = "WORDS", value_parser = words)]
     wo: Option<Words>,
-    /// A file: a capture (pcap or pcapng), a log of candump, or telegrams of PROFIBUS; - for stdin; or telegrams in
-    /// hexadecimal (blanks, colons and 0x may stand between the bytes)
+    /// A file: a capture (pcap or pcapng), a candump log, or PROFIBUS telegrams; - for stdin. Or telegrams in
+    /// hexadecimal (spaces, colons and 0x are allowed between the bytes)
     #[arg(value_name = "FILE|HEX", conflicts_with_all = ["wi", "wo"])]
     capture: Vec<String>,
     #[command(flatten)]
     selection: Selection,
-    /// Images that say nothing new, too
+    /// List images without new content too
     #[arg(long, help_heading = "Capture files")]
     every_image: bool,
 }
@@ -57,7 +58,7 @@ impl decode::Decode for Decode {
         let input = match self.capture.as_slice() {
             [] => return Ok(None),
             [stdin] if stdin == "-" => Input::Bytes("stdin", stdin_bytes()?),
-            // No name of a capture has only digits of this kind.
+            // Hexadecimal digits are telegrams, because no capture file has such a name.
             [file] if parse_hex(file).is_err() => Input::File(Path::new(file)),
             bytes => Input::Bytes("telegrams", telegrams(&bytes.join(" "))?),
         };
@@ -79,18 +80,19 @@ impl decode::Decode for Decode {
     }
 }
 
-/// Telegrams that were typed: as the text that they are.
+/// Telegrams in hexadecimal.
 fn telegrams(text: &str) -> Result<Vec<u8>, Failure> {
     let hint = "give telegrams as 68 05 05 68 …, or the name of a file";
     let bytes = parse_hex(text).map_err(|error| Failure::usage(error).hint(hint))?;
     if holds_telegram(&bytes) {
         return Ok(text.as_bytes().to_vec());
     }
-    let failure = Failure::new(Kind::Malformed, "no telegram of PROFIBUS begins in these bytes");
-    Err(failure.hint("one begins with 10, 68, A2, DC or E5; a file whose name has only such digits is ./NAME"))
+    let failure = Failure::new(Kind::Malformed, "no PROFIBUS telegram starts in these bytes");
+    Err(failure
+        .hint("a telegram starts with 10, 68, A2, DC or E5. If the file name has only hexadecimal digits, use ./NAME"))
 }
 
-/// Words in words.
+/// Explanation of remote command words.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct DecodedWords {
     parts: Vec<Part>,
@@ -101,12 +103,12 @@ pub struct DecodedWords {
 struct Part {
     /// `command` or `answer`.
     kind: &'static str,
-    /// What it is.
+    /// Name of the command or the answer.
     title: String,
-    /// Section of the manual, in chapter 2, where the command is known.
+    /// Section of chapter 2 of the manual, if the command is known.
     section: Option<&'static str>,
     fields: Vec<FieldNote>,
-    /// What is wrong with it.
+    /// Problems found in it.
     problems: Vec<String>,
 }
 
@@ -130,8 +132,8 @@ impl Report for DecodedWords {
 
     fn failure(&self) -> Option<Failure> {
         let problem = self.parts.iter().flat_map(|part| &part.problems).next()?;
-        let failure = Failure::new(Kind::Malformed, format!("the words are not as the manual has them: {problem}"));
-        Some(failure.hint("they are explained as far as they go; the section of the manual is named"))
+        let failure = Failure::new(Kind::Malformed, format!("the words do not match the manual: {problem}"));
+        Some(failure.hint("compare them with the section of the manual that is shown"))
     }
 }
 

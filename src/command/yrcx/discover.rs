@@ -1,4 +1,4 @@
-//! Who answers on the fieldbuses, for `armctl robots discover`.
+//! Fieldbus devices for `armctl robots discover`.
 
 use std::time::Duration;
 
@@ -13,20 +13,20 @@ use crate::command::Access;
 use crate::failure::Failure;
 use crate::output::Screen;
 
-/// A device that answered. What it says of itself is untrusted.
+/// A device that answered. Its identity is untrusted.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct FoundDevice {
-    /// Where the answer came from.
+    /// Address of the device.
     address: String,
-    /// The URL for `-t`.
+    /// URL for `-t`.
     pub target: String,
-    /// The family that it may be of, by the number of its maker; null for makers of other things.
+    /// Robot family that the vendor id belongs to; null for other vendors.
     pub family: Option<&'static str>,
-    /// What it says of itself, in the words of its fieldbus.
+    /// Identity, as its fieldbus defines it.
     #[serde(flatten)]
     #[schemars(schema_with = "identities")]
     identity: Map<String, Value>,
-    /// The same in a line.
+    /// Identity in one line.
     #[serde(skip)]
     pub device: String,
 }
@@ -38,7 +38,7 @@ impl From<Device> for FoundDevice {
     }
 }
 
-/// What devices of each fieldbus say of themselves.
+/// Schema of the identities of all fieldbuses.
 fn identities(generator: &mut SchemaGenerator) -> Schema {
     let mut all = buses::identities(generator);
     if all.len() == 1
@@ -50,7 +50,7 @@ fn identities(generator: &mut SchemaGenerator) -> Schema {
     schemars::json_schema!({ "anyOf": all })
 }
 
-/// Searches them, one after the other.
+/// Searches the fieldbuses one after the other.
 pub async fn discover(
     searches: &Searches,
     wait: Duration,
@@ -70,7 +70,7 @@ pub async fn discover(
         recorder.map_or(Ok(()), Recorder::finish)?;
         match found {
             Ok(found) => all.extend(found.into_iter().map(FoundDevice::from)),
-            // A machine without a network still has ports.
+            // A computer without a network still has serial ports.
             Err(failure) if scope == Scope::Usual => screen.note(&format!("warning: {failure}")),
             Err(failure) => return Err(failure),
         }
@@ -78,7 +78,7 @@ pub async fn discover(
     Ok(all)
 }
 
-/// The narrowest of what is wanted.
+/// Narrowest scope of the search options.
 pub fn scope(searches: &Searches) -> Scope {
     searches.each().into_iter().map(|(_, search)| search.scope()).max().unwrap_or(Scope::Nothing)
 }

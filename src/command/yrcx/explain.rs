@@ -1,4 +1,4 @@
-//! `armctl explain yrcx`: alarms, and what devices of a fieldbus say no with, in words.
+//! `armctl explain yrcx`: meaning of alarms and of fieldbus error codes.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -23,14 +23,14 @@ pub struct Explain {
     code: Code,
 }
 
-/// What is explained.
+/// Code to explain.
 #[derive(Debug, Clone)]
 enum Code {
     Alarm(Alarm),
     Bus(Explained),
 }
 
-/// Group and category, or what a fieldbus knows.
+/// Parses an alarm number or a fieldbus error code.
 fn code(text: &str) -> Result<Code, String> {
     if let Some(explained) = BUSES.iter().find_map(|bus| (bus.explain)(text)) {
         return Ok(Code::Bus(explained));
@@ -51,7 +51,7 @@ impl face::Explain for Explain {
                 Known::new(known.is_some(), told(*alarm), [causes, remedies], site, Group { group: alarm.group_text() })
             }
             Code::Bus(Explained { code, meaning, refused, remedies }) => {
-                let text = meaning.clone().unwrap_or_else(|| "an error without words".to_owned());
+                let text = meaning.clone().unwrap_or_else(|| "unknown error".to_owned());
                 let alarm = Told {
                     code: Some(code.clone()),
                     text: Some(text),
@@ -70,13 +70,13 @@ impl face::Explain for Explain {
     }
 }
 
-/// Said of an alarm that only the controller's manual has.
-const LOOK: &[&str] = &["look it up in the controller's manual: `yrcx info alarm` tells where it came up"];
+/// Remedy for an alarm that only the controller's manual describes.
+const LOOK: &[&str] = &["look up the alarm in the controller's manual; `yrcx info alarm` shows the source"];
 
-/// What a code is about.
+/// Classification of a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Group {
-    /// The group of an alarm, or what was refused; null for an unknown group.
+    /// Group of the alarm, or the refused operation; null for an unknown group.
     group: Option<&'static str>,
 }
 

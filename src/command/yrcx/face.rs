@@ -1,4 +1,4 @@
-//! What the rest of the house may ask of `yrcx`.
+//! Implementation of the family interface for `yrcx`.
 
 use clap::{ArgMatches, Args as _, FromArgMatches as _};
 

@@ -1,5 +1,5 @@
-//! Errors of the client as failures of a command: what happened to which robot, and what to do about it. How a stop went
-//! is told here as well.
+//! Conversion of client errors to command failures: what failed on which robot, and what to do. Includes the result
+//! of a stop.
 
 use std::fmt;
 
@@ -16,36 +16,41 @@ use crate::controller::yrcx::table::{Command, Pace};
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::{Failure, Kind};
 
-/// An error of the client of the robot that is called `label`.
+/// Failure for an error of the client; `label` is the robot.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: &dyn fmt::Display| Failure::new(kind, format!("{label}: {what}"));
     match error {
         Error::Refused(refusal) => (*refusal).into(),
         Error::NotSent { why, .. } => about(Kind::NoAnswer, &error).hint(match why {
             NotSentReason::NoImage => {
-                "check the link: `-v` counts what came; the sizes in the URL may be wrong (`armctl robots check`)"
+                "check the connection: `-v` counts received packets. The sizes in the URL may be wrong (`armctl robots \
+                 check`)"
             }
-            NotSentReason::LinkLost => "look at the controller; the link opens again by itself",
-            NotSentReason::NotReady(_) => "another command may still run; `yrcx io set stop=off` stops what moves",
+            NotSentReason::LinkLost => "check the controller; armctl reopens the connection automatically",
+            NotSentReason::NotReady(_) => "another command may still be running; `yrcx io set stop=off` stops a motion",
             NotSentReason::Interrupted => "nothing was done",
         }),
         Error::NoAnswer { why, .. } => {
             let kind = if let Silence::Undocumented(_) = why { Kind::Malformed } else { Kind::NoAnswer };
-            about(kind, &error).hint("`yrcx status` tells how the controller stands")
+            about(kind, &error).hint("`yrcx status` shows the state of the controller")
         }
         Error::OutcomeUnknown { command, why, stop, is_stop_held, ended } => {
             let held = match (why, stop) {
                 (Silence::LinkLost, None) => match ended {
                     Some(ended) => format!("; {ended}"),
-                    None => "; it is still down".to_owned(),
+                    None => "; the connection is still down".to_owned(),
                 },
-                (Silence::LinkLost, Some(true)) => "; it is up again, and the stop input SI(06) is on".to_owned(),
-                (Silence::LinkLost, Some(false)) => "; it is up again, and the stop input SI(06) is off".to_owned(),
+                (Silence::LinkLost, Some(true)) => {
+                    "; the connection is up again, and the stop input SI(06) is on".to_owned()
+                }
+                (Silence::LinkLost, Some(false)) => {
+                    "; the connection is up again, and the stop input SI(06) is off".to_owned()
+                }
                 (_, Some(false)) if is_stop_held => "; the stop input SI(06) stays off".to_owned(),
                 _ => String::new(),
             };
             let id = command.row().id;
-            let what = format!("{id} was sent, but whether it was carried out is unknown: {why}{held}");
+            let what = format!("{id} was sent, but the result is unknown: {why}{held}");
             about(Kind::OutcomeUnknown, &what).hint(verification_hint(command))
         }
         Error::Unfinished { name, outcome } => unfinished(label, name, outcome),
@@ -64,30 +69,33 @@ pub fn failure(label: &str, error: Error) -> Failure {
         }
         Error::StillMoving { cut: by } => {
             let why = by.map(|by| format!("{}; ", failure(label, *by).message)).unwrap_or_default();
-            let message = format!("{why}the axis may still move: nothing reaches the controller any more");
+            let message = format!("{why}the axis may still move: the connection to the controller is down");
             Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop")
         }
         Error::UnderWay { .. } => about(Kind::NoAnswer, &error)
-            .hint("a controller carries out one remote command at a time; `yrcx io set stop=off` stops a motion"),
+            .hint("the controller executes one remote command at a time; `yrcx io set stop=off` stops a motion"),
         Error::OthersUnderWay { words } => {
-            about(Kind::NoAnswer, &format!("another client's command is still under way: {}", command_summary(&words)))
-                .hint("wait for its end; `yrcx stop` stops a motion, and `yrcx io get` tells how the controller stands")
+            about(Kind::NoAnswer, &format!("another client's command is still running: {}", command_summary(&words)))
+                .hint(
+                    "wait until it ends; `yrcx stop` stops a motion, and `yrcx io get` shows the state of the \
+                     controller",
+                )
         }
-        Error::SignalsUnderWay => about(Kind::NoAnswer, &error).hint("wait for the end of it"),
-        Error::WordsNotSent => about(Kind::NoAnswer, &error).hint("`yrcx io get SIW2` tells what is shown"),
+        Error::SignalsUnderWay => about(Kind::NoAnswer, &error).hint("wait until it ends"),
+        Error::WordsNotSent => about(Kind::NoAnswer, &error).hint("`yrcx io get SIW2` shows the current words"),
         Error::SignalsAlone { command } => {
             let id = command.row().id;
-            let what = "the fieldbus unit carries signals alone (I/O size \"Compact\")";
+            let what = "the fieldbus unit supports only signals (I/O size \"Compact\")";
             about(Kind::Rejected, &format!("{what}, and {id} is a remote command")).hint(
-                "set the unit's I/O size to Normal for remote commands; signals work: `yrcx status`, `yrcx io`, \
-                 `yrcx run`, `yrcx stop`, `yrcx recover`",
+                "set the unit's I/O size to Normal to use remote commands. These commands use only signals: `yrcx \
+                 status`, `yrcx io`, `yrcx run`, `yrcx stop`, `yrcx recover`",
             )
         }
         Error::NotCommanding { .. } => Failure::usage(error.to_string())
-            .hint("leave role away from the URL; input_only and listen_only see the signals alone: `yrcx io get`"),
+            .hint("remove role from the URL; input_only and listen_only can only read signals: `yrcx io get`"),
         Error::NotHeld => Failure::usage(format!("without waiting, {error}"))
             .hint("remove --no-wait, or keep a connection open with `armctl session open` first"),
-        Error::Silent => about(Kind::NoAnswer, &error).hint("check the link: `-v` counts what came"),
+        Error::Silent => about(Kind::NoAnswer, &error).hint("check the connection: `-v` counts received packets"),
         Error::NoImage { .. } => {
             about(Kind::Malformed, &error).hint("check the sizes in the URL: `armctl robots check`")
         }
@@ -99,37 +107,37 @@ pub fn failure(label: &str, error: Error) -> Failure {
     }
 }
 
-/// Result of what was stopped.
+/// Result of a stop.
 const STOPPED: &str = "the robot was stopped by the stop input SI(06), which is on again";
 
-/// How a stop went.
+/// Text for the result of a stop.
 pub fn stopped(stopped: Stopped) -> String {
     match stopped {
-        Stopped::Nothing => "nothing was sent that moves the robot".to_owned(),
+        Stopped::Nothing => "no motion command was sent".to_owned(),
         Stopped::Motion { order, positions } => format!("{STOPPED}{}", place(&order, &positions)),
         Stopped::Started => STOPPED.to_owned(),
         Stopped::Command(command) => format!("{} was ended", command.row().id),
-        Stopped::HadEnded(command, None) => format!("{} had been carried out already", command.row().id),
+        Stopped::HadEnded(command, None) => format!("{} had already completed", command.row().id),
         Stopped::HadEnded(command, Some(alarm)) => {
-            format!("{} had ended already: alarm {alarm}, {}", command.row().id, alarm.text())
+            format!("{} had already ended: alarm {alarm}, {}", command.row().id, alarm.text())
         }
     }
 }
 
-/// How an order that the stop input ended leaves the robot: what is known of where it stands, and what comes next.
+/// Known position after a command that the stop input ended, and the next step.
 fn place(order: &Order, values: &Values) -> String {
     let position = match (values.axes(), order.values().int(Key::Report)) {
         (Some(axes), Some(report)) if report == Unit::Mm.report() => {
             let mm = axes.map(|steps| format!("{:.3}", f64::from(steps) / 1000.0));
-            format!("; it stands at {} mm", mm.join(", "))
+            format!("; position: {} mm", mm.join(", "))
         }
-        (Some(axes), _) => format!("; it stands at {} pulses", axes.map(|pulses| pulses.to_string()).join(", ")),
+        (Some(axes), _) => format!("; position: {} pulses", axes.map(|pulses| pulses.to_string()).join(", ")),
         (None, _) => String::new(),
     };
     format!("{position}{}", kept(order.row(), ""))
 }
 
-/// A procedure that was not carried out to its end.
+/// Failure for a procedure that did not complete.
 fn unfinished(label: &str, name: &str, outcome: sequence::Outcome) -> Failure {
     use sequence::Outcome;
 
@@ -138,36 +146,36 @@ fn unfinished(label: &str, name: &str, outcome: sequence::Outcome) -> Failure {
     match outcome {
         Outcome::NotPossible { hint, .. } => here(Kind::Refused).hint(hint),
         Outcome::TimedOut { .. } => here(Kind::OutcomeUnknown)
-            .hint("`yrcx status` tells how the controller stands; --timeout sets how long to wait"),
-        Outcome::Broken { .. } => here(Kind::Refused).hint("`yrcx info alarm` tells which alarm it is"),
-        Outcome::NoImage => there(Kind::NoAnswer).hint("check the link: `-v` counts what came"),
+            .hint("`yrcx status` shows the state of the controller; --timeout sets how long to wait"),
+        Outcome::Broken { .. } => here(Kind::Refused).hint("`yrcx info alarm` shows the alarm"),
+        Outcome::NoImage => there(Kind::NoAnswer).hint("check the connection: `-v` counts received packets"),
         Outcome::LinkLost { begun: false } => there(Kind::NoAnswer),
         Outcome::LinkLost { begun: true } => {
-            there(Kind::OutcomeUnknown).hint("`yrcx status` tells how the controller stands")
+            there(Kind::OutcomeUnknown).hint("`yrcx status` shows the state of the controller")
         }
-        // The client takes it for none.
+        // The client does not report this as a failure.
         Outcome::Done => there(Kind::Local),
     }
 }
 
-/// What tells whether an order was carried out whose answer was lost.
+/// Hint how to find out whether a command took effect when its answer was lost.
 fn verification_hint(command: Command) -> String {
     let row = command.row();
     match (row.category(), row.pace) {
         (1, Pace::Motion | Pace::Jog) => {
             let kept = kept(row, "");
-            format!("keep clear; do not send it again; `yrcx position` tells where the robot is{kept}")
+            format!("keep clear; do not send it again; `yrcx position` shows where the robot is{kept}")
         }
-        (1, Pace::Power) => "`yrcx status` tells whether servos and motor power are on".to_owned(),
-        (5, _) => "keep clear; `yrcx info tasks` tells what runs".to_owned(),
+        (1, Pace::Power) => "`yrcx status` shows whether servos and motor power are on".to_owned(),
+        (5, _) => "keep clear; `yrcx info tasks` shows the running tasks".to_owned(),
         _ => match TELLTALES.iter().find(|(commands, _)| commands.contains(&command)) {
-            Some((_, words)) => format!("`yrcx {words}` tells"),
-            None => "`yrcx status` tells how the controller stands".to_owned(),
+            Some((_, words)) => format!("check with `yrcx {words}`"),
+            None => "`yrcx status` shows the state of the controller".to_owned(),
         },
     }
 }
 
-/// Which command reads what others write.
+/// Read command for the values that other commands write.
 const TELLTALES: [(&[Command], &str); 12] = [
     (&[Command::InchAmountSet], "info inch"),
     (
@@ -215,7 +223,7 @@ mod tests {
 
     #[test]
     fn what_changes_something_names_what_tells() {
-        assert_eq!(verification_hint(Command::PointAdd), "`yrcx point get` tells");
+        assert_eq!(verification_hint(Command::PointAdd), "check with `yrcx point get`");
         assert!(verification_hint(Command::MoveArch).contains("yrcx position"));
         assert!(verification_hint(Command::ProgramRun).contains("info tasks"));
         assert!(verification_hint(Command::MotorOn).contains("motor power"));

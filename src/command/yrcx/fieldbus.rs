@@ -1,4 +1,4 @@
-//! What each fieldbus must do that a controller may be reached over. `buses.rs` lists them.
+//! Interface that each fieldbus implements. `buses.rs` lists the fieldbuses.
 
 use std::any::Any;
 use std::fmt;
@@ -21,173 +21,174 @@ use crate::settings::target::{Address, Bus, Place, Sim, Target};
 use crate::transport::image::tap::Tap;
 use crate::transport::image::{ImageLink, LinkError};
 
-/// A fieldbus: how controllers on it are reached, asked and simulated.
+/// A fieldbus: connection, diagnosis and simulation.
 #[derive(Debug)]
 pub struct Fieldbus {
-    /// The name of it: the word of its commands, and what its schemes say that they lead to.
+    /// Name, as in its commands and URL schemes.
     pub name: &'static str,
-    /// The alarm of a controller whose link over it is lost; the next number is the one of a loss that lasts.
+    /// Alarm of the controller after loss of the link. The next number is the alarm for a permanent loss.
     pub link_alarm: Alarm,
-    /// The kind of packets that records have, as in a capture file: [`LINKTYPE_RAW`] is packets of IP.
+    /// Link type of recorded packets in a capture file; [`LINKTYPE_RAW`] means IP packets.
     ///
     /// [`LINKTYPE_RAW`]: crate::transport::tap::LINKTYPE_RAW
     pub link_type: u16,
-    /// The layers of `robots check` between the name and the signals, in order; the first is there whatever fails.
+    /// Layers of `robots check` between the name and the signals, in order. The first layer always exists.
     pub layers: &'static [&'static str],
-    /// Whether there is room for questions beside a session of this machine: a network, not an adapter of its own.
+    /// Whether other requests are possible while a session of this computer is open: true for a network, false for an
+    /// exclusive adapter.
     pub has_room: bool,
-    /// All addresses of a controller, asked of its network; `None` where each has but one.
+    /// Resolves all addresses of a controller; `None` if each controller has only one.
     pub addresses: Option<Addresses>,
-    /// Opens a link: one that commands the controller, which then is shown the resting image, or one that only looks and
-    /// changes nothing for whoever commands it.
+    /// Opens a link: a commanding link, which sends the resting image first, or a read-only link, which does not
+    /// affect the master.
     pub open: for<'a> fn(At<'a>, Purpose) -> Opening<'a, ImageLink>,
-    /// Opens what can be asked of the device without a link for images.
+    /// Opens the explicit messaging client of the device.
     pub board: for<'a> fn(At<'a>) -> Opening<'a, Box<dyn Board>>,
-    /// What a code means that its devices say no with; `None` for what is no such code.
+    /// Meaning of an error code of its devices; `None` for any other code.
     pub explain: fn(code: &str) -> Option<Explained>,
-    /// What finds its images in captures.
+    /// Decoder for its images in captures.
     pub decoder: fn() -> Box<dyn BusDecoder>,
-    /// Starts a simulated controller on it, with what the URL of a simulator wants to go wrong.
+    /// Starts a simulated controller on this fieldbus, with the faults of the simulator's URL.
     pub simulate: fn(&Sim) -> Result<Simulation, Failure>,
 }
 
-/// Asks a network for all addresses of a controller.
+/// Resolves all addresses of a controller.
 pub type Addresses = fn(&Bus) -> Result<Vec<Address>, LinkError>;
 
-/// What comes when it is open.
+/// Future of an open operation.
 pub type Opening<'a, T> = LocalBoxFuture<'a, Result<T, LinkError>>;
 
-/// What a device says no with, in words.
+/// Meaning of an error code.
 #[derive(Debug, Clone)]
 pub struct Explained {
-    /// The code, however it was written.
+    /// Code in normal form.
     pub code: String,
-    /// What it means; `None` for one without words.
+    /// Meaning; `None` if unknown.
     pub meaning: Option<String>,
-    /// What was refused.
+    /// Refused operation.
     pub refused: &'static str,
-    /// What to do.
+    /// Remedies.
     pub remedies: &'static [&'static str],
 }
 
-/// Where a controller is on a fieldbus.
+/// Address of a controller on a fieldbus.
 #[derive(Debug, Clone)]
 pub struct At<'a> {
-    /// The robot, for its time-out and its name.
+    /// Robot, for its timeout and its name.
     pub robot: &'a Robot,
-    /// What its URL says, or what was made up for a simulator.
+    /// Parsed URL of the robot or of a simulator.
     pub bus: &'a Bus,
-    /// Who records what passes.
+    /// Recorder of the packets.
     pub tap: Tap,
 }
 
-/// What a link is opened for.
+/// Purpose of a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// To do what the URL says: mostly to command.
+    /// Use as the URL requests: usually to command.
     Command,
-    /// To see what the controller shows by itself.
+    /// Read-only use.
     Look,
 }
 
-/// What can be asked of a device without a link for images, by the commands of its fieldbus and by `robots check`.
+/// Explicit messaging client of a device, for the commands of its fieldbus and for `robots check`.
 pub trait Board: fmt::Debug + Any {
-    /// Looks at the layers up to the signals, and at what the controller shows; `None` where something failed before.
+    /// Checks the layers up to the signals, and reads the image of the controller; `None` after a failure.
     fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>>;
 
-    /// Takes leave of it.
+    /// Closes the connection.
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()>;
 }
 
-/// What was opened to ask a device, whatever its fieldbus.
+/// Converts a client to a trait object.
 pub fn boxed(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, LinkError> {
     Ok(Box::new(board?))
 }
 
-/// A simulated controller on a fieldbus in this process.
+/// Simulated controller on a fieldbus in this process.
 #[derive(Debug)]
 pub struct Simulation {
-    /// Where it is.
+    /// Address.
     pub bus: Bus,
-    /// The controller.
+    /// Controller.
     pub controller: Box<dyn fmt::Debug>,
 }
 
 impl Simulation {
-    /// A controller that a URL leads to.
+    /// Simulation at a URL.
     pub fn at(url: &str, controller: impl fmt::Debug + 'static) -> Result<Self, Failure> {
         Ok(Self { bus: bus_of(url)?, controller: Box::new(controller) })
     }
 }
 
-/// How one fieldbus is searched, as the command line wants it.
+/// Search of one fieldbus, with its command-line arguments.
 pub trait Search {
-    /// What is to be searched.
+    /// Scope of the search.
     fn scope(&self) -> Scope;
 
-    /// Asks who is there until `wait` is over.
+    /// Collects answers for the time `wait`.
     fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>>;
 }
 
-/// What is to be searched of a fieldbus.
+/// Scope of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Scope {
-    /// Nothing, as it has to be told where.
+    /// Nothing, because the fieldbus needs an address.
     Nothing,
-    /// What is usual. That it cannot be asked is only a warning.
+    /// Default scope. If it cannot be searched, only a warning is printed.
     Usual,
-    /// A network or an adapter that was named.
+    /// A network or an adapter that the user named.
     Network,
-    /// Certain devices, and nothing else.
+    /// Only the devices that the user named.
     Devices,
 }
 
-/// A device that answered. What it says of itself is untrusted.
+/// A device that answered. Its identity is untrusted.
 #[derive(Debug)]
 pub struct Device {
-    /// Where the answer came from.
+    /// Address of the device.
     pub address: String,
-    /// The URL for `-t`.
+    /// URL for `-t`.
     pub target: String,
-    /// Whether it may be a yrcx, by the number of its maker.
+    /// Whether the vendor id is that of a yrcx.
     pub is_yrcx: bool,
-    /// What it says of itself, in a line.
+    /// Identity in one line.
     pub device: String,
-    /// The same as data, in the words of its fieldbus.
+    /// Identity as data, as its fieldbus defines it.
     pub identity: Map<String, Value>,
 }
 
-/// What a device says of itself, as data.
+/// Identity of a device as data.
 pub fn fields(identity: &impl Serialize) -> Result<Map<String, Value>, Failure> {
     match serde_json::to_value(identity) {
         Ok(Value::Object(fields)) => Ok(fields),
-        Ok(_) => Err(Failure::local("an identity has no fields")),
+        Ok(_) => Err(Failure::local("internal error: an identity has no fields")),
         Err(error) => Err(Failure::local(error.to_string())),
     }
 }
 
-/// How one fieldbus serves a controller, as the command line wants it.
+/// Simulator server of one fieldbus, with its command-line arguments.
 pub trait Serve {
-    /// Whether it has a pseudo-terminal, which can be given a name.
+    /// Whether the server has a pseudo-terminal, which can have a name.
     fn has_terminal(&self) -> bool {
         false
     }
 
-    /// Begins to serve, with threads or tasks of its own. Where the fieldbus has several simulators, `simulator` is the
-    /// name of one. `link` is what its pseudo-terminal is to be named, where it has one.
+    /// Starts the server in its own threads or tasks. `simulator` selects one of several simulators of the fieldbus.
+    /// `link` is the name of the pseudo-terminal.
     fn serve(&self, simulator: Option<&str>, start: Start, link: Option<&Path>) -> Result<Served, Failure>;
 }
 
-/// What lines of a console do.
+/// Handler for console lines.
 pub type Console = dyn FnMut(&str) -> Result<String, String>;
 
-/// A controller that is served as long as this lives.
+/// A served controller; it stops when this value is dropped.
 pub struct Served {
-    /// The URL to reach it by.
+    /// URL of the controller.
     pub target: String,
-    /// Where others may come from, where it is a network.
+    /// Address that a network server listens on.
     pub address: Option<SocketAddr>,
-    /// Does what a line of the console says, and tells what was done, or why not.
+    /// Executes a console line and returns the result or the reason for a failure.
     pub console: Box<Console>,
 }
 
@@ -197,10 +198,10 @@ impl fmt::Debug for Served {
     }
 }
 
-/// A URL that leads to a fieldbus, taken apart.
+/// Parses the URL of a fieldbus.
 pub fn bus_of(url: &str) -> Result<Bus, Failure> {
     match url.parse::<Target>()?.place {
         Place::Bus(bus) => Ok(bus),
-        _ => Err(Failure::local(format!("{url} leads to no fieldbus"))),
+        _ => Err(Failure::local(format!("internal error: {url} is not a fieldbus URL"))),
     }
 }

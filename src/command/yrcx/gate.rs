@@ -1,4 +1,5 @@
-//! Every leaf command against the gate: its risk, a read-only robot, nobody to ask, and a dry run beside what is sent.
+//! Tests of every leaf command at the confirmation gate: risk, read-only robot, no terminal to ask on, dry run
+//! compared with sent frames.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
@@ -117,11 +118,11 @@ const WRITES: &[&str] = &[
     "profinet set-ip 192.168.0.10/24 --temporary",
 ];
 
-/// Settings of the device on the fieldbus, which are no remote commands.
+/// Settings of the device on the fieldbus, which are not remote commands.
 const BOARDS: [&str; 4] =
     ["eip set 0xF5 1 3 00", "profinet set-name robot-7", "profinet set-ip 192.168.0.10/24", "profinet reset"];
 
-/// Each after what makes it overwrite something else.
+/// Pairs of lines: the first stores data that the second overwrites.
 const DESTROYS: &[(&str, &str)] = &[
     ("point set 7 --mm 9,9,9,9", "teach 7 --in mm"),
     ("point set 7 --mm 9,9,9,9", "point set 7 --mm 1,2,3,4"),
@@ -178,13 +179,13 @@ const MOTIONS: &[&str] = &[
     "eip probe --try",
 ];
 
-/// What sends nothing that shows: what the controller shows is looked at, and zeros are what it is shown at rest.
+/// Commands without visible frames: `io watch` only reads, and the zeros of `status-reset` are the resting image.
 const SHOWN: [&str; 2] = ["io watch", "status-reset"];
 
-/// What asks for a word, as nothing brings back what it does.
+/// Command that requires a typed word, because its effect cannot be undone.
 const WORD: &str = "abs-reset --axis 2";
 
-/// Folders that lines name, made by a backup.
+/// Files from a backup that the lines refer to.
 struct Desk(tempfile::TempDir);
 
 impl Desk {
@@ -210,7 +211,7 @@ impl Desk {
     }
 }
 
-/// All lines with the risk that each shall have.
+/// All lines with their expected risk.
 fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
     let with = |lines: &'static [&'static str], risk| lines.iter().map(move |line| (*line, risk));
     let destroys = DESTROYS.iter().map(|(_, line)| *line).chain([WORD]).chain(BOARDS);
@@ -218,21 +219,21 @@ fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
     with(READS, Risk::Read).chain(with(WRITES, Risk::Write)).chain(destroys).chain(with(MOTIONS, Risk::Motion))
 }
 
-/// Commands that need no robot, or have their own way to one.
+/// Commands that do not need a robot connection of the command line.
 const AT_DESK: [&str; 2] = ["yrcx.io.map", "yrcx.profinet.gsdml"];
 
-/// A controller that nothing is sent to, and the command of a line.
+/// A robot that counts as a real controller, and the command of a line.
 fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {
     let words: Vec<&str> = line.split(' ').collect();
     resolved(url_for(line), &words).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
 }
 
-/// Whether a line asks a device without a link for images.
+/// Whether a line uses the explicit messaging client.
 fn is_for_board(line: &str) -> bool {
     ["eip ", "profibus ", "profinet "].iter().any(|bus| line.starts_with(bus))
 }
 
-/// Where a line leads: commands of a fieldbus want one.
+/// Target URL of a line: commands of a fieldbus need one of that fieldbus.
 fn url_for(line: &str) -> &'static str {
     match line.split(' ').next() {
         Some("profibus") => "profibus:///dev/null?station=5",
@@ -282,7 +283,7 @@ fn what_overwrites_is_not_done_where_nobody_says_yes() {
         assert!(risks.clone().all(|risk| risk == Risk::Read) && risks.count() > 0, "{line}");
         bench.run(&desk.line(line), true).unwrap();
         assert_eq!(bench.sent().iter().map(Frame::risk).max(), Some(Risk::Destroy), "{line}");
-        // A second time there is nothing left to overwrite, unless the order adds, or what it stores cannot be foretold.
+        // The second run overwrites nothing, except if the command adds, or if its result cannot be predicted.
         if !["add", "sub", "--place"].iter().any(|word| line.contains(word)) {
             bench.run(&desk.line(line), false).unwrap();
         }
@@ -357,7 +358,7 @@ fn a_dry_run_shows_what_is_sent() {
     }
 }
 
-/// What leaves: a remote command, or the words of signals.
+/// A sent frame: a remote command, or the words of signals.
 #[derive(Debug, Clone, PartialEq)]
 enum Frame {
     Words(Vec<String>),
@@ -365,7 +366,7 @@ enum Frame {
 }
 
 impl Frame {
-    /// Whether this was sent, as far as it is known before: a word of what is read first is `?`.
+    /// Whether this planned frame matches a sent frame. A planned word that is read first is `?`.
     fn fits(&self, sent: &Self) -> bool {
         let ((Self::Words(planned), Self::Words(sent)) | (Self::Bits(planned), Self::Bits(sent))) = (self, sent) else {
             return false;
@@ -373,7 +374,7 @@ impl Frame {
         planned.len() == sent.len() && planned.iter().zip(sent).all(|(planned, sent)| planned == sent || planned == "?")
     }
 
-    /// The riskiest of what it can mean; of signals, the risk of what the first word differs in from rest.
+    /// Highest risk of the frame; for signals, the risk of the bits that differ from the resting image.
     fn risk(&self) -> Risk {
         match self {
             Self::Words(words) => Row::from_word(number(&words[0])).unwrap().risk,
@@ -386,7 +387,7 @@ fn number(word: &str) -> u16 {
     u16::from_str_radix(word.trim_start_matches("0x"), 16).unwrap()
 }
 
-/// The risk of signals, by what is not as at rest.
+/// Risk of signals by the bits that differ from the resting image.
 fn risk_of(bits: &[String]) -> Risk {
     let mut image = Image::default();
     for (word, text) in image.0[COMMAND_WORDS..].iter_mut().zip(bits) {
@@ -396,7 +397,7 @@ fn risk_of(bits: &[String]) -> Risk {
     differ.map(|signal| signal.risk(signal.is_on(&image))).max().unwrap_or(Risk::Write)
 }
 
-/// The frames of a plan, and whether each is certain.
+/// Frames of a plan, and whether each is certain.
 fn frames(plan: &Value) -> Vec<(Frame, bool)> {
     let texts =
         |value: &Value| value.as_array().map(|all| all.iter().map(|text| text.as_str().unwrap().to_owned()).collect());
@@ -409,7 +410,7 @@ fn frames(plan: &Value) -> Vec<(Frame, bool)> {
     plan["frames"].as_array().unwrap().iter().filter_map(frame).collect()
 }
 
-/// A simulated controller that takes note of what it is shown.
+/// Simulated controller that records the images it receives.
 struct Bench {
     runtime: tokio::runtime::Runtime,
     robot: Robot,
@@ -458,12 +459,12 @@ impl Bench {
         let peer = Noting(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
         let access = Access::reading(ConnectMode::Control);
         let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
-        // The gate is to take it for a real one.
+        // The gate must treat the simulator as a real controller.
         let (robot, _) = real("status");
         Self { runtime, robot, link, shown }
     }
 
-    /// Runs a line as the frame does, with `--yes` or where nobody can be asked.
+    /// Runs a line like the command frame, with `--yes` or without a terminal to ask on.
     fn run(&mut self, line: &str, yes: bool) -> Result<Value, Failure> {
         let (_, command) = real(line);
         let intent = command.intent(Some(&self.robot));
@@ -477,7 +478,7 @@ impl Bench {
         report.failure().map_or_else(|| report.data(), Err)
     }
 
-    /// What was shown since the last time.
+    /// Images received since the last call.
     fn sent(&mut self) -> Vec<Frame> {
         std::mem::take(&mut *self.shown.lock().unwrap())
     }

@@ -1,19 +1,19 @@
-//! Arguments, and which of them were typed: what is for another choice than the one that was made is refused, and not
-//! passed over.
+//! Arguments with the set of typed names. An argument that does not fit the other choices is rejected and not
+//! ignored.
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches, Id};
 
-/// Arguments of a command line, with the names of those that were typed.
+/// Arguments of a command line, with the names of the typed arguments.
 #[derive(Debug)]
 pub struct Given<A> {
-    /// What they are, typed or not.
+    /// Values, including defaults.
     pub arguments: A,
     typed: Vec<Id>,
 }
 
 impl<A> Given<A> {
-    /// Whether this one was typed.
+    /// Whether the argument was typed.
     pub fn has(&self, argument: &Id) -> bool {
         self.typed.contains(argument)
     }

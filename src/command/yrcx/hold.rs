@@ -1,4 +1,4 @@
-//! The link to a controller for a session to hold.
+//! Link to a controller for a session.
 
 use tokio::time::Instant;
 
@@ -12,7 +12,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::transport::session::host::held::Images;
 
-/// Opens it.
+/// Opens the link.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Images, Option<Recorder>), Failure> {
     let endpoint = endpoint(robot)?;
     let (link, recorder) = endpoint.open(robot, access, screen).await?;

@@ -1,5 +1,5 @@
-//! The connection to a controller as commands use it: the client, with its errors in words and its traffic on record; or
-//! the device on the fieldbus alone.
+//! Controller connection of a command: the client with error conversion and trace, or only the explicit messaging
+//! client.
 
 mod board;
 mod onlooker;
@@ -43,26 +43,27 @@ use crate::transport::image::{self, ImageLink};
 #[derive(Debug)]
 pub struct Yrcx;
 
-/// A connection to one controller. What cannot fail, or fails without a word about the robot, is the client's own.
+/// Connection to one controller. Operations that cannot fail, or whose errors need no robot label, are those of the
+/// client.
 #[derive(Debug, Deref, DerefMut)]
 pub struct Link {
     #[deref]
     #[deref_mut]
     client: Client,
-    /// The device on the fieldbus, of a link that is for it alone, and what must live as long.
+    /// Explicit messaging client, if the link is only for that, and a simulator that must live as long.
     board: Option<OpenBoard>,
     trace: Arc<Mutex<Trace>>,
-    /// Of packets, where there is a network and `--trace` wants them.
+    /// Packet recorder, for `--trace` on a network.
     recorder: Option<Recorder>,
     label: String,
-    /// What a controller raises when the link is lost.
+    /// Alarm of the controller after loss of the link.
     link_alarm: Alarm,
     is_simulated: bool,
-    /// The robot that commands are for, 1 to 4; 0 for the first, or for all where a command can be.
+    /// Robot for commands, 1 to 4; 0 for the first, or for all if the command supports it.
     unit: u8,
-    /// What a watch told last.
+    /// Last image that a watch reported.
     pub told: Option<Image>,
-    /// What a watch has seen and not told yet.
+    /// Image that a watch received and has not reported yet.
     pub seen: Option<Image>,
 }
 
@@ -115,7 +116,7 @@ impl Family for Yrcx {
             Entry::ThroughSession
         } else {
             Entry::Stops(format!(
-                "take the command connection and drop it at the end, which stops the robot: motor power goes off, with \
+                "open the command connection and close it at the end. That stops the robot: motor power goes off with \
                  alarm {} (`armctl session open` keeps a connection open)",
                 fieldbus.link_alarm
             ))
@@ -140,7 +141,7 @@ impl Family for Yrcx {
         let ends_link = client.commands() && !is_simulated && !client.is_shared();
         if let Some((board, kept)) = board {
             board.close().await;
-            // The other end must not go before it is told.
+            // The simulator must outlive the closing of the connection.
             drop(kept);
         } else {
             tell_statistics(&client, screen);
@@ -151,9 +152,9 @@ impl Family for Yrcx {
         if ends_link {
             let lasting = Alarm::new(link_alarm.group, link_alarm.category + 1);
             screen.note(&format!(
-                "{label}: the connection is closed, which a controller takes for a fault of the link: it stops, and \
-                 raises alarm {link_alarm} or {lasting} (`armctl help safety`); `armctl session open -r NAME` keeps one \
-                 open"
+                "{label}: the connection is closed. The controller treats this as a link fault: it stops and raises \
+                 alarm {link_alarm} or {lasting} (`armctl help safety`). `armctl session open -r NAME` keeps a \
+                 connection open"
             ));
         }
         let recorded = locked(&trace).finish().and(recorder.map_or(Ok(()), Recorder::finish));
@@ -161,7 +162,7 @@ impl Family for Yrcx {
     }
 }
 
-/// How the client asks for these settings.
+/// Client options for these settings.
 fn options(robot: &Robot, endpoint: &Endpoint<'_>, access: &Access) -> Options {
     let commands = match endpoint {
         Endpoint::Bus(bus, _) => bus.is_owner && access.mode == ConnectMode::Control,
@@ -178,25 +179,25 @@ fn options(robot: &Robot, endpoint: &Endpoint<'_>, access: &Access) -> Options {
 
 fn tell_statistics(client: &Client, screen: &Screen) {
     let Totals { commands, waited, losses } = client.totals();
-    screen.detail(1, &format!("{commands} remote commands, {waited:.1?} from sending to their ends"));
+    screen.detail(1, &format!("{commands} remote commands, {waited:.1?} from start to end"));
     let Some(image::Traffic { sent, received, intervals, mut odd }) = client.traffic() else { return };
     let every = intervals.map(|(to, from)| format!(" every {to:?} and {from:?}")).unwrap_or_default();
     screen.detail(1, &format!("{sent} images sent, {received} received{every}"));
     odd.push((losses.into(), "losses of the link"));
     if let Some(odd) = counted(&odd) {
-        screen.detail(1, &format!("on the way: {odd}"));
+        screen.detail(1, &format!("link faults: {odd}"));
     }
 }
 
 impl Link {
-    /// What was counted on its own connection so far; one that a session holds is counted there.
+    /// Traffic counted on its own connection. A session counts the traffic of its connection itself.
     pub(super) fn traffic(&self) -> Traffic {
         let image::Traffic { sent, received, odd, .. } = self.client.traffic().unwrap_or_default();
         let odd: u64 = odd.iter().map(|(count, _)| count).sum();
         Traffic { sent, received, disturbances: odd + u64::from(self.client.totals().losses) }
     }
 
-    /// A link to a peer in this process.
+    /// Link to a peer in this process.
     #[cfg(test)]
     pub(super) async fn to_peer(
         robot: &Robot,
@@ -236,58 +237,58 @@ impl Link {
         })
     }
 
-    /// Waits until the controller has shown something.
+    /// Waits until the controller has sent an image.
     async fn ready(mut self, screen: &Screen) -> Result<Self, Failure> {
         match self.client.ready().await {
             Ok(()) => Ok(self),
             Err(error) => {
                 let failure = self.failure(error);
-                // That the controller shows nothing is worth more than how the end of that went.
+                // The missing image matters more than an error at the end.
                 let _ = Yrcx::close(self, &screen.silenced()).await;
                 Err(failure)
             }
         }
     }
 
-    /// Begins an order for the robot of `--unit`.
+    /// Starts a remote command for the robot of `--unit`.
     pub fn draft(&self, command: Command) -> Result<Draft, Failure> {
         let row = command.row();
         match self.unit {
             0 => Ok(command.order()),
             unit if row.has_robot() => Ok(command.order().with(Key::Robot, i32::from(unit))),
-            _ => self.no_unit(&format!("{} is for no single robot", row.id)).map(|()| command.order()),
+            _ => self.no_unit(&format!("{} applies to the whole controller", row.id)).map(|()| command.order()),
         }
     }
 
-    /// Refuses `--unit` where it means nothing.
+    /// Rejects `--unit` if the command does not use it.
     pub fn no_unit(&self, why: &str) -> Result<(), Failure> {
         if self.unit == 0 {
             return Ok(());
         }
-        Err(Failure::usage(format!("--unit does not go with this: {why}")).hint("leave --unit away"))
+        Err(Failure::usage(format!("--unit is not possible here: {why}")).hint("remove --unit"))
     }
 
-    /// Whoever reads first and orders then has the robot for himself from before the read: [`Client::reserve`].
+    /// Reserves the robot before a read that a command depends on: [`Client::reserve`].
     pub async fn reserve(&mut self, order: &Order) -> Result<(), Failure> {
         self.client.reserve(order).await.map_err(|error| self.failure(error))
     }
 
-    /// Carries out an order; a refusal is a failure.
+    /// Executes a remote command; a refusal is a failure.
     pub async fn ask(&mut self, order: &Order) -> Result<Done, Failure> {
         self.client.ask(order).await.map(Done::from).map_err(|error| self.failure(error))
     }
 
-    /// Carries out an order; a refusal is an answer.
+    /// Executes a remote command; a refusal is a result.
     pub async fn try_ask(&mut self, order: &Order) -> Result<Result<yrcx::Done, Refusal>, Failure> {
         self.client.try_ask(order).await.map_err(|error| self.failure(error))
     }
 
-    /// Carries out an order, and returns the whole answer, good or bad.
+    /// Executes a remote command and returns the whole reply, including an error reply.
     pub async fn raw(&mut self, order: &Order) -> Result<Reply, Failure> {
         self.client.raw(order).await.map_err(|error| self.failure(error))
     }
 
-    /// Carries out an order until it has ended, or goes on by itself: [`Client::begin`].
+    /// Executes a remote command until it has ended or runs independently: [`Client::begin`].
     pub async fn begin(&mut self, order: &Order) -> Result<Option<Done>, Failure> {
         let begun = self.client.begin(order).await.map_err(|error| self.failure(error))?;
         Ok(begun.map(Done::from))
@@ -298,49 +299,49 @@ impl Link {
         self.client.jog(order, time).await.map(Done::from).map_err(|error| self.failure(error))
     }
 
-    /// What continuous output shows next: [`Client::next_output`].
+    /// Next value of continuous output: [`Client::next_output`].
     pub async fn next_output(&mut self, order: &Order) -> Result<Done, Failure> {
         self.client.next_output(order).await.map(Done::from).map_err(|error| self.failure(error))
     }
 
-    /// Carries out a procedure of signals, and says how long it took.
+    /// Executes a procedure of signals and returns its duration.
     pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Failure> {
-        self.no_unit("signals are those of the whole controller")?;
+        self.no_unit("signals belong to the whole controller")?;
         self.client.carry_out(procedure).await.map_err(|error| self.failure(error))
     }
 
-    /// Shows these values in general-purpose words: [`Client::set_words`].
+    /// Sets general-purpose words: [`Client::set_words`].
     pub async fn set_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Failure> {
-        self.no_unit("words are those of the whole controller")?;
+        self.no_unit("words belong to the whole controller")?;
         self.client.set_words(changes).await.map_err(|error| self.failure(error))
     }
 
-    /// What the controller shows now.
+    /// Current image of the controller.
     pub async fn look(&mut self) -> Result<Image, Failure> {
         self.client.look().await.map_err(|error| self.failure(error))
     }
 
-    /// Waits until what the controller shows matters, and returns it. A loss of the link is told once.
+    /// Waits for an image that matches, and returns it. A loss of the link is reported once.
     pub async fn look_until(&mut self, matters: impl FnMut(&Image) -> bool) -> Result<Image, Failure> {
         self.client.look_until(matters).await.map_err(|error| self.failure(error))
     }
 
-    /// In a dry run, notes all the questions, whose answers are not known then.
+    /// Notes all requests in a dry run, in which the answers are unknown.
     pub fn plan_all(&mut self, orders: &[Order]) -> Result<(), Failure> {
         self.client.plan_all(orders).map_err(|error| self.failure(error))
     }
 
-    /// The last check before something leaves.
+    /// Final check before a frame is sent.
     pub fn authorize(&self, name: &str, risk: Risk) -> Result<(), Failure> {
         self.client.authorize(name, risk).map_err(|error| self.failure(error))
     }
 
-    /// What a controller raises when the link is lost.
+    /// Alarm of the controller after loss of the link.
     pub fn link_alarm(&self) -> Alarm {
         self.link_alarm
     }
 
-    /// Names the robot that commands are for.
+    /// Sets the robot for commands.
     #[cfg(test)]
     pub(super) fn set_unit(&mut self, unit: u8) {
         self.unit = unit;

@@ -1,10 +1,10 @@
-//! Why a link over a fieldbus does not come about, in words: one place for all that devices may say.
+//! Texts for failures to open a fieldbus link, for all fieldbuses.
 
 use crate::failure::{Failure, Kind};
 use crate::settings::target::bus::Scheme;
 use crate::transport::image::LinkError;
 
-/// Why a link or a board was not opened; the scheme is that of the URL.
+/// Failure for a link or a board that did not open; the scheme is that of the URL.
 pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkError) -> Failure {
     let cause = error.cause();
     let options = listed(cause.options);
@@ -20,16 +20,17 @@ pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkErro
             (Kind::NoAnswer, "check the link to the controller".to_owned())
         }
         LinkError::Malformed(_) => (Kind::Malformed, "check the address".to_owned()),
-        LinkError::Settings(_) => (Kind::Usage, format!("`armctl help targets` tells what URLs of {name}: can say")),
-        LinkError::Local(_) => (Kind::Local, "check the adapter and its settings on this machine".to_owned()),
+        LinkError::Settings(_) => (Kind::Usage, format!("see `armctl help targets` for the options of {name}: URLs")),
+        LinkError::Local(_) => (Kind::Local, "check the adapter and its settings on this computer".to_owned()),
     };
     let failure = Failure::new(kind, format!("{label}: {error}")).hint(cause.advice.as_deref().unwrap_or(&hint));
     Failure { code: cause.code.clone(), ..failure }
 }
 
-/// Said where the device commands another master, unless its fieldbus has better advice.
-const OWNED: &str = "`yrcx io get` and `yrcx status` see its signals beside the owner; to command from here, stop the owner's \
-     connection first: take the controller out of the PLC's scan list, or close the session";
+/// Hint if another master owns the device, unless the fieldbus has a better one.
+const OWNED: &str = "`yrcx io get` and `yrcx status` can read its signals at the same time. To command the controller, \
+                     stop the owner's connection first: remove the controller from the PLC's scan list, or close the \
+                     session";
 
 /// `in, out and config`.
 fn listed(options: &[&str]) -> String {
@@ -60,7 +61,7 @@ mod tests {
             (LinkError::Silent(cause()), Kind::NoAnswer, "check the link"),
             (LinkError::Lost { cause: cause(), outputs }, Kind::NoAnswer, "check the link"),
             (LinkError::Malformed(cause()), Kind::Malformed, "check the address"),
-            (LinkError::Settings(cause()), Kind::Usage, "what URLs of"),
+            (LinkError::Settings(cause()), Kind::Usage, "for the options of"),
             (LinkError::Local(cause()), Kind::Local, "check the adapter"),
         ] {
             let failure = not_open("cell", &scheme, &error);

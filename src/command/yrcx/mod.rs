@@ -1,17 +1,18 @@
 //! `yrcx`: OMRON / Yamaha YRCX over a fieldbus, see `buses.rs`.
 //!
-//! A command that gives one remote command is a row of `single::one_row!`: which row of the table, its fields, what is
-//! said or reported. `orders.rs` has those that change something, `info/robot.rs` those that read. What gives several
-//! implements `Command` itself, as `status.rs` does. The link has one driver for remote commands and signals; see `link.rs`.
+//! A command with one remote command is a row of `single::one_row!`: row of the command table, fields, text or
+//! report. `orders.rs` has the commands that change something, `info/robot.rs` those that read. A command with
+//! several remote commands implements `Command` itself, like `status.rs`. The link has one driver for remote commands
+//! and signals; see `link.rs`.
 //!
 //! To add a command:
 //!
-//! 1. Its file: arguments (texts go to the codec as they were typed: `draft.with(Key::SpeedPercent, text)` reads them in
-//!    the unit of the field and checks their range), the report, a row of `one_row!`, or a table of `stores` for what is stored
-//!    by its number. Shared arguments are in `arguments.rs`, positions in `position.rs`.
-//! 2. A line in the list below, or in that of its noun.
-//! 3. Tests: `testing::words` gives the words of a command line, `testing::example` those of an example of the manual.
-//!    `coverage.rs` has a line for each row of the table.
+//! 1. Its file: arguments (passed to the codec as typed text: `draft.with(Key::SpeedPercent, text)` reads them in the
+//!    unit of the field and checks their range), the report, and a row of `one_row!`, or a table of `stores` for
+//!    numbered data. Shared arguments are in `arguments.rs`, positions in `position.rs`.
+//! 2. A line in the list below, or in the list of its group.
+//! 3. Tests: `testing::words` returns the words of a command line, `testing::example` those of an example in the
+//!    manual. `coverage.rs` has a line for each row of the table.
 
 mod alarm;
 mod arguments;

@@ -9,7 +9,7 @@ use crate::controller::yrcx::value::{Key, Value};
 pub struct Numbers(Vec<i32>);
 
 impl Numbers {
-    /// Reads a number or a range for a field of a command; each must be one that may be sent.
+    /// Parses a number or a range for a field of a command; each number must be valid for the field.
     pub fn parse(command: Command, key: Key, text: &str) -> Result<Self, String> {
         let field = field(command, key)?;
         let numbers: Vec<i32> = typed::range(text, |end| number(field, end))?.collect();
@@ -17,7 +17,7 @@ impl Numbers {
         Ok(Self(numbers))
     }
 
-    /// All numbers that were given, each once and in that order.
+    /// All numbers, without duplicates, in the order typed.
     pub fn of(given: &[Self]) -> Vec<i32> {
         typed::once(given.iter().flat_map(|numbers| &numbers.0).copied())
     }
@@ -28,14 +28,14 @@ impl Numbers {
 pub struct Series<T>(Vec<T>);
 
 impl<T: Clone + Send + Sync + 'static> Series<T> {
-    /// What reads it; `read` reads one name.
+    /// Parser for a series; `read` parses one name.
     pub fn reader(
         read: impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static,
     ) -> impl Fn(&str) -> Result<Self, String> + Clone + Send + Sync + 'static {
         move |text| typed::series(text, &read).map(Self)
     }
 
-    /// All that were given.
+    /// All items of several series.
     pub fn all(given: &[Self]) -> impl Iterator<Item = &T> {
         given.iter().flat_map(|series| &series.0)
     }
@@ -46,12 +46,12 @@ pub fn single(command: Command, key: Key, text: &str) -> Result<i32, String> {
     number(field(command, key)?, text)
 }
 
-/// A number as the field shows it, such as `SGI5`.
+/// Number in the notation of the field, such as `SGI5`.
 pub fn named(command: Command, key: Key, number: i32) -> String {
     field(command, key).map_or_else(|_| number.to_string(), |field| field.show(&Value::Int(number)))
 }
 
-/// Numbers in the order given, those that follow each other as `5..9`.
+/// Numbers in the order given, with consecutive numbers as `5..9`.
 pub fn runs(numbers: &[i32]) -> String {
     typed::runs(numbers, "..")
 }
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(runs(&Numbers::of(&given)), "7, 2..5");
         assert_eq!(Numbers::of(&[points("0..29999").unwrap()]).len(), 30_000);
         assert_eq!(points("0..30000").unwrap_err(), "30000 is out of range; allowed: 0 to 29999");
-        assert_eq!(points("5..2").unwrap_err(), "the range ends before it begins; did you mean 2..5?");
+        assert_eq!(points("5..2").unwrap_err(), "the end of the range is before its start; did you mean 2..5?");
         assert!(points("").is_err() && points("-3").is_err() && points("x").is_err() && points("1..").is_err());
     }
 

@@ -1,5 +1,6 @@
-//! Commands of one row each: speeds (4.2.14 to 4.2.16), torque limit (4.2.22), inching distance (4.2.8),
-//! shift, hand and arm (4.2.17 to 4.2.19), servos (4.2.13), motor power (4.2.20), the status of remote commands (4.1).
+//! Commands with one row of the table: speeds (4.2.14 to 4.2.16), torque limit (4.2.22), inching distance (4.2.8),
+//! shift, hand and arm (4.2.17 to 4.2.19), servos (4.2.13), motor power (4.2.20), the status of remote commands
+//! (4.1).
 
 use clap::ValueEnum;
 
@@ -11,7 +12,7 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 
 commands! {
-    /// What can be done about the shift.
+    /// Commands for the shift.
     pub enum Shift {
         /// Select a coordinate shift
         Select(ShiftSelect),
@@ -19,7 +20,7 @@ commands! {
 }
 
 commands! {
-    /// What can be done about the hand.
+    /// Commands for the hand.
     pub enum Hand {
         /// Select the hand
         Select(HandSelect),
@@ -27,7 +28,7 @@ commands! {
 }
 
 commands! {
-    /// What can be done about the arm.
+    /// Commands for the arm.
     pub enum Arm {
         /// Select the hand system for coordinates
         Select(ArmSelect),
@@ -36,9 +37,9 @@ commands! {
 
 one_row! {
     /// Sets a speed.
-    #[command(after_help = "`yrcx info speed` reads them.")]
+    #[command(after_help = "`yrcx info speed` reads the speeds.")]
     Speed(self) "yrcx.speed" -> Done {
-        /// Which one
+        /// Speed to set
         setting: SpeedSetting,
         /// Percent, 1 to 100
         percent: String,
@@ -64,32 +65,32 @@ one_row! {
         New::of(name, number(percent), format!("set the {setting} speed to {percent} %"))
     };
 
-    /// Limits the torque of an axis from the next motion on; the parameter stays as it is.
+    /// Limits the torque of an axis, starting with the next motion; the parameter does not change.
     TorqueLimit(self) "yrcx.torque-limit" -> Done {
-        /// The axis, 1 to 4
+        /// Axis, 1 to 4
         #[arg(long, value_name = "AXIS")]
         axis: String,
-        /// Percent of the maximum, 1 to 100
+        /// Percent of the maximum torque, 1 to 100
         percent: String,
     }
     gives Command::TorqueLimit,
     with draft => draft.with(Key::Axes, self.axis.as_str()).with(Key::Torque, self.percent.trim_end_matches('%')),
     done {
         let percent = self.percent.trim_end_matches('%');
-        let words = format!("limited the torque of axis {} to {percent} % from the next motion on", self.axis);
+        let words = format!("limited the torque of axis {} to {percent} % , starting with the next motion", self.axis);
         New::of("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
     };
 
     /// Sets the inching distance.
     InchDistance(self) "yrcx.inch-distance" -> Done {
-        /// Pulses, or steps of 0.001 mm along coordinates; 1 to 10000
+        /// Pulses, or steps of 0.001 mm for Cartesian and tool axes; 1 to 10000
         distance: String,
     }
     gives Command::InchAmountSet,
     with draft => draft.with(Key::InchingAmount, self.distance.as_str()),
     done {
         let words = format!(
-            "set the inching distance to {}: so many pulses, or steps of 0.001 mm along coordinates",
+            "set the inching distance to {} (pulses, or steps of 0.001 mm for Cartesian and tool axes)",
             self.distance
         );
         New::of("inch_distance", number(&self.distance), words)
@@ -114,9 +115,9 @@ one_row! {
     done New::of("hand", number(&self.hand), format!("selected hand {}", self.hand));
 
     /// Selects a hand system.
-    #[command(after_help = "`yrcx info arm` reads it.")]
+    #[command(after_help = "`yrcx info arm` reads the hand system.")]
     ArmSelect(self) "yrcx.arm.select" -> Done {
-        /// Which one
+        /// Hand system
         side: HandSystem,
     }
     gives Command::ArmSelect,
@@ -128,7 +129,7 @@ one_row! {
 
     /// Switches servos.
     Servo(self) "yrcx.servo" -> Done {
-        /// What to switch them to
+        /// New servo state
         state: ServoState,
         /// Only this axis, 1 to 4
         #[arg(long, value_name = "AXIS")]
@@ -162,7 +163,7 @@ one_row! {
 
     /// Switches motor power, of all robots.
     Motor(self) "yrcx.motor" -> Done {
-        /// What to switch it to
+        /// New motor power state
         state: MotorState,
     }
     gives match self.state {
@@ -185,27 +186,27 @@ one_row! {
 
     /// Resets the status of remote commands to ready.
     #[command(
-        after_help = "Every command resets the status before and after itself, so that this is rarely needed: only when \
-        somebody else's command left an end status behind, and the next one is to find the controller ready. It ends \
-        neither a motion nor a command that runs, and resets no alarm (`yrcx alarm reset`)."
+        after_help = "armctl resets the status before and after each command, so you rarely need this. Use it if \
+                      another client's command left an end status. It does not stop a motion or a running command, and \
+                      does not reset an alarm (`yrcx alarm reset`)."
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,
     done New::of("remote_command_status", "ready", "the controller is ready for a remote command");
 }
 
-/// Which speed.
+/// Speed settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum SpeedSetting {
     /// Of jogs and inching
     Manual,
     /// Of automatic operation; reduces all others
     Auto,
-    /// Of programs, and of motions without a speed of their own
+    /// Of programs, and of motions without a speed argument
     Program,
 }
 
-/// What a servo can be.
+/// Servo states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ServoState {
     /// Controlled; motor power must be on
@@ -225,14 +226,14 @@ impl Servo {
     }
 }
 
-/// What motor power can be.
+/// Motor power states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MotorState {
     /// Motor power and all servos on
     On,
     /// Motor power and all servos off
     Off,
-    /// Motor power on, servos as they are
+    /// Motor power on, servos unchanged
     Pwr,
 }
 

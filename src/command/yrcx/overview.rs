@@ -1,4 +1,4 @@
-//! A robot of the family in the line that `armctl status` prints.
+//! Summary of a robot for `armctl status`.
 
 use super::info::entry;
 use super::link::Link;
@@ -14,19 +14,18 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 
-/// Why there is no position.
-const NOT_ASKED: &str =
-    "servos and position are remote commands, which take command of the controller: `yrcx status --full`, or a session";
+/// Reason for a missing position.
+const NOT_ASKED: &str = "servos and position need remote commands, which take control of the controller: use `yrcx \
+                         status --full` or a session";
 
-/// The same where there are no remote commands.
+/// Reason if the fieldbus unit has no remote commands.
 const NO_COMMANDS: &str =
-    "servos and position are remote commands, for which the fieldbus unit has no words (I/O size \"Compact\")";
+    "servos and position need remote commands, which the fieldbus unit does not support (I/O size \"Compact\")";
 
-/// The same while a session gives somebody else's command.
-const BUSY: &str =
-    "servos and position were not asked for: another client's remote command is under way, and there is one at a time";
+/// Reason while another client's command runs.
+const BUSY: &str = "servos and position were not read: another client's remote command is running";
 
-/// Looks at the signals, and asks for the position where that does not take command of the controller first.
+/// Reads the signals, and the position if that is possible without taking control of the controller.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let image = link.look().await?;
     let not_asked = not_asked(link, &image);
@@ -37,7 +36,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     Ok(report(link, &image, alarm.as_ref(), position, not_asked))
 }
 
-/// The alarm that is present; which one it is is not asked where that takes command of the controller.
+/// Present alarm. Its number is not read if that would take control of the controller.
 pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
     let image = link.look().await?;
     let (alarm, warning) = (output::ALARM.is_on(&image), output::WARNING.is_on(&image));
@@ -48,32 +47,33 @@ pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
     };
     let known = if not_asked(link, &image).is_none() { latest_alarm(link).await? } else { None };
     let untold = || Alarm {
-        text: Some("which one is not told here; `yrcx alarm list` asks, which takes command".to_owned()),
+        text: Some("number not read; `yrcx alarm list` reads it, which takes control of the controller".to_owned()),
         source: Source::Armctl,
         ..Alarm::default()
     };
     Ok(vec![Alarm { kind: Some(kind), ..known.unwrap_or_else(untold) }])
 }
 
-/// Asks for what the signal of an alarm does not tell.
+/// Reads the alarm that the signal does not identify.
 async fn latest_alarm(link: &mut Link) -> Result<Option<Alarm>, Failure> {
     let order = latest(link)?;
     Ok(link.try_ask(&order).await?.ok().and_then(|done| alarm(&done.values)))
 }
 
-/// The question for the latest alarm. That entry 1 of the history is the latest is not in the manual.
+/// Request for the latest alarm. The manual does not say that entry 1 of the history is the latest.
 pub(super) fn latest(link: &Link) -> Result<Order, Failure> {
     Ok(link.draft(Command::AlarmHistory)?.with(Key::History, 1).build()?)
 }
 
-/// What the answer to it tells.
+/// Alarm in the answer.
 pub(super) fn alarm(values: &Values) -> Option<Alarm> {
     let alarm = entry(values, Kind::Alarm)?.alarm;
     let text = format!("{} (entry 1 of the history)", alarm.text.unwrap_or_default());
     Some(Alarm { text: Some(text), ..alarm })
 }
 
-/// Why no remote command may be given only to look. Somebody else's is not waited for: it may be a motion.
+/// Reason why a read-only client sends no remote command. It does not wait for another client's command, which may be
+/// a motion.
 pub(super) fn not_asked(link: &Link, image: &Image) -> Option<&'static str> {
     if link.is_shared() && Status::from_word(image.0[0]) == Status::Running {
         return Some(BUSY);
@@ -84,7 +84,7 @@ pub(super) fn not_asked(link: &Link, image: &Image) -> Option<&'static str> {
     (!link.commands()).then_some(NOT_ASKED)
 }
 
-/// What the signals say, and what is known of the alarm and the position.
+/// Report from the signals, the alarm and the position.
 pub(super) fn report(
     link: &Link,
     image: &Image,
@@ -96,7 +96,7 @@ pub(super) fn report(
     OverviewReport { state, not_asked, left_over: left_over(image), ..OverviewReport::default() }
 }
 
-/// The state that the signals tell (chapter 1, section 2).
+/// State from the signals (chapter 1, section 2).
 pub(super) fn state(link: &Link, image: &Image, alarm: Option<&Alarm>) -> State {
     let is_auto = output::AUTO_MODE.is_on(image);
     State {
@@ -113,10 +113,10 @@ pub(super) fn state(link: &Link, image: &Image, alarm: Option<&Alarm>) -> State 
     }
 }
 
-/// What a client that is gone left behind, as far as the signals tell it.
+/// State that a previous client left, derived from the signals.
 pub(super) fn left_over(image: &Image) -> Vec<LeftOver> {
     let status = Status::from_word(image.0[0]);
-    // A program that runs may be anybody's, and is as it should be.
+    // A running program is a normal state, regardless of the client that started it.
     let is_command = !matches!(status, Status::Ready | Status::Running);
     let what = format!("a remote command left its status: {status}");
     LeftOver::new(is_command, &what, "`yrcx status-reset` clears it").into_iter().collect()

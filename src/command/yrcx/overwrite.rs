@@ -1,4 +1,4 @@
-//! Orders that overwrite what a person wrote or taught: what is there is read first, then old and new are confirmed.
+//! Commands that overwrite stored or taught data: read the old data, confirm old and new, then write.
 
 use std::time::Duration;
 
@@ -24,16 +24,16 @@ use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
 use crate::gate::{Change, Confirmation};
 
-/// What was carried out.
+/// Result of a command.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Done {
-    /// What the answer holds.
+    /// Values of the answer.
     pub values: Values,
-    /// From the first time that the command was sent to its end.
+    /// Time from the first transmission of the command to its end.
     pub elapsed: Duration,
-    /// What was overwritten, where something was.
+    /// Overwritten data, if any.
     pub replaced: Option<Replaced>,
-    /// The value before, of an order that sets one.
+    /// Old value, for a command that sets one.
     pub old: Old,
 }
 
@@ -43,23 +43,23 @@ impl From<yrcx::Done> for Done {
     }
 }
 
-/// What an order overwrites, and with what.
+/// Overwritten data and its replacement.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Replaced {
     /// `point 7`.
     what: String,
-    /// What is there; nothing if that is not defined.
+    /// Old data; none if not defined.
     old: Option<String>,
-    /// What shall be there, as far as that is known before.
+    /// New data, as far as known in advance.
     new: String,
-    /// Both for programs, null where it is not known.
+    /// Old and new as JSON, null if unknown.
     data: [Json; 2],
     which: Which,
-    /// It is there already, so that there is nothing to write.
+    /// Whether old and new are equal, so that no write is necessary.
     is_there: bool,
 }
 
-/// What an order overwrites: its kind, its name, and of what it is a parameter.
+/// Overwritten item: kind, name, and owner of a parameter.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct Which {
     kind: &'static str,
@@ -67,7 +67,7 @@ struct Which {
     of: OfAxis,
 }
 
-/// How a yes is given to a remote command.
+/// Kind of confirmation for a remote command.
 pub fn confirmation(command: Command) -> Confirmation {
     match (command, command.row().risk) {
         (Command::AbsoluteReset, _) => Confirmation::Word("reset"),
@@ -76,11 +76,11 @@ pub fn confirmation(command: Command) -> Confirmation {
     }
 }
 
-/// Gives an order that `intent` says in a line, and reads first what it replaces. If it overwrites something, that is
-/// confirmed; what is there already is not written.
+/// Executes a command after reading the data that it replaces; `intent` describes it in one line. Overwriting needs a
+/// confirmation. Equal data is not written.
 pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<Done, Failure> {
     if target(order).is_none() {
-        // While a person thinks, the robot is not kept from others.
+        // While a person is asked, the robot is not reserved.
         if !authority.asks() {
             link.reserve(order).await?;
         }
@@ -91,8 +91,8 @@ pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, int
     give_either(link, authority, order, order).await
 }
 
-/// The same of an order that overwrites something; `other` is it with other answers, to show what of it is known in a dry
-/// run.
+/// Executes an overwriting command; `other` is the same command for another answer, to show the known part of it in a
+/// dry run.
 pub async fn give_either(
     link: &mut Link,
     authority: &Authority<'_>,
@@ -116,15 +116,15 @@ pub async fn give_either(
     Ok(Done { replaced: Some(replaced), ..done })
 }
 
-const DIFFERS: &str = "what is there: it is sent if that is something else";
+const DIFFERS: &str = "the current data: sent if different";
 
-/// Whether what shall be there can be there before.
+/// Whether the new data can equal the old data.
 fn may_be_there(command: Command) -> bool {
-    // Where the robot is has changed by the time that it is stored.
+    // The position may change before it is stored.
     !matches!(command, Command::Teach | Command::PointPallet)
 }
 
-/// Finds out what an order overwrites, and has it confirmed. A dry run notes what is read.
+/// Reads the data that a command overwrites, and asks for confirmation. A dry run notes the reads.
 pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Replaced, Failure> {
     let Some((noun, what, read)) = target(order) else {
         authority.confirm(&Change::new(order.row().name)).await?;
@@ -146,7 +146,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) 
     Ok(Replaced { what, old, new, data, which, is_there: is_same && may_be_there(order.command()) })
 }
 
-/// What an order overwrites: what kind of thing, which one, and what reads it.
+/// Item that a command overwrites: kind, name, and its read command.
 fn target(order: &Order) -> Option<(&'static str, String, Draft)> {
     let values = order.values();
     let number = |key| values.int(key).unwrap_or_default();
@@ -189,7 +189,7 @@ fn target(order: &Order) -> Option<(&'static str, String, Draft)> {
     })
 }
 
-/// What an order overwrites, for programs.
+/// Item that a command overwrites, as JSON.
 fn which(order: &Order) -> Which {
     let values = order.values();
     let number = |key| values.int(key).unwrap_or_default();
@@ -210,7 +210,7 @@ fn which(order: &Order) -> Which {
     Which { kind, name: number(key).to_string(), of: OfAxis::default() }
 }
 
-/// Reads what is there; nothing where the controller refuses to tell, as it does of what is not defined.
+/// Reads current data; none if the controller refuses, for example because it is not defined.
 pub(super) async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
     if link.is_dry() {
         link.plan(order, about);
@@ -223,7 +223,7 @@ pub(super) async fn there(link: &mut Link, order: &Order, about: &str) -> Result
     }
 }
 
-/// Whether what was read is something.
+/// Whether data is defined.
 fn is_defined(command: Command, values: &Values) -> bool {
     match command {
         Command::CommentSet => values.text(Key::Comment).is_some_and(|text| !text.is_empty()),
@@ -233,7 +233,7 @@ fn is_defined(command: Command, values: &Values) -> bool {
     }
 }
 
-/// What shall be there in words and for programs, and whether it is there.
+/// New data as text and JSON, and whether it equals the old data.
 async fn wanted(link: &mut Link, order: &Order, old: Option<&Values>) -> Result<((String, Json), bool), Failure> {
     let (command, values) = (order.command(), order.values());
     let number = |key| values.int(key).unwrap_or_default();
@@ -242,19 +242,21 @@ async fn wanted(link: &mut Link, order: &Order, old: Option<&Values>) -> Result<
             let is_mm = number(Key::Unit) == 1;
             let read = if is_mm { Command::PositionMm } else { Command::PositionPulse };
             let read = read.order().with(Key::Robot, number(Key::Robot)).build()?;
-            let place = there(link, &read, "where the robot is, which is stored").await?;
-            place.map_or(Err("where the robot is".to_owned()), |mut place| {
+            let place = there(link, &read, "current position, which is stored").await?;
+            place.map_or(Err("the current position".to_owned()), |mut place| {
                 place.set(Key::Unit, i32::from(is_mm));
                 Ok(place)
             })
         }
         Command::PointCopy | Command::PointAdd | Command::PointSub => {
             let source = Command::PointGet.order().with(Key::Point, number(Key::Point2)).build()?;
-            let about = format!("point {}, which it is computed from", number(Key::Point2));
+            let about = format!("point {}, a source of the calculation", number(Key::Point2));
             let source = there(link, &source, &about).await?;
             computed(command, (number(Key::Point), old), (number(Key::Point2), source.as_ref()))
         }
-        Command::PointPallet => Err(format!("place {} of pallet {}", number(Key::WorkPosition), number(Key::Pallet))),
+        Command::PointPallet => {
+            Err(format!("position {} of pallet {}", number(Key::WorkPosition), number(Key::Pallet)))
+        }
         Command::PointElementPulse | Command::PointElementMm | Command::ShiftElement => element(command, values, old),
         _ => Ok(values.clone()),
     };
@@ -267,7 +269,7 @@ async fn wanted(link: &mut Link, order: &Order, old: Option<&Values>) -> Result<
     })
 }
 
-/// A point that the controller computes from two; in words where that is not known.
+/// Point that the controller computes from two points; a text if it is unknown.
 fn computed(
     command: Command,
     (number, old): (i32, Option<&Values>),
@@ -291,7 +293,7 @@ fn computed(
     Ok(new)
 }
 
-/// A point or a shift with one element changed; in words where it is not among those that can be read.
+/// Point or shift with one changed element; a text if the element cannot be read.
 fn element(command: Command, values: &Values, old: Option<&Values>) -> Result<Values, String> {
     let number = values.int(Key::Element).unwrap_or_default().trailing_zeros();
     let value = values.int(Key::Value).unwrap_or_default();
@@ -310,11 +312,11 @@ fn element(command: Command, values: &Values, old: Option<&Values>) -> Result<Va
     Ok(new)
 }
 
-/// What a command defines.
+/// Fields that define a point.
 const POINT: [Key; 6] = [Key::Unit, Key::HandSystem, Key::Axis1, Key::Axis2, Key::Axis3, Key::Axis4];
 const HAND: [Key; 4] = [Key::Data1, Key::Data2, Key::Data3, Key::Data4];
 
-/// Whether what is there is what shall be there.
+/// Whether old and new data are equal.
 fn is_same(command: Command, old: &Values, new: &Values) -> bool {
     let zero = Value::Int(0);
     let has =
@@ -329,12 +331,12 @@ fn is_same(command: Command, old: &Values, new: &Values) -> bool {
     }
 }
 
-/// The robot that has a hand, or gets it.
+/// Robot that a hand belongs to.
 fn owner(hand: &Values) -> i32 {
     hand.int(Key::Owner).or_else(|| hand.int(Key::Robot)).unwrap_or_default().max(1)
 }
 
-/// What a command defines, in words.
+/// Text of the data that a command defines.
 fn describe(command: Command, values: &Values) -> String {
     let number = |key| values.int(key).unwrap_or_default();
     match command {
@@ -366,7 +368,7 @@ fn describe(command: Command, values: &Values) -> String {
     }
 }
 
-/// What a command defines, in the fields of the command that reads it.
+/// Data that a command defines, in the fields of its read command.
 fn data(command: Command, values: &Values) -> Json {
     let number = |key| values.int(key).unwrap_or_default();
     let mm = |key| f64::from(number(key)) / 1000.0;
@@ -407,20 +409,20 @@ pub fn mm(steps: i32) -> String {
     format!("{:.3}", f64::from(steps) / 1000.0)
 }
 
-/// Something that was stored by its number.
+/// Report of numbered data that was stored.
 pub type Stored = WrittenItems<Json, OfAxis>;
 
-/// Whose parameter it is.
+/// Owner of a parameter.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct OfAxis {
-    /// Robot, 1 to 4; null for what is no parameter.
+    /// Robot, 1 to 4; null unless it is a parameter.
     pub robot: Option<i32>,
-    /// Axis, 1 to 4; null for what is no parameter of an axis.
+    /// Axis, 1 to 4; null unless it is a parameter of an axis.
     #[serde(rename = "axis_number")]
     pub axis: Option<i32>,
 }
 
-/// What was stored, in words, with what it replaced.
+/// Report of stored data, with the old data.
 pub fn stored(words: impl Into<String>, given: &Done) -> Stored {
     let Replaced { what, new, data, which: Which { kind, name, of }, is_there, .. } =
         given.replaced.clone().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The keys of `armctl teach` as command lines of `yrcx`.
+//! Keys of `armctl teach` as `yrcx` command lines.
 
 use crate::command::face::panel::{Panel, System, words};
 

@@ -21,7 +21,7 @@ use crate::failure::Failure;
 use crate::output::view::Cell;
 
 commands! {
-    /// What can be done with parameters.
+    /// Commands for parameters.
     pub enum Param {
         /// Read parameters: WEIGHT, or TOLE --axis 1,3
         Get(Get),
@@ -30,12 +30,12 @@ commands! {
     }
 }
 
-/// Which parameters there are.
+/// List of the parameters.
 fn listing() -> String {
     let line = |parameter: &Parameter| {
         let Parameter { number, name, meaning, span: (least, most), .. } = *parameter;
         let unit = if parameter.unit.is_empty() { String::new() } else { format!(" ({})", parameter.unit) };
-        let most = if most == i32::MAX { "what the robot carries".to_owned() } else { most.to_string() };
+        let most = if most == i32::MAX { "maximum payload".to_owned() } else { most.to_string() };
         format!("  {name:<8} {number:>3}  {meaning}{unit}, {least} to {most}")
     };
     let of = |per_axis| PARAMETERS.iter().filter(move |parameter| parameter.per_axis == per_axis).map(line);
@@ -50,10 +50,10 @@ fn parameter(text: &str) -> Result<&'static Parameter, String> {
             None => why,
         }
     })?;
-    Parameter::from_number(number).ok_or_else(|| format!("there is no parameter {number}"))
+    Parameter::from_number(number).ok_or_else(|| format!("parameter {number} does not exist"))
 }
 
-/// Reads parameters, one after the other.
+/// Reads parameters one after the other.
 #[derive(Debug, Args)]
 #[command(after_help = listing())]
 pub struct Get {
@@ -98,15 +98,15 @@ impl Command for Get {
     }
 }
 
-/// What a parameter has besides.
+/// Attributes of a parameter.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Setting {
-    /// Its number in the robot language.
+    /// Number in the robot language.
     number: u16,
     /// 1 to 4; null for a parameter of the robot.
     #[serde(rename = "axis_number")]
     axis: Option<u8>,
-    /// What it is measured in; null where the manual does not say.
+    /// Unit; null if the manual does not define it.
     unit: Option<&'static str>,
     meaning: &'static str,
 }
@@ -177,8 +177,8 @@ mod tests {
         for (line, part) in [
             ("param set TOLE 16385 --axis 3", "16385 is out of range for TOLE; allowed: 1 to 16384 pulses"),
             ("param set PSHFRC -1001 --axis 3", "allowed: -1000 to 1000"),
-            ("param set TOLE 1", "TOLE belongs to an axis; name one"),
-            ("param get TOLE", "TOLE belongs to an axis; name one"),
+            ("param set TOLE 1", "TOLE belongs to an axis; set the axis"),
+            ("param get TOLE", "TOLE belongs to an axis; set the axis"),
             ("param set WEIGHT 1 --axis 1", "WEIGHT belongs to the robot, not to an axis"),
             ("param set TOLE 1 --axis 1,2", "axes"),
             ("param set TOLE 1.5 --axis 1", "value"),

@@ -1,4 +1,4 @@
-//! `yrcx point-calc` (4.4.3, 4.4.4): the controller computes points and shifts.
+//! `yrcx point-calc` (4.4.3, 4.4.4): calculations with points and shifts in the controller.
 
 use clap::ArgGroup;
 
@@ -10,13 +10,13 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 
 commands! {
-    /// What the controller can do with points and shifts that it has.
+    /// Calculations with points and shifts.
     pub enum PointCalc {
         /// Copy a point: 100 --to 1
         Copy(Copy),
-        /// Add a point to another one: 100 --to 1
+        /// Add a point to another point: 100 --to 1
         Add(Add),
-        /// Subtract a point from another one: 100 --from 1
+        /// Subtract a point from another point: 100 --from 1
         Sub(Sub),
         /// Copy a pallet position to a point: 2 --place 133 --to 100
         Pallet(Pallet),
@@ -37,7 +37,7 @@ one_row! {
         /// Point to copy, 0 to 29999
         #[arg(value_name = "POINT", value_parser = point)]
         point: i32,
-        /// Point that becomes the same
+        /// Point to write
         #[arg(long, value_name = "POINT", value_parser = point)]
         to: i32,
     }
@@ -45,7 +45,7 @@ one_row! {
     with draft => draft.with(Key::Point, self.to).with(Key::Point2, self.point),
     done format!("P{} = P{}", self.to, self.point);
 
-    /// Adds a point to another one, axis by axis.
+    /// Adds a point to another point, axis by axis.
     Add(self) "yrcx.point-calc.add" -> Stored {
         /// Point to add, 0 to 29999
         #[arg(value_name = "POINT", value_parser = point)]
@@ -58,7 +58,7 @@ one_row! {
     with draft => draft.with(Key::Point, self.to).with(Key::Point2, self.point),
     done format!("P{to} = P{to} + P{}", self.point, to = self.to);
 
-    /// Subtracts a point from another one, axis by axis.
+    /// Subtracts a point from another point, axis by axis.
     Sub(self) "yrcx.point-calc.sub" -> Stored {
         /// Point to subtract, 0 to 29999
         #[arg(value_name = "POINT", value_parser = point)]
@@ -71,15 +71,15 @@ one_row! {
     with draft => draft.with(Key::Point, self.from).with(Key::Point2, self.point),
     done format!("P{from} = P{from} - P{}", self.point, from = self.from);
 
-    /// Copies a place of a pallet to a point.
+    /// Copies a pallet position to a point.
     Pallet(self) "yrcx.point-calc.pallet" -> Stored {
         /// Pallet, 0 to 39
         #[arg(value_name = "PALLET", value_parser = |text: &str| single(Command::PointPallet, Key::Pallet, text))]
         pallet: i32,
-        /// Work position, from 1 to as many as the pallet has
+        /// Pallet position, starting with 1
         #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointPallet, Key::WorkPosition, text))]
         place: i32,
-        /// Point that becomes the same
+        /// Point to write
         #[arg(long, value_name = "POINT", value_parser = point)]
         to: i32,
     }
@@ -88,7 +88,7 @@ one_row! {
         let draft = draft.with(Key::Point, self.to).with(Key::Pallet, self.pallet);
         draft.with(Key::WorkPosition, self.place)
     },
-    done format!("P{} = place {} of pallet {}", self.to, self.place, self.pallet);
+    done format!("P{} = position {} of pallet {}", self.to, self.place, self.pallet);
 
     /// Sets one element of a point, in the unit of the point.
     #[command(group = ArgGroup::new("value").required(true))]
@@ -99,10 +99,10 @@ one_row! {
         /// Element, 1 to 6: the axis
         #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointElementMm, Key::Element, text))]
         element: i32,
-        /// Its value in mm, for a point in mm
+        /// New value in mm, for a point in mm
         #[arg(long, value_name = "MM", group = "value", allow_negative_numbers = true)]
         mm: Option<String>,
-        /// Its value in pulses, for a point in pulses
+        /// New value in pulses, for a point in pulses
         #[arg(long, value_name = "PULSES", group = "value", allow_negative_numbers = true)]
         pulse: Option<String>,
     }
@@ -128,7 +128,7 @@ one_row! {
         /// Element, 1 to 4: the axis
         #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::ShiftElement, Key::Element, text))]
         element: i32,
-        /// Its value in mm
+        /// New value in mm
         #[arg(long, value_name = "MM", allow_negative_numbers = true)]
         mm: String,
     }
@@ -140,7 +140,7 @@ one_row! {
     done format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm);
 }
 
-/// The place of the one bit that is set, from 1.
+/// Number of the single set bit, starting with 1.
 fn place(bits: i32) -> u32 {
     bits.trailing_zeros() + 1
 }
@@ -181,11 +181,11 @@ mod tests {
             ("copy 30000 --to 1", "allowed: 0 to 29999"),
             ("pallet 40 --place 1 --to 1", "allowed: 0 to 39"),
             ("pallet 1 --place 0 --to 1", "allowed: 1 to 32767"),
-            ("element 1 --element 7 --mm 1", "there are 1 to 6"),
+            ("element 1 --element 7 --mm 1", "must be from 1 to 6"),
             ("element 1 --element 1,2 --mm 1", "name exactly 1"),
             ("element 1 --element 1", "--mm"),
             ("element 1 --element 1 --mm 1 --pulse 1", "cannot be used with"),
-            ("shift-element 1 --element 5 --mm 1", "there are 1 to 4"),
+            ("shift-element 1 --element 5 --mm 1", "must be from 1 to 4"),
         ] {
             let objection = objection(&["point-calc"].into_iter().chain(line.split(' ')).collect::<Vec<_>>());
             assert!(objection.contains(part), "{line}: {objection}");

@@ -1,4 +1,4 @@
-//! `yrcx port` (4.5.1): ports of eight signals as remote commands see them.
+//! `yrcx port` (4.5.1): ports of eight signals, read and written with remote commands.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -22,7 +22,7 @@ use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
 commands! {
-    /// What can be done with ports.
+    /// Commands for ports.
     pub enum Port {
         /// Read ports or signals: DI2, DO12, DO2.1
         Get(Get),
@@ -33,15 +33,15 @@ commands! {
     }
 }
 
-/// How ports are named, said in the help of both verbs.
-const NAMES: &str = "DO12 is a port, DO2.1 and 'DO(21)' are its bit 1. There are DI, DO, MO, SI and SO 0-7, 10-17 and 20-27, \
-                     LO 0 and 1, and TO 0; DO, MO, LO, TO and SO can be switched, DO, MO and SO from port 2 on. `yrcx io` \
-                     shows and switches SI and SO without remote commands.";
+/// Port names, for the help of get and set.
+const NAMES: &str = "DO12 is a port, DO2.1 and 'DO(21)' are its bit 1. DI, DO, MO, SI and SO have ports 0-7, 10-17 and \
+                     20-27, LO has 0 and 1, TO has 0. DO, MO, LO, TO and SO are writable; DO, MO and SO start with \
+                     port 2. `yrcx io` reads and switches SI and SO without remote commands.";
 
 /// A port, or a signal of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct PortSignal {
-    /// The number of its type.
+    /// Number of the port type.
     kind: i32,
     port: i32,
     bit: Option<i32>,
@@ -49,7 +49,7 @@ struct PortSignal {
 
 /// `DO12`, `DO12()`, `DO2.1`, `DO(21)`.
 fn place(text: &str) -> Result<PortSignal, String> {
-    let wrong = || format!("'{text}' is not a valid port such as DO12 and no signal, such as DO2.1");
+    let wrong = || format!("'{text}' is not a valid port, such as DO12, or signal, such as DO2.1");
     let (kind, rest) = text.split_at_checked(2).ok_or_else(wrong)?;
     let kind = single(table::Command::PortGet, Key::PortType, kind).map_err(|_| wrong())?;
     let (port, bit) = match rest.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')) {
@@ -70,12 +70,12 @@ fn place(text: &str) -> Result<PortSignal, String> {
     place.order(table::Command::PortGet.order()).map(|_| place)
 }
 
-/// Ports as typed, a range of them, or the name of one.
+/// Parses ports, a range of them, or a name.
 fn places(text: &str) -> Result<Series<PortSignal>, String> {
     names::read(KINDS, "DO2", text, Series::reader(place))
 }
 
-/// SI and SO are signals; a port has eight of them.
+/// SI and SO names refer to signals; a port has eight of them.
 const KINDS: &[Kind] = &[Kind::Port, Kind::Signal];
 
 fn signal_or_port(text: &str) -> Result<PortSignal, String> {
@@ -89,14 +89,14 @@ fn settable(text: &str) -> Result<PortSignal, String> {
 }
 
 impl PortSignal {
-    /// Its port in a command of ports.
+    /// Command for the port.
     fn order(self, draft: Draft) -> Result<Order, String> {
         if let Some(bit) = self.bit.filter(|bit| *bit > 7) {
             return Err(format!("a port has bits 0 to 7, not {bit}"));
         }
         let order = draft.with(Key::PortType, self.kind).with(Key::Port, self.port).build();
         order.map_err(|error| match error.place.key {
-            Some(Key::PortType) => format!("{} are inputs, which nobody can switch", self.kind_name()),
+            Some(Key::PortType) => format!("{} are inputs and cannot be switched", self.kind_name()),
             _ => format!("{}: {}", self.port_name(), error.problem),
         })
     }
@@ -117,11 +117,11 @@ impl PortSignal {
     }
 }
 
-/// Reads ports, one after the other.
+/// Reads ports one after the other.
 #[derive(Debug, Args)]
 #[command(after_help = NAMES)]
 pub struct Get {
-    /// Ports, or signals of them; DO2..DO5 is a range
+    /// Ports or signals; DO2..DO5 is a range
     #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = places, add = complete::PORT)]
     places: Vec<Series<PortSignal>>,
 }
@@ -152,17 +152,17 @@ impl Command for Get {
     }
 }
 
-/// The state of a port, or of a signal of it.
+/// State of a port or a signal.
 #[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Level {
-    /// Of a signal.
+    /// State of a signal.
     Signal(bool),
-    /// Of a port, 0 to 255.
+    /// Value of a port, 0 to 255.
     Port(i32),
 }
 
-/// What a port has besides.
+/// Attributes of a port.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Bits {
     /// Bit 7 first: `00000111`; null for a signal.
@@ -200,10 +200,10 @@ one_row! {
     /// Switches all signals of a port, or one of them.
     #[command(after_help = NAMES)]
     Set(self) "yrcx.port.set" -> Done {
-        /// A port, or a signal of one
+        /// Port or signal
         #[arg(value_name = "PORT", value_parser = signal_or_port, add = complete::OUTPUT_PORT)]
         place: PortSignal,
-        /// For a port 0 to 255, also as 0x07 or 0b00000111; for a signal on or off
+        /// Port: 0 to 255, also as 0x07 or 0b00000111; signal: on or off
         #[arg(value_name = "VALUE", value_parser = value)]
         value: u8,
     }
@@ -225,7 +225,7 @@ one_row! {
 }
 
 fn value(text: &str) -> Result<u8, String> {
-    let wrong = || format!("'{text}' is neither on nor off, nor a number from 0 to 255 such as 7, 0x07 or 0b00000111");
+    let wrong = || format!("'{text}' must be on, off, or a number from 0 to 255 such as 7, 0x07 or 0b00000111");
     let digits = |text: &str, radix| {
         let text = text.replace('_', "");
         let is_number = text.bytes().all(|byte| byte.is_ascii_alphanumeric());

@@ -5,17 +5,17 @@ use clap::ValueEnum;
 use crate::command::robot::position::{Joint, Position};
 use crate::controller::yrcx::value::{Key, Values};
 
-/// What a position is measured in.
+/// Unit of a position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Unit {
-    /// Millimetres; degrees of what turns
+    /// Millimetres, or degrees for rotary axes
     Mm,
-    /// Pulses of the encoders
+    /// Encoder pulses
     Pulse,
 }
 
 impl Unit {
-    /// The number of the position output that asks for it (bits 15 and 14 of WI1).
+    /// Value of the position output field (bits 15 and 14 of WI1).
     pub fn report(self) -> i32 {
         match self {
             Self::Pulse => 1,
@@ -23,7 +23,7 @@ impl Unit {
         }
     }
 
-    /// As it stands behind a number.
+    /// Unit symbol after a number.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Pulse => "pulses",
@@ -32,7 +32,7 @@ impl Unit {
     }
 }
 
-/// The position of an answer in this unit, with the hand system where it has one; nothing where it has no position.
+/// Position in an answer in this unit, with the hand system if present; none if the answer has no position.
 pub fn position(values: &Values, unit: Unit) -> Option<Position> {
     let axes = values.axes()?;
     let names = ["1", "2", "3", "4"].map(ToOwned::to_owned);
@@ -60,12 +60,12 @@ pub fn position(values: &Values, unit: Unit) -> Option<Position> {
     })
 }
 
-/// Axes 1 to 4 in millimetres, degrees of what turns.
+/// Axes 1 to 4 in millimetres, or degrees for rotary axes.
 pub fn mm(values: &Values) -> Option<[f64; 4]> {
     values.axes().map(|axes| axes.map(|steps| f64::from(steps) / 1000.0))
 }
 
-/// How a position names its robot, as `--unit` takes it.
+/// Name of the robot in a position, as `--unit` accepts it.
 pub fn group(robot: Option<i32>) -> String {
     format!("unit {}", robot.filter(|robot| *robot > 0).unwrap_or(1))
 }

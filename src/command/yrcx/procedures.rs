@@ -1,4 +1,4 @@
-//! The procedures of the timing charts as commands (chapter 1, section 3).
+//! Procedures of the timing charts as commands (chapter 1, section 3).
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -55,7 +55,7 @@ macro_rules! procedures {
     };
 }
 
-/// What the controller shows of this before; a stop names no signal, and waits for nothing.
+/// State of the signal before the procedure; a stop has no signal and does not wait.
 async fn was(link: &mut Link, signal: Option<Signal>) -> Result<Old, Failure> {
     let Some(signal) = signal else { return Ok(Old::UNREAD) };
     let shown = link.look().await.known()?;
@@ -64,28 +64,28 @@ async fn was(link: &mut Link, signal: Option<Signal>) -> Result<Old, Failure> {
 
 procedures! {
     /// Switches the servos on after power on: SI(00) on, SI(01) on, until SO(02) confirms it.
-    PowerOn "yrcx.power-on" power_on "servo_on" = true, "the servos are on" was SERVO_ON;
-    /// Puts the controller into emergency stop: SI(00) off, until SO(00), SO(03) and SO(02) confirm it. The connection must
-    /// be held, or its end is what the controller sees next.
+    PowerOn "yrcx.power-on" power_on "servo_on" = true, "servos are on" was SERVO_ON;
+    /// Puts the controller into emergency stop: SI(00) off, until SO(00), SO(03) and SO(02) confirm it. Use a
+    /// session: when the connection ends, the controller reports a link fault instead.
     EmergencyStop "yrcx.emergency-stop" emergency_stop "emergency_stop" = true, "the controller is in emergency stop" true;
     /// Ends the emergency stop and switches the servos on: SI(00), SI(16), SI(01), each confirmed.
-    Recover "yrcx.recover" recover "servo_on" = true, "the servos are on again" was SERVO_ON;
-    /// Waits until AUTO mode is selected (SO(10)); people select it at the controller.
+    Recover "yrcx.recover" recover "servo_on" = true, "servos are on again" was SERVO_ON;
+    /// Waits until AUTO mode is selected at the controller (SO(10)).
     AutoMode "yrcx.auto-mode" auto_mode "auto_mode" = true, "AUTO mode is selected" was AUTO_MODE;
-    /// Puts the robot program back to its first line: SI(15) on, until SO(14) confirms it.
+    /// Resets the robot program to its first line: SI(15) on, until SO(14) confirms it.
     Reset "yrcx.reset" program_reset "program_state" = "reset", "the robot program is reset";
-    /// Runs the robot program, also after a stop: SI(06) on, SI(12) on, until SO(13) confirms it.
-    Run "yrcx.run" run "program_running" = true, "the robot program runs" was PROGRAM_RUNNING;
-    /// Stops the robot program: SI(06) off, until SO(13) confirms it. It stays off until the next run.
+    /// Starts or continues the robot program: SI(06) on, SI(12) on, until SO(13) confirms it.
+    Run "yrcx.run" run "program_running" = true, "the robot program is running" was PROGRAM_RUNNING;
+    /// Stops the robot program: SI(06) off, until SO(13) confirms it. SI(06) stays off until the next run.
     Stop "yrcx.stop" stop "program_running" = false, "the robot program is stopped" true;
 }
 
-/// A procedure that was carried out and confirmed.
+/// Result of a procedure.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CarriedOut {
     #[serde(flatten)]
     done: Done,
-    /// From the first signal to the last confirmation.
+    /// Time from the first signal to the last confirmation, in ms.
     elapsed_ms: u64,
 }
 
@@ -112,10 +112,10 @@ mod tests {
         let noted = frames(&["power-on"]).unwrap();
         let shown: Vec<(&str, &str)> =
             noted.iter().map(|note| (note["bits"][0].as_str().unwrap(), note["about"].as_str().unwrap())).collect();
-        // SI(00) and SI(06) are on from the beginning, unless a session shows them off.
+        // SI(00) and SI(06) are on at the start, unless a session has switched them off.
         let edges = [("0x0043", "servo-on (SI(01)) on"), ("0x0041", "servo-on (SI(01)) off")];
         assert_eq!(shown, [&[("0x0041", "emergency-stop (SI(00)) on")], &edges[..]].concat());
-        assert_eq!(noted[0]["depends_on"], "what is shown before it: it is sent if emergency-stop is off");
+        assert_eq!(noted[0]["depends_on"], "the earlier signals: sent only if emergency-stop is off");
         assert_eq!(frames(&["stop"]).unwrap()[0]["bits"][0], "0x0001");
         assert_eq!(frames(&["auto-mode"]).unwrap(), Vec::<serde_json::Value>::new());
     }

@@ -1,4 +1,4 @@
-//! `yrcx program` (4.6): programs and the tasks they run in.
+//! `yrcx program` (4.6): programs and their tasks.
 
 mod run;
 
@@ -19,18 +19,18 @@ use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
 commands! {
-    /// What can be done with programs.
+    /// Commands for programs.
     pub enum Program {
         /// Register a program in a task
         Select(Select),
         /// Run a program, or all of them
         #[command(alias = "start")]
         Run(run::Run),
-        /// Step into: run one line, also of a subroutine
+        /// Step into: run one line and enter subroutines
         Step(Step),
         /// Skip one line
         Skip(Skip),
-        /// Step over: run one line, a subroutine as a whole
+        /// Step over: run one line, with a subroutine as one step
         Next(Next),
         /// Reset a program, or all of them, to the first line
         Reset(Reset),
@@ -39,43 +39,43 @@ commands! {
     }
 }
 
-/// A program.
+/// Selection of a program.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Which {
-    /// Program by its number, 1 to 100
+    /// Program by number, 1 to 100
     #[arg(long, value_name = "N", add = complete::PROGRAM)]
     program: Option<String>,
-    /// Program by its name: the first 16 of A-Z, 0-9 and _
+    /// Program by name: up to 16 characters of A-Z, 0-9 and _
     #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
     name: Option<String>,
-    /// Program by the task that it is registered in, 1 to 16
+    /// Program by its task, 1 to 16
     #[arg(long, value_name = "N", add = complete::TASK)]
     task: Option<String>,
 }
 
-/// A program, or all of them.
+/// Selection of a program, or of all programs.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct WhichOrAll {
-    /// Program by its name or its number
+    /// Program by name or number
     #[arg(value_name = "NAME|NUMBER", add = complete::PROGRAM_NAME)]
     what: Option<String>,
-    /// Program by its number, 1 to 100
+    /// Program by number, 1 to 100
     #[arg(long, value_name = "N", add = complete::PROGRAM)]
     program: Option<String>,
-    /// Program by its name: the first 16 of A-Z, 0-9 and _
+    /// Program by name: up to 16 characters of A-Z, 0-9 and _
     #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
     name: Option<String>,
-    /// Program by the task that it is registered in, 1 to 16
+    /// Program by its task, 1 to 16
     #[arg(long, value_name = "N", add = complete::TASK)]
     task: Option<String>,
-    /// All programs that are registered
+    /// All registered programs
     #[arg(long)]
     all_programs: bool,
 }
 
-/// Fills in how a program is named.
+/// Sets the program selection.
 fn put(draft: Draft, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> Draft {
     draft
         .with_some(Key::Program, program.cloned())
@@ -92,7 +92,7 @@ fn describe(program: Option<&String>, name: Option<&String>, task: Option<&Strin
     }
 }
 
-/// The report with what names the program.
+/// Report with the program selection.
 fn named(new: New, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> New {
     let numeric = |text: Option<&String>| text.map_or(serde_json::Value::Null, |text| number(text));
     new.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
@@ -140,14 +140,14 @@ fn is_number(text: &str) -> bool {
     text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// How a program is named that is in no task yet.
+/// Selection of a program that has no task yet.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Registered {
-    /// Program by its number, 1 to 100
+    /// Program by number, 1 to 100
     #[arg(long, value_name = "N", add = complete::PROGRAM)]
     program: Option<String>,
-    /// Program by its name: the first 16 of A-Z, 0-9 and _
+    /// Program by name: up to 16 characters of A-Z, 0-9 and _
     #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
     name: Option<String>,
 }
@@ -157,7 +157,7 @@ one_row! {
     Select(self) "yrcx.program.select" -> Done {
         #[command(flatten)]
         program: Registered,
-        /// Task, 1 to 16; the lowest vacant one unless given
+        /// Task, 1 to 16; default: the lowest vacant task
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
         task: Option<u16>,
         /// Priority of the task, 1 to 64
@@ -216,20 +216,20 @@ macro_rules! starts {
 }
 
 starts! {
-    /// Runs one line of a program, also of a subroutine.
+    /// Runs one line of a program and enters subroutines.
     Step "yrcx.program.step" ProgramStep Which "run one line of {}" "step_started" "started one line of {}";
     /// Skips one line of a program.
     Skip "yrcx.program.skip" ProgramSkip Which "skip one line of {}" "step_skipped" "skipped one line of {}";
-    /// Runs one line of a program, a subroutine as a whole.
-    Next "yrcx.program.next" ProgramNext Which "run one line of {}, a subroutine as a whole" "step_started" "started one line of {}";
-    /// Puts a program back to its first line, or all that are registered.
-    #[command(after_help = "`yrcx io get program-reset` tells whether all programs are reset, `yrcx info line` where each \
-        stands.")]
+    /// Runs one line of a program, with a subroutine as one step.
+    Next "yrcx.program.next" ProgramNext Which "run one line of {}, with a subroutine as one step" "step_started" "started one line of {}";
+    /// Resets a program, or all registered programs, to the first line.
+    #[command(after_help = "`yrcx io get program-reset` shows whether all programs are reset. `yrcx info line` shows \
+                            the current line of each program.")]
     Reset "yrcx.program.reset" ProgramReset WhichOrAll "reset {}" "reset" "reset {}";
 }
 
 one_row! {
-    /// Reads what a program does that is not running.
+    /// Reads the state of a program that is not running.
     Show(self) "yrcx.program.show" -> Execution {
         #[command(flatten)]
         which: Which,
@@ -250,12 +250,12 @@ one_row! {
     };
 }
 
-/// Where a program stands.
+/// State of a program.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Execution(robot::Program<Registration>);
 
-/// What a program is registered as.
+/// Registration of a program.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 struct Registration {
     /// Number of the program.
@@ -270,14 +270,14 @@ struct Registration {
 /// A line of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct ProgramLine {
-    /// From 1.
+    /// Line number, starting with 1.
     pub line: i32,
     /// Whether it is a line of the COMMON program.
     pub in_common: bool,
 }
 
 impl ProgramLine {
-    /// As the controller tells it: lines of COMMON from 10000 (4.6.4).
+    /// Line in the notation of the controller: lines of COMMON start at 10000 (4.6.4).
     pub fn of(number: i32) -> Self {
         if number > COMMON_LINES {
             Self { line: number - COMMON_LINES, in_common: true }
@@ -326,7 +326,7 @@ mod tests {
         let run = ["program", "run", "--program", "1"];
         assert_eq!(words(&run).unwrap(), [example("4.6.2-execute")]);
         assert_eq!(read_example("4.6.2-execute", &run)["state"], "running");
-        // Its WI1 is printed as 0x0100, its name without the spaces that the text asks for.
+        // The manual prints WI1 as 0x0100, and the name without the spaces that its text requires.
         let reset = ["program", "reset", "--name", "ABC_DE"];
         assert_eq!(words(&reset).unwrap(), [example("4.6.3-reset")]);
         assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["name"], "ABC_DE");

@@ -1,4 +1,4 @@
-//! `yrcx raw`: the words of any remote command, and what the answer says.
+//! `yrcx raw`: words of any remote command, with a decoded answer.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -20,12 +20,10 @@ use crate::failure::Failure;
 use crate::gate::Confirmation;
 use crate::output::view::View;
 
-/// Sends words that the manual allows.
+/// Sends words, if the manual allows them.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Words that are left away are 0. If the controller refuses, the exit code is 3. `armctl decode yrcx` \
-    explains words without sending them."
-)]
+#[command(after_help = "Missing words are 0. If the controller refuses, the exit code is 3. `armctl decode yrcx` \
+                        explains words without sending them.")]
 pub struct Raw {
     /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
     #[arg(long, value_name = "WORDS", value_parser = order)]
@@ -39,12 +37,12 @@ fn order(text: &str) -> Result<Box<Order>, String> {
     })
 }
 
-/// Up to 16 words, decimal or hexadecimal with 0x, between commas or blanks; the rest is 0.
+/// Parses up to 16 words, decimal or hexadecimal with 0x, separated by commas or spaces; missing words are 0.
 pub fn words(text: &str) -> Result<Words, String> {
     let mut words = [0; COMMAND_WORDS];
     let pieces: Vec<&str> = text.split([',', ' ']).filter(|piece| !piece.is_empty()).collect();
     if pieces.is_empty() || pieces.len() > COMMAND_WORDS {
-        return Err(format!("1 to {COMMAND_WORDS} words are wanted, not {}", pieces.len()));
+        return Err(format!("expected 1 to {COMMAND_WORDS} words, got {}", pieces.len()));
     }
     for (word, piece) in words.iter_mut().zip(pieces) {
         *word = typed::unsigned(piece).ok_or_else(|| format!("'{piece}' is not a valid word, such as 0x0032 or 50"))?;
@@ -70,7 +68,7 @@ impl Command for Raw {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange, Failure> {
-        context.link.no_unit("the words name the robot")?;
+        context.link.no_unit("the words contain the robot number")?;
         if self.confirmation() == Confirmation::WhenKnown {
             overwrite::confirm(context.link, &context.authority, &self.wi).await?;
         }
@@ -86,11 +84,11 @@ pub struct Exchange {
     wi: Vec<String>,
     /// WO0 to WO15.
     wo: Vec<String>,
-    /// The answer in words.
+    /// Title of the decoded answer.
     title: String,
-    /// The answer field by field.
+    /// Decoded fields of the answer.
     fields: Vec<FieldNote>,
-    /// What is wrong with the answer.
+    /// Problems found in the answer.
     problems: Vec<String>,
     elapsed_ms: u64,
     #[serde(skip)]

@@ -1,4 +1,4 @@
-//! Why an order was not carried out, in words: rejected by armctl, or refused by the controller.
+//! Conversion of rejected and refused commands to failures: rejected by armctl, or refused by the controller.
 
 use crate::client::yrcx::Refusal;
 use crate::controller::Risk;
@@ -9,10 +9,10 @@ use crate::controller::yrcx::table::{Pace, Row};
 use crate::controller::yrcx::value::{Key, Value};
 use crate::failure::{Failure, Kind};
 
-/// Words that the manual does not allow to be sent are a mistake of the command line.
+/// Words that the manual does not allow are an error of the command line.
 impl From<WordError> for Failure {
     fn from(error: WordError) -> Self {
-        // The field is what was typed; its word is for whoever sends words.
+        // The field is what the user typed; the word index matters only for raw words.
         let message = match error.place.key {
             Some(key) => format!("{key}: {}", error.problem),
             None => error.to_string(),
@@ -20,12 +20,12 @@ impl From<WordError> for Failure {
         let failure = Self::usage(message);
         match error.alarm {
             Some(alarm) => failure.hint(format!("the controller would refuse it with alarm {alarm}, {}", alarm.text())),
-            None => failure.hint("`--help` tells what may be given"),
+            None => failure.hint("see `--help` for the valid values"),
         }
     }
 }
 
-/// The controller's "no" to an order, be it at once or in the middle; it names what the order was about.
+/// Refusal of a command by the controller, at once or during execution, with the name of the object.
 impl From<Refusal> for Failure {
     fn from(Refusal { order, alarm, .. }: Refusal) -> Self {
         refused_order(&order, alarm)
@@ -38,7 +38,7 @@ fn refused_order(order: &Order, alarm: Alarm) -> Failure {
     let about = order.row().request().filter(|field| INSTANCES.contains(&field.key));
     let about = about.filter_map(|field| {
         let value = order.values().value(field.key)?;
-        // The first robot is named by 0 as well, and then not at all.
+        // Robot 0 means the first robot and is then not named.
         let is_named = field.key != Key::Robot || *value != Value::Int(0);
         is_named.then(|| format!("{} {}", field.key.name().replace('_', " "), field.show(value)))
     });
@@ -50,7 +50,7 @@ fn refused_order(order: &Order, alarm: Alarm) -> Failure {
     Failure { message: failure.message.replacen(&format!("{id}: alarm"), &named, 1), ..failure }
 }
 
-/// The fields that say which one of several a command is about.
+/// Fields that select the object of a command.
 const INSTANCES: [Key; 12] = [
     Key::Robot,
     Key::Point,
@@ -66,26 +66,26 @@ const INSTANCES: [Key; 12] = [
     Key::History,
 ];
 
-/// The controller's "no" to a command, whatever it was about.
+/// Refusal of a command by the controller.
 pub fn refused(row: &Row, alarm: Alarm) -> Failure {
     let what = match (row.risk, row.pace) {
-        (Risk::Motion, Pace::Motion | Pace::Jog) => "refused or broke off",
+        (Risk::Motion, Pace::Motion | Pace::Jog) => "refused or aborted",
         _ => "refused",
     };
     let remedy = match alarm.known().and_then(|known| known.remedies.first()) {
         Some(remedy) => (*remedy).to_owned(),
-        None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` tells where it came up"),
+        None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` shows the source"),
     };
     let way_out = WAYS_OUT.iter().find(|(_, alarms)| alarms.contains(&alarm)).map(|(way, _)| *way).unwrap_or_default();
-    let kept = kept(row, "if it had begun to move, ");
+    let kept = kept(row, "if the robot had started to move, ");
     Failure::new(Kind::Refused, format!("the controller {what} {}: alarm {alarm}, {}", row.id, alarm.text()))
         .code(alarm.to_string())
         .hint(format!("{remedy}{way_out}{kept}"))
 }
 
-/// Commands that end what an alarm is about.
+/// Commands that remove the cause of an alarm.
 const WAYS_OUT: [(&str, &[Alarm]); 2] =
-    [(": `yrcx io set stop=on`", &[STOP_INPUT]), ("; `yrcx recover` ends the alarm", &RECOVERABLE)];
+    [(": `yrcx io set stop=on`", &[STOP_INPUT]), ("; `yrcx recover` clears the alarm", &RECOVERABLE)];
 
 /// Alarms of a lost link, on each fieldbus, and of an emergency stop.
 const RECOVERABLE: [Alarm; 9] = [
@@ -100,13 +100,13 @@ const RECOVERABLE: [Alarm; 9] = [
     Alarm::new(12, 600),
 ];
 
-/// What a relative motion that was stopped does when it is given again (4.2.2, 4.2.4); empty for others.
+/// Behavior of a repeated relative motion after a stop (4.2.2, 4.2.4); empty for other commands.
 pub fn kept(row: &Row, condition: &str) -> String {
     if !row.keeps_target() {
         return String::new();
     }
     format!(
-        "; {condition}the same command again goes on to its old target, unless the controller's \"MOVEI/DRIVEI start \
+        "; {condition}the same command moves to the old target, unless the controller's \"MOVEI/DRIVEI start \
          position\" is Reset"
     )
 }
@@ -121,7 +121,7 @@ mod tests {
     fn an_alarm_has_its_number_and_a_remedy() {
         let failure = refused(Command::MovePtp.row(), Alarm::new(2, 334));
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("2.334")));
-        assert_eq!(failure.message, "the controller refused or broke off move-ptp: alarm 2.334, over soft limit");
+        assert_eq!(failure.message, "the controller refused or aborted move-ptp: alarm 2.334, over soft limit");
         assert_eq!(failure.hint.as_deref(), Some("check the point and the soft limits"));
         let unknown = refused(Command::VarGet.row(), Alarm::new(17, 1));
         assert_eq!(unknown.message, "the controller refused var-get: alarm 17.1, motor control");

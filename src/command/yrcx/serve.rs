@@ -1,4 +1,4 @@
-//! `armctl sim yrcx`: a controller on a fieldbus, for others.
+//! `armctl sim yrcx`: simulated controller as a fieldbus server.
 
 use std::io;
 use std::path::PathBuf;
@@ -14,31 +14,31 @@ use crate::controller::simulator::console::help_line;
 use crate::failure::Failure;
 use crate::settings::target::bus::simulators;
 
-/// A YRCX on a fieldbus
+/// Simulate a YRCX on a fieldbus
 #[derive(Debug, Args)]
 #[command(
-    after_help = "One connection owns the outputs; others may only listen (role=input_only with out=238, listen_only with \
-    out=237)."
+    after_help = "One connection owns the outputs. Other connections can only listen (role=input_only with out=238, or \
+                  role=listen_only with out=237)."
 )]
 pub struct ServeArgs {
-    /// The fieldbus that it is on
+    /// Fieldbus of the controller
     #[arg(long, value_name = "BUS", value_parser = simulators().map(|(name, _)| name).collect::<Vec<_>>())]
     bus: Option<String>,
     #[command(flatten)]
     servers: Given<Servers>,
-    /// DeviceNet, PROFIBUS: name the pseudo-terminal by a symbolic link, which is removed at the end
+    /// DeviceNet, PROFIBUS: create a symbolic link to the pseudo-terminal and remove it at the end
     #[arg(long, value_name = "PATH", alias = "slcan-link")]
     link: Option<PathBuf>,
     /// Start state (TOML): robots, memory, programs, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Take lines on stdin; `help` lists them
+    /// Read console lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
 }
 
 impl ServeArgs {
-    /// Refuses what is for another fieldbus.
+    /// Rejects options of another fieldbus.
     fn fits(&self, chosen: &Fieldbus) -> Result<(), Failure> {
         for (fieldbus, arguments) in Servers::arguments() {
             let strange = arguments.iter().find(|argument| self.servers.has(argument.get_id()));
@@ -52,13 +52,13 @@ impl ServeArgs {
 }
 
 fn misplaced(flag: &str, chosen: &str, right: &str) -> Failure {
-    Failure::usage(format!("--{flag} has no effect with --bus {chosen}: it is for {right}"))
-        .hint("`armctl sim yrcx -h` says which options are for which fieldbus")
+    Failure::usage(format!("--{flag} has no effect with --bus {chosen}; use it with {right}"))
+        .hint("`armctl sim yrcx -h` lists the options of each fieldbus")
 }
 
-/// Lines of the console that are about the fieldbus.
+/// Console lines for the fieldbus.
 const MORE: [(&str, &str); 2] = [
-    ("mischief NAME|off", "misbehave on the fieldbus; a wrong name lists those there are"),
+    ("mischief NAME|off", "set a fault of the fieldbus device; an unknown name lists the faults"),
     ("restart", "switch the slave or device off and on (PROFIBUS, PROFINET)"),
 ];
 
@@ -73,7 +73,8 @@ impl serve::Serve for ServeArgs {
         let bus = simulators().find(|(name, _)| wanted.is_none_or(|wanted| wanted == *name)).map(|(_, bus)| bus);
         let all = self.servers.arguments.each();
         let serve = all.into_iter().find(|(fieldbus, _)| bus == Some(fieldbus.name));
-        let (fieldbus, serve) = serve.ok_or_else(|| Failure::local("no fieldbus serves that simulator"))?;
+        let (fieldbus, serve) =
+            serve.ok_or_else(|| Failure::local("internal error: no fieldbus serves this simulator"))?;
         self.fits(fieldbus)?;
         if self.link.is_some() && !serve.has_terminal() {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));

@@ -1,4 +1,5 @@
-//! References one after the other: a controller carries out one remote command at a time. Each answers for itself.
+//! Several read requests, one after the other, because a controller executes one remote command at a time. Each has
+//! its own result.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -17,17 +18,17 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, Tone};
 
-/// What came of several orders, in their order.
+/// Results of several requests, in their order.
 #[derive(Debug)]
 pub struct Answers {
-    /// Of each, what its answer holds, or why there is none.
+    /// Values or failure of each request.
     pub outcomes: Vec<Result<Values, Failure>>,
-    /// How many were given to the controller; those behind were not, as they would fail alike.
+    /// Number of requests sent. The others were not sent, because they would fail alike.
     pub asked: usize,
 }
 
-/// Asks all of it. What is refused stands in its place; what ends the link, or would be refused whatever is asked, ends
-/// the asking. Nothing but that is a failure of all. A dry run notes all orders and ends.
+/// Sends all requests. A refusal is the result of its request. A link failure, or a refusal that would repeat, ends
+/// the loop and is the only failure of the whole. A dry run notes all requests and ends.
 pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<Answers, Failure> {
     link.plan_all(orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
@@ -38,7 +39,7 @@ pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Or
             if done == 0 {
                 return outcome.map(|_| Answers { outcomes: Vec::new(), asked: 0 });
             }
-            let not_asked = Failure { message: format!("not asked any more: {}", failure.message), ..failure.clone() };
+            let not_asked = Failure { message: format!("not read: {}", failure.message), ..failure.clone() };
             outcomes.push(outcome);
             outcomes.resize(orders.len(), Err(not_asked));
             return Ok(Answers { outcomes, asked: done + 1 });
@@ -51,7 +52,7 @@ pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Or
     Ok(Answers { outcomes, asked: orders.len() })
 }
 
-/// Asks one of several, and says whether the next one is worth asking.
+/// Sends one of several requests, and returns whether the next one can succeed.
 async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) {
     match link.try_ask(order).await {
         Ok(Err(refusal)) => (Err(refused(order.row(), refusal.alarm)), !is_about_commands(refusal.alarm)),
@@ -60,7 +61,7 @@ async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) 
     }
 }
 
-/// Reads what has these numbers, which stand in the field `key` of the command; `nouns` names what it is, one and many.
+/// Reads items by number; `key` is the field of the number, `nouns` the singular and plural name of the items.
 pub async fn read_numbers<V>(
     context: Context<'_, Yrcx>,
     [noun, nouns]: [&str; 2],
@@ -78,19 +79,19 @@ pub async fn read_numbers<V>(
     Ok((numbers, several))
 }
 
-/// What each of several things came to, in the order asked for.
+/// Results of several items, in the order requested.
 #[derive(Debug)]
 pub struct Several<V> {
-    /// One a thing.
+    /// One result per item.
     pub outcomes: Vec<ItemOutcome<V>>,
     asked: usize,
 }
 
 impl<V> Several<V> {
-    /// With their names as errors tell them; `of` makes of an answer what is reported, by its place.
+    /// Collects the results with their names; `of` converts an answer to the reported value, by its index.
     ///
     /// # Errors
-    /// The failure of a thing that was asked for alone.
+    /// The failure, if only one item was requested and failed.
     pub fn of(
         names: impl IntoIterator<Item = String>,
         Answers { outcomes, asked }: Answers,
@@ -107,7 +108,7 @@ impl<V> Several<V> {
         Ok(Self { outcomes, asked })
     }
 
-    /// The same as rows that begin with what each is the outcome of.
+    /// The results as rows that start with the name of the item.
     pub fn rows<N>(self, names: impl IntoIterator<Item = N>) -> Rows<N, V> {
         let Self { outcomes, asked } = self;
         let rows = names.into_iter().zip(outcomes).map(|(name, outcome)| Row { name, outcome });
@@ -115,17 +116,17 @@ impl<V> Several<V> {
     }
 }
 
-/// Several things with what each came to.
+/// Named results.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Rows<N, V> {
     rows: Vec<Row<N, V>>,
-    /// How many of them were asked for.
+    /// Number of items that were requested.
     #[serde(skip)]
     asked: usize,
 }
 
-/// What one thing came to.
+/// Result of one item.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Row<N, V> {
     #[serde(flatten)]
@@ -135,7 +136,7 @@ struct Row<N, V> {
 }
 
 impl<N, V> Rows<N, V> {
-    /// Drops what was answered and is not worth telling.
+    /// Removes results that `is_worth` rejects.
     pub fn retain(&mut self, mut is_worth: impl FnMut(&N, &V) -> bool) {
         let mut at = 0;
         let asked = self.asked;
@@ -147,8 +148,8 @@ impl<N, V> Rows<N, V> {
         });
     }
 
-    /// A table of what was asked, a row each: cells of the name, then those of the value. What failed has blanks in their
-    /// place, and says why in a column of its own.
+    /// Table with one row per item: cells of the name, then of the value. A failed item has empty cells and the
+    /// reason in an extra column.
     pub fn table<const A: usize, const B: usize>(
         &self,
         names: [&'static str; A],
@@ -168,40 +169,40 @@ impl<N, V> Rows<N, V> {
         Table { columns: columns.collect(), rows: rows.collect(), empty }
     }
 
-    /// Why this is not a success; nothing where all was answered.
+    /// Failure of the report; none if all items were read.
     pub fn failure(&self) -> Option<Failure> {
         let failure = verdict(self.rows.len(), self.rows.iter().filter_map(|row| row.outcome.error()))?;
         Some(match self.rows.len() - self.asked.min(self.rows.len()) {
             0 => failure,
-            rest => Failure { message: format!("{}; {rest} were not asked for", failure.message), ..failure },
+            rest => Failure { message: format!("{}; {rest} were not read", failure.message), ..failure },
         })
     }
 }
 
-/// Why one thing failed, as it fits a column: the row names the thing already.
+/// Short error for a column; the row already names the item.
 fn brief(error: &ItemError) -> Cell {
     let message = error.failure().message;
     let why = message.rsplit_once(": ").map_or(message.as_str(), |(_, why)| why);
     Cell::from(why).tone(Tone::Bad)
 }
 
-/// Whether a refusal is about remote commands as such: the next one would be refused as well.
+/// Whether a refusal concerns remote commands in general, so that the next command would be refused as well.
 pub fn is_about_commands(alarm: Alarm) -> bool {
     alarm.group == STOP_INPUT.group
 }
 
-/// Whether a refusal to read something says that it is not defined.
+/// Whether a refusal means that the item is not defined.
 pub fn is_undefined(failure: &Failure) -> bool {
     let alarm = failure.code.as_deref().and_then(|code| code.parse().ok());
     failure.kind == Kind::Refused && alarm.is_some_and(|alarm| !is_about_commands(alarm))
 }
 
-/// Answers repeat what was asked for, as far as they have it.
+/// Checks the fields that an answer repeats from its request.
 pub fn check_echo(order: &Order, values: &Values) -> Result<(), Failure> {
     let differs = |(key, asked): &(Key, &Value)| values.value(*key).is_some_and(|told| told != *asked);
     match order.values().iter().find(differs) {
         Some((key, _)) => {
-            let message = format!("{}: the controller answers for another {key} than was asked for", order.row().id);
+            let message = format!("{}: the answer is for another {key}", order.row().id);
             Err(Failure::new(Kind::Malformed, message).hint("`-vvv` shows the words"))
         }
         None => Ok(()),

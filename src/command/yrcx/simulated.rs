@@ -1,4 +1,4 @@
-//! The simulated controller as URLs name it.
+//! Simulated controller of a URL.
 
 use std::path::Path;
 
@@ -11,17 +11,17 @@ use crate::files;
 use crate::settings::target::Sim;
 use crate::transport::fault::FaultSpec;
 
-/// A simulator in this process, in the start state that the URL names.
+/// Simulator in this process, in the start state of the URL.
 pub fn in_process(sim: &Sim) -> Result<Simulated, Failure> {
     Ok(Simulated::new(start(sim.state.as_deref())?))
 }
 
-/// Whether the URL asks for what only a network can do wrong.
+/// Whether the URL has network faults.
 pub fn has_faults(sim: &Sim) -> bool {
     sim.fault.is_some() || sim.mischief.is_some()
 }
 
-/// The start state: a file's, or the built-in one.
+/// Start state: from a file, or the built-in one.
 pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
     let Some(path) = file else { return Ok(Start::default()) };
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
@@ -31,22 +31,22 @@ pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
     })
 }
 
-/// What goes wrong on the way, of a kind that a YRCX can meet.
+/// Parses link faults that apply to a YRCX.
 pub fn faults(text: &str) -> Result<FaultSpec, String> {
     let spec: FaultSpec = text.parse().map_err(|error| format!("{error}"))?;
-    if spec.busy.per_10_000() > 0 { Err("busy is not for yrcx".to_owned()) } else { Ok(spec) }
+    if spec.busy.per_10_000() > 0 { Err("the fault busy does not exist for yrcx".to_owned()) } else { Ok(spec) }
 }
 
-/// The same where frames have a checksum, so that a damaged one does not arrive.
+/// Parses faults of frames with a checksum, which cannot be corrupted.
 pub fn faults_of_frames(text: &str, link: &str) -> Result<FaultSpec, String> {
     let spec = faults(text)?;
     if spec.corrupt.per_10_000() > 0 {
-        return Err(format!("corrupt is not for {link}, whose frames have a checksum"));
+        return Err(format!("the fault corrupt does not exist for {link}, because its frames have a checksum"));
     }
     Ok(spec)
 }
 
-/// The faults and the mischief of a URL, each as its fieldbus reads it.
+/// Parses the link faults and the device fault of a URL for a fieldbus.
 pub fn wrongs<F, M>(
     sim: &Sim,
     faults: impl Fn(&str) -> Result<F, String>,
@@ -58,7 +58,7 @@ pub fn wrongs<F, M>(
     Ok((faults, mischief.map_err(|why| wrong(format!("mischief: {why}")))?))
 }
 
-/// What goes wrong, by its name.
+/// Finds a fault by its name.
 pub fn fault_by_name<T: Copy>(known: &[(&'static str, T)], text: &str) -> Result<T, String> {
     let found = known.iter().find(|(name, _)| *name == text);
     found.map(|(_, fault)| *fault).ok_or_else(|| {

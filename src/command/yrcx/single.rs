@@ -1,4 +1,4 @@
-//! Commands that give one remote command each: most of them do.
+//! Commands with one remote command each, as most commands have.
 
 use super::link::Done;
 use super::link::Yrcx;
@@ -12,17 +12,17 @@ use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 
-/// A command line that is one row of the table.
+/// A command line for one row of the command table.
 pub trait Single {
-    /// What it reports.
+    /// Report type.
     type Report: Report + 'static;
-    /// `yrcx.servo`: its name in envelopes and schemas.
+    /// `yrcx.servo`: name in envelopes and schemas.
     const ID: &'static str;
 
-    /// The row.
+    /// Row of the command table.
     fn command(&self) -> table::Command;
 
-    /// Fills in what was typed.
+    /// Sets the typed arguments.
     fn fill(&self, draft: Draft) -> Draft {
         draft
     }
@@ -32,7 +32,7 @@ pub trait Single {
         String::new()
     }
 
-    /// What came of it. In a dry run there are no values.
+    /// Report of the result. A dry run has no values.
     fn report(&self, done: &Done) -> Result<Self::Report, Failure>;
 }
 
@@ -60,7 +60,7 @@ impl<S: Single> Command for S {
     }
 }
 
-/// What a row says of a command that was carried out: the report itself, or in words what was done.
+/// Result of a row: a report, or a text of what was done.
 pub trait Said<R> {
     /// The report.
     fn report(self, done: &Done) -> R;
@@ -84,8 +84,8 @@ impl Said<Stored> for String {
     }
 }
 
-/// Declares commands that give one remote command each: what is typed, the row of the table, what is filled in, what the
-/// question says, and in the end in words what was done, or what is read of the answer.
+/// Declares commands with one remote command each: arguments, row of the table, fields, question, and the text of the
+/// result or the report of the answer.
 macro_rules! one_row {
     ($(
         $(#[$meta:meta])*
@@ -136,7 +136,7 @@ macro_rules! one_row {
 }
 pub(super) use one_row;
 
-/// What a field of an answer says, in words; nothing where the answer has no such field.
+/// Text of a field of an answer; none if the answer does not have the field.
 pub fn shown(command: table::Command, values: &Values, key: Key) -> Option<String> {
     let value = values.value(key)?;
     command.row().answer().find(|field| field.key == key).map(|field| field.show(value))

@@ -23,16 +23,15 @@ use crate::failure::{Failure, Kind};
 use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Tone, View};
 
-/// Signals; in a session, on a simulator in this process, or with --full, also servos and position.
+/// Signals; also servos and position in a session, on a simulator in this process, or with --full.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Signals are seen without a connection that the controller would miss. Servos and position are \
-                        remote commands: a session asks for them by itself unless another client's command is under way. \
-                        Without one, --full takes command of the controller for them, which is an alarm for it when the \
-                        command ends (`armctl help safety`)."
+    after_help = "Reading signals does not affect the controller. Servos and position need remote commands. A session \
+                  reads them unless another client's command is running. Without a session, --full takes control of \
+                  the controller to read them, which raises an alarm when the command ends (`armctl help safety`)."
 )]
 pub struct Status {
-    /// Take command of the controller, and ask for servos and position as well
+    /// Take control of the controller and also read servos and position
     #[arg(long)]
     full: bool,
 }
@@ -54,18 +53,18 @@ impl Command for Status {
         let latest = latest(link)?;
         if link.is_dry() && (self.full || link.commands()) {
             let noted = link.plan_all(&orders);
-            let reason = Reason::about("which alarm").depending_on("the signals: it is asked if there is one");
+            let reason = Reason::about("which alarm").depending_on("the signals: it is read if there is an alarm");
             link.plan_depending(&latest, &latest, reason);
             noted?;
         }
         if link.is_dry() && link.is_held() {
-            let reason = Reason::default().depending_on("the session: it is asked if no other command is under way");
+            let reason = Reason::default().depending_on("the session: they are read if no other command is running");
             for order in &orders {
                 link.plan_depending(order, order, reason);
             }
         }
         let image = link.look().await?;
-        // What is seen at once does not wait for somebody else's motion to end.
+        // Signals do not wait for the end of another client's motion.
         let not_asked = if self.full { None } else { not_asked(link, &image) };
         if not_asked.is_some() {
             return Ok(StatusReport { not_asked, ..StatusReport::of(link, &image) });
@@ -77,7 +76,7 @@ impl Command for Status {
         let outcomes = match ask_each(link, screen, "reading servos and position", &orders).await {
             Ok(answers) => answers.outcomes,
             Err(failure) if failure.kind == Kind::Usage => return Err(failure),
-            // The signals are known, whatever became of the rest.
+            // The signals are valid even if the other requests failed.
             Err(failure) => vec![Err(failure); orders.len()],
         };
         for (name, outcome) in ["servos", "position", "alarm"].into_iter().zip(outcomes) {
@@ -95,43 +94,43 @@ impl Command for Status {
     }
 }
 
-/// What is looked at: signals, servos, position, and the alarm where there is one.
+/// Parts: signals, servos, position, and the alarm if there is one.
 const PARTS: usize = 3;
 
-/// How the controller stands (chapter 1, section 2).
+/// Controller state (chapter 1, section 2).
 #[derive(Debug, Serialize, JsonSchema, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "the controller shows bits")]
 pub struct StatusReport {
-    /// As the signals SO(00), SO(02), SO(03), SO(10), SO(11) and SO(13) say; which alarm it is, and the position, are
-    /// remote commands.
+    /// State from the signals SO(00), SO(02), SO(03), SO(10), SO(11) and SO(13). The alarm number and the position
+    /// need remote commands.
     #[serde(flatten)]
     state: State,
-    /// What it shows of remote commands: `ready`, `running`, …
+    /// Status of remote commands: `ready`, `running`, …
     command_status: String,
-    /// SO(01): it works.
+    /// SO(01): controller CPU ready.
     cpu_ok: bool,
-    /// SO(03): a serious error.
+    /// SO(03): serious error.
     alarm: bool,
     /// SO(04): servos can be switched on.
     mp_ready: bool,
-    /// SO(12): the sequence program runs.
+    /// SO(12): sequence program running.
     sequence_running: bool,
-    /// SO(14): the robot program is at its start.
+    /// SO(14): robot program at its start.
     program_reset: bool,
     /// SO(15): a warning.
     warning: bool,
-    /// The servo of each axis; null where that was not asked.
+    /// Servo of each axis; null if not read.
     servos: Option<Vec<AxisServo>>,
-    /// Why servos and position were not asked; null where they were.
+    /// Reason why servos and position were not read; null if they were read.
     not_asked: Option<&'static str>,
-    /// Where each axis stands; null where that was not asked.
+    /// Position of each axis; null if not read.
     joints: Option<Vec<Joint>>,
-    /// What was asked and not told, and why.
+    /// Failed requests, and the reason.
     errors: Vec<ItemError>,
 }
 
 impl StatusReport {
-    /// What the signals say.
+    /// State from the signals.
     fn of(link: &Link, image: &Image) -> Self {
         Self {
             state: state(link, image, None),
@@ -201,7 +200,7 @@ impl Report for StatusReport {
     }
 }
 
-/// Where the robot is. One that does not know its origin refuses to tell.
+/// Current position. A robot with unknown origin refuses to report it.
 pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>, Failure> {
     let order = link.draft(table::Command::PositionMm)?.build()?;
     let done = link.try_ask(&order).await?.ok();

@@ -1,5 +1,5 @@
-//! What the controller stores by number (4.3, 4.4.1) as tables: a declaration ([`Kind`]) each. How rows are read and written
-//! stands here, once.
+//! Numbered data of the controller (4.3, 4.4.1) as tables: one declaration ([`Kind`]) each. The row access is common
+//! to all.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -22,31 +22,31 @@ use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
 use crate::output::Screen;
 
-/// What a table is, and what of it is reported.
+/// Declaration of a table and its reports.
 pub trait Kind: Debug + Send + Sync + 'static {
-    /// What one row holds, for reports.
+    /// Value of a row in reports.
     type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Its words.
+    /// Texts of the table.
     const WORDS: Words;
-    /// Names of its reports.
+    /// Names of the reports.
     const IDS: Ids;
-    /// Its commands and the fields of a row, as backups have them.
+    /// Commands and fields of a row, shared with backups.
     const RECORDS: &'static Records;
     /// Headings of the fields.
     const HEADINGS: &'static [&'static str];
-    /// Whether a person wrote what is overwritten.
+    /// Risk of an overwrite: whether the old data is the work of a person.
     const RISK: Risk = Risk::Destroy;
-    /// Whether there are few enough rows to read all of them unasked.
+    /// Whether the table is small enough to read completely by default.
     const IS_SMALL: bool = true;
-    /// Kind of the names that people give to rows.
+    /// Type of the names that users assign to rows.
     const LABELS: Option<Label> = None;
-    /// What completes a row.
+    /// Completion of row numbers.
     const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
 
-    /// What a row holds.
+    /// Value of a row.
     fn value(values: &Values) -> Option<Self::Value>;
 
-    /// Whether a row holds nothing that anybody wrote.
+    /// Whether a row contains no user data.
     fn is_blank(_values: &Values) -> bool {
         false
     }
@@ -56,15 +56,15 @@ pub trait Kind: Debug + Send + Sync + 'static {
 #[derive(Debug)]
 pub struct Numbered<K>(PhantomData<K>);
 
-/// What a row holds.
+/// Content of a row.
 #[derive(Debug, Clone)]
 pub struct Row {
     values: Values,
-    /// By the columns behind the number.
+    /// Texts of the columns after the number.
     texts: Vec<String>,
 }
 
-/// Rows are the same where they read the same.
+/// Rows are equal if their texts are equal.
 impl PartialEq for Row {
     fn eq(&self, other: &Self) -> bool {
         self.texts == other.texts
@@ -159,7 +159,7 @@ fn is_number(key: Key) -> bool {
     !matches!(key, Key::Unit | Key::HandSystem | Key::Comment)
 }
 
-/// What a row shall hold: the text of each field, where it is given.
+/// New content of a row: the text of each field, if given.
 type Draft = Vec<Option<String>>;
 
 impl<K: Kind> Writable for Numbered<K> {
@@ -181,7 +181,7 @@ impl<K: Kind> Writable for Numbered<K> {
             (None, Some(old)) => Ok(old.texts[at].clone()),
             (None, None) => {
                 let (one, field) = (Self::WORDS.nouns[0], K::RECORDS.columns[at + 1].0);
-                let message = format!("{one} {number} is not defined: there is no {field} to keep");
+                let message = format!("{one} {number} is not defined, so it has no {field} to keep");
                 Err(Failure::usage(message).hint("nothing was written; give all values"))
             }
         };
@@ -191,8 +191,8 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 
     async fn plan(&self, link: &mut Link, number: i32, draft: &Draft) -> Result<(), Failure> {
-        let reason = Reason::default().depending_on("what is there: it is written if that differs");
-        // Two rows that agree only in what is given.
+        let reason = Reason::default().depending_on("the current data: written if different");
+        // Two rows that agree only in the given fields.
         let filled = |which: usize| {
             let columns = draft.iter().zip(&K::RECORDS.columns[1..]);
             columns
@@ -218,14 +218,14 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 }
 
-/// Two texts of a field that have no word in common, for a dry run.
+/// Two different texts of a field, for a dry run.
 fn samples(key: Key, number: i32) -> [&'static str; 2] {
     match key {
         Key::Unit => ["mm", "pulse"],
-        // Only a point in millimetres has one.
+        // Only a point in millimetres has a hand system.
         Key::HandSystem => ["left", ""],
         Key::Comment => ["", "AAAAAAAAAAAAAAAA"],
-        // It is part of the command word, which a plan shows: that of the first robot.
+        // The robot number is part of the command word in a plan; the first robot is shown.
         Key::Owner => ["1", "1"],
         Key::CountX | Key::CountY | Key::CountZ | Key::FirstPoint => ["1", "2"],
         Key::Data4 => ["0", "1"],
@@ -235,7 +235,7 @@ fn samples(key: Key, number: i32) -> [&'static str; 2] {
     }
 }
 
-/// The order that stores a row, and what an answer that reads it would hold.
+/// Command that stores a row, and the answer expected when it is read.
 fn stored<K: Kind>(number: i32, texts: Vec<String>) -> Result<(Order, Values), Failure> {
     let name = named(K::RECORDS.read, key::<K>(), number);
     let store = K::RECORDS.store(&std::iter::once(name).chain(texts).collect())?;
@@ -243,12 +243,12 @@ fn stored<K: Kind>(number: i32, texts: Vec<String>) -> Result<(Order, Values), F
     Ok((store.write, values))
 }
 
-/// A whole number of an answer.
+/// Whole number in an answer.
 pub fn int(values: &Values, key: Key) -> i32 {
     values.int(key).unwrap_or_default()
 }
 
-/// Thousandths of an answer in millimetres.
+/// Millimetres, from thousandths in an answer.
 pub fn mm(values: &Values, key: Key) -> f64 {
     f64::from(int(values, key)) / 1000.0
 }

@@ -1,4 +1,4 @@
-//! `yrcx teach` (4.2.9): stores where the robot is in a point. `point set 19 here` is this.
+//! `yrcx teach` (4.2.9): stores the current position as a point. `point set 19 here` is an alias.
 
 use clap::Args;
 
@@ -15,25 +15,25 @@ use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::{Failure, Kind};
 use crate::gate::Confirmation;
 
-/// Stores where the robot is in a point, in place of what the point was, and reads it back.
+/// Stores the current position as a point, replaces the old point, and reads the point back.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The controller stores its position by itself, with servos on or off. Without --in the point keeps \
-    its unit; one that is not defined gets mm. `yrcx point set 19 here` is the same."
+    after_help = "The controller stores its own position, with servos on or off. Without --in, the point keeps its \
+                  unit; a new point gets mm. `yrcx point set 19 here` does the same."
 )]
 pub struct Teach {
-    /// Point to store it in, 0 to 29999
+    /// Point to write, 0 to 29999
     #[arg(value_name = "POINT", required_unless_present = "flag")]
     point: Option<String>,
     /// The same as a flag
     #[arg(id = "flag", long = "point", value_name = "POINT", conflicts_with = "point", hide = true)]
     flag: Option<String>,
-    /// Unit of the point [default: what it has]
+    /// Unit of the point [default: unchanged]
     #[arg(long = "in", value_name = "UNIT")]
     unit_of_point: Option<Unit>,
 }
 
-/// How far readings of a robot that stands may be apart: 0.1 mm, or 100 pulses.
+/// Maximum difference between two readings of a robot at rest: 0.1 mm, or 100 pulses.
 const NEAR: i32 = 100;
 
 impl Command for Teach {
@@ -56,23 +56,24 @@ impl Command for Teach {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Self::Report, Failure> {
         let Context { link, authority, .. } = context;
         let read = table::Command::PointGet.order().with(Key::Point, self.number()).build()?;
-        let old = there(link, &read, "what the point is").await?;
+        let old = there(link, &read, "current point").await?;
         let unit = self.unit_of_point.or_else(|| old.as_ref().map(unit_of)).unwrap_or(Unit::Mm);
         let order = self.order(link, unit)?;
-        // In a dry run nobody knows the unit of the point.
+        // The unit of the point is unknown in a dry run.
         let other = if self.unit_of_point.is_none() { self.order(link, Unit::Pulse)? } else { self.order(link, unit)? };
         overwrite::give_either(link, &authority, &order, &other).await?;
         let row = if unit == Unit::Mm { table::Command::PositionMm } else { table::Command::PositionPulse };
         let here = link.draft(row)?.build()?;
         if link.is_dry() {
             link.plan(&read, "reads it back");
-            link.plan(&here, "where the robot is, which it is compared with");
+            link.plan(&here, "current position, for the comparison");
             return Err(unknown());
         }
         let name = self.number();
         let unread = |failure| not_read_back(&format!("point {name}"), failure, &format!("yrcx point get {name}"));
         let held = there(link, &read, "").await.map_err(unread)?;
-        let held = held.ok_or_else(|| unread(Failure::new(Kind::Refused, "the controller has no such point")))?;
+        let held =
+            held.ok_or_else(|| unread(Failure::new(Kind::Refused, "the point is not defined on the controller")))?;
         let here = link.ask(&here).await.map_err(unread)?.values;
         let place = position(&here, unit).unwrap_or_default().of_group(group(order.values().int(Key::Robot)));
         let point = |values: &Values| position(values, unit_of(values)).unwrap_or_default();
@@ -96,7 +97,7 @@ impl Teach {
     }
 }
 
-/// The unit that a point is defined in.
+/// Unit of a point.
 pub(super) fn unit_of(point: &Values) -> Unit {
     if point.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse }
 }

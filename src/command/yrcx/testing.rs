@@ -1,4 +1,4 @@
-//! For tests: what a command line would send, and what becomes of it on a controller in virtual time.
+//! Test support: sent words of a command line, and command execution on a scripted controller in virtual time.
 
 use std::collections::VecDeque;
 use std::fmt::Debug;
@@ -28,7 +28,7 @@ use crate::transport::image::ImagePeer;
 /// The examples of the manual.
 const EXAMPLES: &str = include_str!("../../../tests/data/yrcx-examples.json");
 
-/// All of them, as the data file has them.
+/// All examples of the data file.
 pub(super) fn entries() -> Vec<Value> {
     serde_json::from_str(EXAMPLES).unwrap()
 }
@@ -49,7 +49,7 @@ pub(super) fn answer(id: &str) -> Words {
     numbers(corrected(&entry(id), "wo"))
 }
 
-/// The words of an example, misprints set right.
+/// Entry of an example, with its misprints corrected.
 fn corrected<'a>(entry: &'a Value, words: &str) -> &'a Value {
     entry.get(format!("{words}_corrected")).unwrap_or(&entry[words])
 }
@@ -66,7 +66,7 @@ fn numbers(texts: &Value) -> Words {
     words
 }
 
-/// The report of a command line that is answered as in an example of the manual.
+/// Report of a command line, with the answer of an example.
 #[track_caller]
 pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
     let before = undefined(line);
@@ -77,7 +77,7 @@ pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
     outcome.unwrap()
 }
 
-/// How a controller answers what a line reads before it overwrites something: there is nothing yet.
+/// Replies to the reads before an overwrite: nothing is defined.
 pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
     let mut refused = [0; COMMAND_WORDS];
     refused[..3].copy_from_slice(&[0x4000, 2, 904]);
@@ -86,7 +86,7 @@ pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
     vec![Reply::Ends(0, refused); count]
 }
 
-/// The report of a command line that sends the commands of several examples, each answered as there.
+/// Report of a command line that sends several commands, each with the answer of its example.
 #[track_caller]
 pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     let examples: Vec<Value> = ids.iter().map(|id| entry(id)).collect();
@@ -99,45 +99,45 @@ pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     outcome.unwrap()
 }
 
-/// What the parser of the command line objects to.
+/// Error of the command-line parser.
 pub(super) fn objection(words: &[&str]) -> String {
     parsed("sim:", words).expect_err("the parser objects").to_string()
 }
 
-/// The question before the command, without "This will".
+/// Question before the command, without "This will".
 pub(super) fn intent(words: &[&str]) -> String {
     own(words).complete(resolved(DRY, words).unwrap().1.intent(None)).text
 }
 
-/// What the command does at most.
+/// Risk of the command.
 pub(super) fn risk(words: &[&str]) -> Risk {
     resolved(DRY, words).unwrap().1.intent(None).risk
 }
 
-/// The data of a command that takes no robot.
+/// Data of a command that needs no robot.
 pub(super) fn desk(words: &[&str]) -> Value {
     let command = resolved(DRY, words).unwrap().1;
     command.without_robot(&quiet()).expect("no robot is wanted").unwrap().data().unwrap()
 }
 
-/// The words WI0 to WI15 of all commands that `armctl yrcx WORDS…` would send.
+/// Words WI0 to WI15 of all commands that `armctl yrcx WORDS…` would send.
 pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
     Ok(frames(words)?.iter().map(|frame| &frame["wi"]).filter(|words| words.is_array()).map(texts).collect())
 }
 
-/// Those of them that do not only read.
+/// Sent words of the commands that do not only read.
 pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
     let code = |words: &Vec<String>| u16::from_str_radix(words[0].trim_start_matches("0x"), 16).unwrap();
     let is_written = |words: &Vec<String>| Row::from_word(code(words)).unwrap().risk > Risk::Read;
     Ok(words(line)?.into_iter().filter(is_written).collect())
 }
 
-/// All that `armctl yrcx WORDS…` would send.
+/// Frames that `armctl yrcx WORDS…` would send.
 pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
     Ok(testing::frames(&plan(words)?))
 }
 
-/// The report of a dry run.
+/// Report of a dry run.
 fn plan(words: &[&str]) -> Result<Value, Failure> {
     let (robot, command) = resolved(DRY, words)?;
     planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(words)))
@@ -150,24 +150,24 @@ pub(super) fn planned_line(target: &str, line: &str) -> Result<Value, Failure> {
     planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(&words)))
 }
 
-/// A real controller that nothing is sent to.
+/// Target of a real controller for dry runs.
 const DRY: &str = "eip://127.0.0.1";
 
-/// Runs a command line on a scripted controller: its data, and what the controller took.
+/// Runs a command line on a scripted controller. Returns its data and the controller.
 pub(super) fn run_on(scripted: Scripted, line: &[&str]) -> (Result<Value, Failure>, Scripted) {
     let mut bench = Bench::new(scripted);
     let outcome = bench.run(line);
     (outcome, bench.into_peer())
 }
 
-/// The same for a command whose report may be no success: its data, and why it is none.
+/// Runs a command line whose report may be a failure. Returns its data, the failure and the controller.
 pub(super) fn report_on(scripted: Scripted, line: &[&str]) -> (Value, Option<Failure>, Scripted) {
     let mut bench = Bench::new(scripted);
     let (data, failure) = bench.report(line).expect("a report");
     (data, failure, bench.into_peer())
 }
 
-/// A scripted controller and a link to it that last for several command lines, in virtual time.
+/// Scripted controller with a link for several command lines, in virtual time.
 pub(super) struct Bench {
     pub(super) runtime: tokio::runtime::Runtime,
     pub(super) robot: Robot,
@@ -175,7 +175,7 @@ pub(super) struct Bench {
     peer: Shared,
 }
 
-/// The controller is looked at from outside as well.
+/// Controller that the test can also access directly.
 type Shared = std::sync::Arc<std::sync::Mutex<Scripted>>;
 
 #[derive(Debug)]
@@ -195,7 +195,7 @@ impl ImagePeer for Handle {
     }
 }
 
-/// The same behind a fieldbus that carries signals alone.
+/// Controller on a fieldbus that supports only signals.
 #[derive(Debug)]
 struct SignalsAlone(Handle);
 
@@ -222,12 +222,12 @@ impl Bench {
         Self::granted(scripted, Risk::Motion)
     }
 
-    /// A controller whose fieldbus carries signals alone.
+    /// Bench with a fieldbus that supports only signals.
     pub(super) fn signals_alone(scripted: Scripted) -> Self {
         Self::over(scripted, Risk::Motion, |handle| Box::new(SignalsAlone(handle)))
     }
 
-    /// A link that may do so much and no more.
+    /// Bench with a limited granted risk.
     pub(super) fn granted(scripted: Scripted, granted: Risk) -> Self {
         Self::over(scripted, granted, |handle| Box::new(handle))
     }
@@ -244,13 +244,13 @@ impl Bench {
         Self { runtime, robot, link, peer }
     }
 
-    /// Runs `armctl yrcx WORDS…`: the data of its report. A report that is no success is a failure.
+    /// Runs `armctl yrcx WORDS…` and returns the data of its report. An unsuccessful report is a failure.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<Value, Failure> {
         let (data, failure) = self.report(words)?;
         failure.map_or(Ok(data), Err)
     }
 
-    /// The same with the data of a report that is no success.
+    /// Runs a command line, also with the data of an unsuccessful report.
     pub(super) fn report(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link, .. } = self;
@@ -259,12 +259,12 @@ impl Bench {
         Ok((report.data()?, report.failure()))
     }
 
-    /// Lets a command line run for so long, and drops it then, as Ctrl-C does.
+    /// Runs a command line for this time, then drops it, like Ctrl-C.
     pub(super) fn interrupt(&mut self, words: &[&str], after: Duration) {
         assert!(self.cut(words, after), "it still runs");
     }
 
-    /// The same, and whether it still ran.
+    /// Runs a command line for this time, then drops it. Returns whether it was still running.
     pub(super) fn cut(&mut self, words: &[&str], after: Duration) -> bool {
         let (_, command) = resolved("sim:", words).unwrap();
         let Self { runtime, robot, link, .. } = self;
@@ -275,50 +275,50 @@ impl Bench {
         })
     }
 
-    /// What Ctrl-C does to a motion.
+    /// Stops a motion, like Ctrl-C.
     pub(super) fn halt(&mut self) -> Result<String, Failure> {
         self.runtime.block_on(Yrcx::halt(&mut self.link))
     }
 
-    /// Changes the controller from outside, or looks at it.
+    /// Accesses the controller directly.
     pub(super) fn peer<T>(&mut self, look: impl FnOnce(&mut Scripted) -> T) -> T {
         look(&mut self.peer.lock().unwrap())
     }
 
-    /// Ends the link, and returns the controller.
+    /// Closes the link and returns the controller.
     pub(super) fn into_peer(self) -> Scripted {
         self.runtime.block_on(Yrcx::close(self.link, &quiet())).expect("it closes");
         std::sync::Arc::into_inner(self.peer).expect("the link is gone").into_inner().unwrap()
     }
 }
 
-/// What a scripted controller does with a command.
+/// Reaction of a scripted controller to a command.
 #[derive(Debug, Clone)]
 pub(super) enum Reply {
-    /// Shows these words after so many scans with the run status.
+    /// Ends with these words after this number of scans with the run status.
     Ends(u32, Words),
-    /// Shows these words, one a scan and then the last, until the command goes away: continuous output.
+    /// Sends these words, one per scan, then repeats the last until the command is cleared: continuous output.
     Shows(Vec<Words>),
-    /// Runs until the stop input goes off, and ends with these words.
+    /// Runs until the stop input goes off, then ends with these words.
     UntilStop(Words),
-    /// Is gone for so long, so many scans after the command came.
+    /// Loses the link for this time, this number of scans after the command.
     Loses(u32, Duration),
     /// Does nothing.
     Ignores,
 }
 
-/// A controller with scans of 5 ms that does with each command what the next line of its script says, and confirms the
-/// signals that procedures wait for.
+/// Controller with scans of 5 ms. It reacts to each command with the next entry of its script, and confirms the
+/// signals of procedures.
 #[derive(Debug, Default)]
 pub(super) struct Scripted {
     script: VecDeque<Reply>,
-    /// The commands that were taken.
+    /// Commands received.
     pub(super) taken: Vec<Words>,
-    /// The dedicated word of every image that came, without repetition.
+    /// Dedicated word of each received image, without repetition.
     pub(super) bits: Vec<u16>,
-    /// What the master shows; `None` once it is gone.
+    /// Image of the master; `None` after it has disconnected.
     shown: Option<Image>,
-    /// What is shown to the master.
+    /// Image for the master.
     pub(super) image: Image,
     current: Option<(Reply, u32)>,
     gone_until: Option<Duration>,
@@ -440,12 +440,12 @@ pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn A
     }
 }
 
-/// The robot of `--unit`.
+/// Robot number of `--unit`.
 fn unit(words: &[&str]) -> u8 {
     own(words).get().map_or(0, Unit::number)
 }
 
-/// What stands before the command.
+/// Family arguments before the command.
 fn own(words: &[&str]) -> Own {
     match parsed(DRY, words).map(|cli| cli.command) {
         Ok(Top::Family(FamilyWord { typed, .. })) => typed.own,
@@ -453,7 +453,7 @@ fn own(words: &[&str]) -> Own {
     }
 }
 
-/// Where tests write: nowhere.
+/// Screen without output.
 pub(super) fn quiet() -> Screen {
     Screen::new(Format::Json, ColorChoice::Never, true, 0)
 }

@@ -1,8 +1,8 @@
-//! A robot of the family in a live view: what the controller shows by itself. Where this connection has the command
-//! already, as in a session or on the simulator in this process, also what remote commands tell: position, torque, alarm.
+//! Live view of a robot: the signals. If this connection already commands the controller, as in a session or on a
+//! simulator in this process, also position, torque and alarm from remote commands.
 //!
-//! The remote commands of a session are for all its clients, one at a time. So a view gives only one of them in a while,
-//! and remembers what the others told.
+//! All clients of a session share its remote commands, one at a time. So a view sends one of them at intervals and
+//! remembers the results.
 
 use std::time::Duration;
 
@@ -29,39 +29,39 @@ use crate::output::view::Tone;
 use crate::settings::Robot;
 use crate::settings::target::Place;
 
-/// An poller on one controller.
+/// Poller for one controller.
 #[derive(Debug)]
 pub struct Poller {
     link: Link,
     told: Told,
-    /// What is asked next in a session, and when something was asked there.
+    /// Index of the next remote command in a session, and time of the last one.
     next: usize,
     asked: Option<Instant>,
 }
 
-/// What remote commands told.
+/// Results of remote commands.
 #[derive(Debug, Default)]
 struct Told {
-    /// Numbers of the axes that there are, from 1.
+    /// Numbers of the existing axes, starting with 1.
     axes: Option<Vec<usize>>,
     position_mm: Option<[f64; 4]>,
     torque_percent: Option<[Option<i32>; 4]>,
     alarm: Option<Alarm>,
 }
 
-/// Least time between two looks by messages: boards answer them when they have nothing better to do.
+/// Minimum interval of reads with messages: boards answer them with low priority.
 const LOOKS: Duration = Duration::from_millis(100);
-/// Least time between two remote commands in a session.
+/// Minimum interval of remote commands in a session.
 const TURNS: Duration = Duration::from_millis(500);
 
-/// The first general-purpose signals, SI(20) and SO(20), and so many groups of eight.
+/// First general-purpose signals, SI(20) and SO(20), and number of groups of eight.
 const FIRST: u16 = 20;
 const GROUPS: u16 = 4;
 
 impl declared::Poller for Poller {
     type Family = Yrcx;
 
-    /// Opens it; nothing but reads can leave, and no connection is opened that the controller would miss.
+    /// Opens the poller. It only sends reads, and opens no connection whose end affects the controller.
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         let mut robot = robot.clone();
         if let Place::Bus(bus) = &mut robot.target.value.place {
@@ -96,7 +96,7 @@ impl declared::Poller for Poller {
 }
 
 impl Poller {
-    /// Gives the remote commands that are due.
+    /// Sends the remote commands that are due.
     async fn ask(&mut self, detail: Detail, image: &Image) -> Result<(), Failure> {
         let questions = self.questions(detail, output::ALARM.is_on(image));
         if !self.link.is_shared() {
@@ -125,15 +125,15 @@ impl Poller {
         wanted.into_iter().filter(|(_, is_wanted)| *is_wanted).map(|(command, _)| command).collect()
     }
 
-    /// Gives a remote command that only reads, and remembers what it tells.
+    /// Sends a read command and stores the result.
     async fn put(&mut self, command: Command) -> Result<(), Failure> {
         let order: Order = match command {
             Command::AlarmHistory => latest(&self.link)?,
-            // No axis named: all of them.
+            // No axis selects all axes.
             Command::TorqueOfMax => self.link.draft(command)?.with(Key::Axes, 0).build()?,
             _ => self.link.draft(command)?.build()?,
         };
-        // A refusal is no answer here: a robot that does not know its origin refuses to tell its position.
+        // A refusal is not an error here: a robot with unknown origin refuses to report its position.
         let done = self.link.try_ask(&order).await?.ok();
         let values = done.as_ref().map(|done| &done.values);
         match command {

@@ -1,4 +1,4 @@
-//! Images in the record of the traffic: as text when they change, as packets whenever they pass.
+//! Trace of images: as text when they change, as packets whenever they are transferred.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -21,7 +21,7 @@ use crate::output::Screen;
 use crate::transport::image::tap::{Passed, Tap};
 use crate::transport::tap::Direction;
 
-/// What the images of one link say, as text. Where there is no network, the images themselves are recorded as well.
+/// Text trace of the images of one link. Without a network, the images themselves are recorded as well.
 #[derive(Debug)]
 pub struct Trace {
     text: trace::Trace,
@@ -30,11 +30,11 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// As flags want it.
+    /// Opens the trace that the options request.
     pub fn open(access: &Access, screen: &Screen, is_network: bool) -> Result<Self, Failure> {
         let to_file = access.trace.as_deref().is_some_and(|path| path != Path::new("-"));
         let text = if is_network && to_file {
-            // The packets are the record: see `Recorder`.
+            // The packet recorder writes the file: see `Recorder`.
             trace::Trace::of_lines(&Access { trace: None, ..access.clone() }, screen)?
         } else {
             trace::Trace::of_lines(access, screen)?
@@ -42,26 +42,26 @@ impl Trace {
         Ok(Self { text, sent: None, received: None })
     }
 
-    /// An image was shown to the controller.
+    /// Records an image to the controller.
     pub fn sent(&mut self, image: &Image) {
         let before = self.sent.replace(*image);
         self.image(Direction::Sent, Side::Input, before.as_ref(), image);
     }
 
-    /// The controller showed an image.
+    /// Records an image from the controller.
     pub fn received(&mut self, image: &Image) {
         let before = self.received.replace(*image);
         self.image(Direction::Received, Side::Output, before.as_ref(), image);
     }
 
-    /// A message went to the network board, or came from it.
+    /// Records a message to or from the network board.
     pub fn message(&mut self, direction: Direction, bytes: &[u8], about: &str) {
         if self.text.level() > 0 {
             self.text.line(direction, &format!("{}  # {about}", hex(bytes)));
         }
     }
 
-    /// Tells whether the record is whole.
+    /// Closes the trace and reports whether it is complete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.text.finish()
     }
@@ -76,17 +76,17 @@ impl Trace {
     }
 }
 
-/// The packets that passed before a link was open, for `-vvv`: where it did not open, they tell why.
+/// Packets before a link is open, for `-vvv`: if it does not open, they show the reason.
 #[derive(Debug)]
 pub struct Opening {
     passed: Arc<Mutex<VecDeque<String>>>,
 }
 
-/// The last packets before a failure that are shown.
+/// Maximum number of packets shown after a failure.
 const MOST_SHOWN: usize = 64;
 
 impl Opening {
-    /// Keeps what passes the tap, if bytes are wanted.
+    /// Records the packets of the tap, if `-vvv` is set.
     pub fn watch(screen: &Screen) -> Option<(Self, Tap)> {
         /// `-vvv`.
         const BYTES: u8 = 3;
@@ -111,7 +111,7 @@ impl Opening {
         Some((Self { passed }, tap))
     }
 
-    /// Shows what passed until the link did not open.
+    /// Prints the packets after a failed open.
     pub fn show(&self, screen: &Screen) {
         let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner);
         if passed.is_empty() {
@@ -121,21 +121,21 @@ impl Opening {
     }
 }
 
-/// Packets most that wait to be written: some minutes of one connection.
+/// Maximum number of packets that wait for the disk: some minutes of one connection.
 const MOST_WAITING: usize = 65_536;
 
-/// Writes packets to the file of `--trace`, on a thread of its own: those that move images must not wait for a disk.
+/// Writer for the packets of `--trace`, in its own thread: the threads that transfer images must not wait for a disk.
 #[derive(Debug)]
 pub struct Recorder {
     writer: JoinHandle<Result<(), Failure>>,
-    /// `None` says that there is no more.
+    /// `None` is the end of the stream.
     packets: SyncSender<Option<(Duration, Passed)>>,
-    /// Packets that there was no room for.
+    /// Number of packets dropped because the queue was full.
     lost: Arc<AtomicU64>,
 }
 
 impl Recorder {
-    /// Begins to record what passes the tap, if that is wanted; `link_type` is the kind of packets, as in a capture file.
+    /// Starts the recording, if requested; `link_type` is the link type of a capture file.
     pub fn start(access: &Access, screen: &Screen, link_type: u16) -> Result<Option<(Self, Tap)>, Failure> {
         if access.trace.as_deref().is_none_or(|path| path == Path::new("-")) {
             return Ok(None);
@@ -157,7 +157,7 @@ impl Recorder {
         let (counted, sender) = (Arc::clone(&lost), packets.clone());
         let tap = Tap::new(move |passed| {
             let time = trace::now();
-            // A disk that is minutes behind loses packets, not the robot.
+            // A slow disk loses packets and does not delay the robot.
             if sender.try_send(Some((time, passed))).is_err() {
                 counted.fetch_add(1, Ordering::Relaxed);
             }
@@ -165,11 +165,11 @@ impl Recorder {
         Ok(Some((Self { writer, packets, lost }, tap)))
     }
 
-    /// Waits until all is written, and tells whether the record is whole.
+    /// Waits until all packets are written, and reports whether the trace is complete.
     pub fn finish(self) -> Result<(), Failure> {
-        // A writer that is gone says so when it is joined.
+        // If the writer has ended, its error appears when it is joined.
         let _ = self.packets.send(None);
-        self.writer.join().unwrap_or_else(|_| Err(trace::not_whole("its writer broke down")))?;
+        self.writer.join().unwrap_or_else(|_| Err(trace::not_whole("the writer failed")))?;
         match self.lost.load(Ordering::Relaxed) {
             0 => Ok(()),
             lost => Err(trace::not_whole(&format!("the disk was too slow for {lost} packets"))),

@@ -1,21 +1,22 @@
-//! `--unit`: which robot of the controller a command is for.
+//! `--unit`: robot of the controller for a command.
 
 use clap::Args;
 
 use crate::command::OwnArguments;
 use crate::gate::Intent;
 
-/// Which robot of the controller a command is for.
+/// Robot selection.
 #[derive(Debug, Args)]
 pub struct Unit {
-    /// Robot of the controller, 1 to 4; 0 is the first, or all of them where a command can be for all
-    #[arg(long, global = true, value_name = "N", default_value_t = 0, hide_default_value = true, help_heading = "Which robot",
+    /// Robot of the controller, 1 to 4; 0 is the first robot, or all robots if the command supports it
+    #[arg(long, global = true, value_name = "N", default_value_t = 0, hide_default_value = true, help_heading = "Which \
+        robot",
         value_parser = clap::value_parser!(u8).range(0..=4))]
     unit: u8,
 }
 
 impl Unit {
-    /// Its number; 0 where none is named.
+    /// Robot number; 0 if none is selected.
     pub fn number(&self) -> u8 {
         self.unit
     }

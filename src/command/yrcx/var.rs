@@ -25,7 +25,7 @@ use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
 
 commands! {
-    /// What can be done with static variables.
+    /// Commands for static variables.
     pub enum Var {
         /// Read variables: SGI1, SGI0..SGI31, SGR5
         Get(Get<Numbered<Variables>>),
@@ -61,7 +61,7 @@ impl Kind for Variables {
     const WORDS: Words = Words {
         nouns: ["variable", "variables"],
         placeholder: "VARIABLE",
-        range: "SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones; SGI0..SGI5 is a range",
+        range: "SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real numbers; SGI0..SGI5 is a range",
         reading: None,
         writing: None,
     };
@@ -81,22 +81,22 @@ impl Kind for Variables {
     }
 }
 
-/// What a variable holds; nothing where that is no number.
+/// Value of a variable; none if it is not a number.
 fn number(value: Option<&Value>) -> Option<Number> {
     match value {
         Some(Value::Int(number)) => Some(Number::from(*number)),
-        // By its digits: as a double it would get more than it has.
+        // Converted by its decimal digits: a conversion to double would add digits.
         Some(Value::Real(number)) => real(*number),
         Some(Value::Text(_)) | None => None,
     }
 }
 
-/// What a variable holds, for programs; null where that is no number.
+/// Value of a variable as JSON; null if it is not a number.
 pub fn held(value: Option<&Value>) -> Json {
     number(value).map_or(Json::Null, Json::Number)
 }
 
-/// A single-precision number with its own digits.
+/// Single-precision number with its own digits.
 fn real(number: f32) -> Option<Number> {
     match serde_json::from_str(&number.to_string()) {
         Ok(Json::Number(number)) => Some(number),
@@ -104,12 +104,12 @@ fn real(number: f32) -> Option<Number> {
     }
 }
 
-/// What stands on the right side.
+/// Operand of a change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Operand {
-    /// As typed.
+    /// Number as typed.
     Number(String),
-    /// The number of a variable.
+    /// Number of a variable.
     Variable(i32),
 }
 
@@ -130,7 +130,7 @@ fn operand(text: &str) -> Result<Operand, String> {
 
 fn divisor(text: &str) -> Result<Operand, String> {
     match operand(text)? {
-        Operand::Number(text) if text.parse() == Ok(0.0) => Err("nothing can be divided by 0".to_owned()),
+        Operand::Number(text) if text.parse() == Ok(0.0) => Err("division by 0 is not possible".to_owned()),
         operand => Ok(operand),
     }
 }
@@ -147,13 +147,13 @@ impl Operand {
         }
     }
 
-    /// What was assigned, or computed from what was there.
+    /// Report of an assignment or a calculation.
     fn report(&self, variable: String, operation: &'static str, words: String, done: &link::Done) -> Changed {
         let operand = match self {
             Self::Number(text) => orders::number(text),
             Self::Variable(number) => name(*number).into(),
         };
-        // What a controller computes is not read back.
+        // The result of a calculation is not read back.
         let new = Some(operand.clone()).filter(|_| operation == "set" && matches!(self, Self::Number(_)));
         let item = Item::with("variable", variable, Operation { operation, operand }, Ok(new));
         WrittenItems::said(words, vec![Written::new(item, done.old.value(), true)])
@@ -167,10 +167,10 @@ impl Operand {
     }
 }
 
-/// A variable that was changed.
+/// Report of a changed variable.
 type Changed = WrittenItems<Json, Operation>;
 
-/// How a variable was changed.
+/// Operation that changed a variable.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Operation {
     /// `set`, `add`, `sub`, `mul`, `div`.
@@ -179,17 +179,17 @@ pub struct Operation {
     operand: Json,
 }
 
-/// Declares the commands that change a variable: by a number, or by a variable.
+/// Declares the commands that change a variable with a number or another variable.
 macro_rules! changes {
     ($($(#[$meta:meta])* $name:ident $id:literal $by_number:ident $by_variable:ident $operand:ident $does:literal $told:literal;)*) => {
         $(
             $(#[$meta])*
             #[derive(Debug, Args)]
             pub struct $name {
-                /// Variable that changes: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones
+                /// Variable to change: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real numbers
                 #[arg(value_name = "VARIABLE", value_parser = variable, add = complete::VARIABLE)]
                 variable: i32,
-                /// A number, or a variable such as SGI2
+                /// Number, or a variable such as SGI2
                 #[arg(value_name = "VALUE", allow_negative_numbers = true, value_parser = $operand, add = complete::VARIABLE)]
                 operand: Operand,
             }
@@ -281,8 +281,8 @@ mod tests {
         assert!(words(&["var", "set", "SGR1", "inf"]).is_err());
         for (line, part) in [
             (["var", "set", "SGI32", "1"], "SGI32"),
-            (["var", "div", "SGI1", "0"], "divided by 0"),
-            (["var", "div", "SGR1", "-0.0"], "divided by 0"),
+            (["var", "div", "SGI1", "0"], "division by 0"),
+            (["var", "div", "SGR1", "-0.0"], "division by 0"),
             (["var", "add", "SGI1", "SGX1"], "SGX1"),
         ] {
             assert!(objection(&line).contains(part), "{line:?}");

@@ -27,7 +27,7 @@ pub(crate) fn expected(word: &str, what: &str) -> String {
 }
 
 pub(crate) fn unknown(line: &str) -> String {
-    format!("no such line: '{}'", line.trim())
+    format!("unknown command: '{}'", line.trim())
 }
 
 /// Help line: input, and its effect.
@@ -38,8 +38,8 @@ pub fn help_line(typed: &str, does: &str) -> String {
 /// Help text: the lines of a family, then the common ones.
 pub(crate) fn help(lines: &[(&str, &str)]) -> String {
     let common = [
-        ("robot", "show what the controller is in; `state` is the same"),
-        ("help", "show these lines"),
+        ("robot", "show the state of the controller; also `state`"),
+        ("help", "show this list"),
         ("quit", "end the simulator"),
     ];
     let lines = lines.iter().chain(&common).map(|(typed, does)| help_line(typed, does));

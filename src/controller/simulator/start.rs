@@ -83,13 +83,13 @@ impl Source<'_> {
     pub(crate) fn share(&self, name: &str, entry: &Spanned<f64>) -> Result<f64, String> {
         self.read(entry, |share| {
             let share = Some(*share).filter(|share| (0.0..=1.0).contains(share));
-            share.ok_or_else(|| format!("{name} is a share from 0 to 1"))
+            share.ok_or_else(|| format!("{name} must be from 0 to 1"))
         })
     }
 
     /// Reads a date and time in a `strptime` format.
     pub(crate) fn time(&self, entry: &Spanned<String>, form: &str, example: &str) -> Result<DateTime, String> {
-        let wrong = |_| format!("a time looks like \"{example}\"");
+        let wrong = |_| format!("write a time as in \"{example}\"");
         self.read(entry, |text| DateTime::strptime(form, text).map_err(wrong))
     }
 

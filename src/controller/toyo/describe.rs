@@ -26,21 +26,21 @@ pub struct Description {
     pub problem: Option<String>,
 }
 
-/// A piece of a line.
+/// A part of a line.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[schemars(rename = "FieldRow")]
 pub struct FieldNote {
-    /// Of its first character, from 1.
+    /// Column of its first character, from 1.
     pub column: usize,
-    /// Characters.
+    /// Number of characters.
     pub width: usize,
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
-    /// As it stands there.
+    /// Its text in the line.
     pub raw: String,
-    /// What it says.
+    /// Its meaning.
     pub meaning: String,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
 }
 
@@ -124,8 +124,8 @@ fn citation(row: &'static Row) -> String {
 /// Meaning of `@OK` and `@NG`.
 fn verdict(text: &str) -> Option<(&'static str, &'static str)> {
     match text.trim_end_matches(' ') {
-        "@OK" => Some(("done", "accepted; of what takes time, begun")),
-        "@NG" => Some(("refused", "it cannot, now or at all; there is no code")),
+        "@OK" => Some(("done", "accepted; a longer action has started")),
+        "@NG" => Some(("refused", "refused, now or always; the controller sends no code")),
         _ => None,
     }
 }
@@ -170,7 +170,7 @@ fn explained<'t>(text: &'t str, row: &'static Row, sender: Sender) -> Notes<'t> 
         || {
             let mut notes = Notes::new(text);
             notes.command(row);
-            notes.problem = Some(format!("{} is answered by @OK or @NG", row.word));
+            notes.problem = Some(format!("the answer to {} must be @OK or @NG", row.word));
             notes
         },
         |(_, notes)| notes,
@@ -214,7 +214,7 @@ impl<'t> Notes<'t> {
 
     fn command(&mut self, row: &'static Row) -> usize {
         let start = usize::from(self.text.starts_with('@'));
-        self.add(start..start + row.word.len(), "command", row.about.to_owned(), "what to do");
+        self.add(start..start + row.word.len(), "command", row.about.to_owned(), "the command");
         start
     }
 
@@ -249,7 +249,7 @@ impl<'t> Notes<'t> {
         let start = bytes.start;
         let body = self.text.get(bytes).unwrap_or_default();
         let word = body.split(' ').next().unwrap_or_default();
-        let unknown = |what: &str, name: &str| (start, format!("there is no {what} '{}'", name.escape_debug()));
+        let unknown = |what: &str, name: &str| (start, format!("unknown {what} '{}'", name.escape_debug()));
         let layout = match of.command {
             Command::Wpar | Command::Rpar => {
                 let parameter = Parameter::from_text(body).ok_or_else(|| unknown("parameter", word))?;
@@ -259,7 +259,7 @@ impl<'t> Notes<'t> {
             }
             Command::Wstx | Command::Rstx => {
                 let instruction = Instruction::named(word).ok_or_else(|| unknown("instruction", word))?;
-                self.add(start..start + word.len(), "instruction", instruction.about.to_owned(), "what the step does");
+                self.add(start..start + word.len(), "instruction", instruction.about.to_owned(), "action of the step");
                 instruction.layout
             }
             _ => {
@@ -319,7 +319,7 @@ fn page_words(page: Option<u8>, byte: u8) -> String {
         words.push(format!("{} mode", status.program_kind().name().replace('_', " ")));
         words.extend(status.run_mode().map(|mode| format!("{} mode", mode.name())));
     }
-    if words.is_empty() { "nothing of what its bits say".to_owned() } else { words.join(", ") }
+    if words.is_empty() { "no bit is set".to_owned() } else { words.join(", ") }
 }
 
 #[cfg(test)]
@@ -414,15 +414,15 @@ mod tests {
 
     #[test]
     fn damage_is_told_with_its_place() {
-        assert_eq!(problem("STAS SNO=0"), "a block begins with @");
-        assert_eq!(problem("@STOS SNO=0"), "there is no command 'STOS'");
+        assert_eq!(problem("STAS SNO=0"), "a block must begin with @");
+        assert_eq!(problem("@STOS SNO=0"), "unknown command 'STOS'");
         assert_eq!(problem("@STAS SNO=x"), "page: 'x' is not a number, 0 to 4 at column 11");
         assert_eq!(problem("@STAS SNO=7"), "page: 7 is out of range (a number, 0 to 4) at column 11");
         assert_eq!(problem("@WPAR P08 L=001.5 H=x"), "high: 'x' is not a number, 0.1 to 999.9 mm/s at column 21");
-        assert_eq!(problem("@WPAR P99 AX1=1"), "there is no parameter 'P99'");
-        assert_eq!(problem("@WSTX 0001 MOVE a"), "there is no instruction 'MOVE'");
+        assert_eq!(problem("@WPAR P99 AX1=1"), "unknown parameter 'P99'");
+        assert_eq!(problem("@WSTX 0001 MOVE a"), "unknown instruction 'MOVE'");
         assert_eq!(problem("@WPLT 01 SNO=20 TAG=000"), "record: 20 is out of range (a number, 1 to 16) at column 14");
-        assert_eq!(problem("@HOME now"), "' now' is too much at column 6");
+        assert_eq!(problem("@HOME now"), "unexpected text ' now' at column 6");
         let cut = explain("@MOUT SNO=0 GN=1 SY01=00000000 PN01=000");
         assert_eq!(
             cut.fields.iter().map(|field| field.name).collect::<Vec<_>>()[..4],
@@ -438,13 +438,13 @@ mod tests {
     fn an_answer_to_something_else_shows() {
         let request = Request::parse("@MCNT CN=01").unwrap();
         let other = describe("@MCNT CN02=0000", Sender::Controller, Some(&request));
-        assert_eq!(other.problem.as_deref(), Some("it answers something else: counter is 02, not 01"));
+        assert_eq!(other.problem.as_deref(), Some("it answers another request: counter is 02, not 01"));
         assert!(describe("@OK", Sender::Controller, Some(&request)).problem.is_some());
         assert_eq!(describe("@NG", Sender::Controller, Some(&request)).title, "answer to MCNT: refused");
         assert_eq!(describe("@NG", Sender::Controller, Some(&request)).problem, None);
         assert_eq!(
             describe("@HOME", Sender::Controller, None).problem.as_deref(),
-            Some("HOME is answered by @OK or @NG")
+            Some("the answer to HOME must be @OK or @NG")
         );
     }
 

@@ -76,11 +76,12 @@ pub fn all() -> impl Iterator<Item = Explanation> {
     (1..=u8::MAX).map(explain).filter(|explanation| explanation.known)
 }
 
-const LIMIT_CAUSE: &str = "the place that was asked for lies outside the soft limits";
+const LIMIT_CAUSE: &str = "the target position is outside the soft limits";
 const LIMIT_REMEDY: &str =
     "correct the coordinates or the offset; `toyo param get soft-limit-plus soft-limit-minus` shows the limits";
 const DRIVE: &str = "cancel the error and try at low speed; if it comes again, check driver, motor and cables";
-const MEMORY: &str = "the stored data are damaged: restore them from a backup; if it comes again, the memory or its battery is at its end";
+const MEMORY: &str = "the stored data are damaged: restore them from a backup. If the error comes again, replace the \
+                      battery or the memory";
 const PROGRAM: &str = "`toyo program get` and `toyo program check` show the step; correct the program";
 
 type Text = &'static str;
@@ -88,22 +89,27 @@ type Text = &'static str;
 /// Axis errors by their low digit; the high digit is the axis plus 1.
 const AXIS: [(u8, Text, Text, Text); 14] = [
     (0x0, "communication error", "the controller lost contact with the driver of the axis", DRIVE),
-    (0x1, "overspeed", "the axis ran faster than it may", "lower the speed or the gains; check the encoder"),
+    (0x1, "overspeed", "the axis exceeded its speed limit", "lower the speed or the gains; check the encoder"),
     (0x2, "overcurrent", "the motor drew too much current", DRIVE),
     (0x3, "overload", "the load was too heavy for too long", "free the axis; lower load, speed or acceleration"),
     (
         0x4,
         "overflow",
-        "the axis lags too far behind its orders",
+        "the following error of the axis is too large",
         "free the axis; lower speed or acceleration, check the brake",
     ),
     (
         0x6,
         "encoder error",
-        "the encoder gives no sensible signal",
+        "the encoder gives no valid signal",
         "check the encoder cable; then switch the power off and on",
     ),
-    (0x7, "return to origin failed", "the origin was not found", "check origin sensor, its logic and the way to it"),
+    (
+        0x7,
+        "return to origin failed",
+        "the origin was not found",
+        "check the origin sensor, its logic and the path to it",
+    ),
     (0x8, "beyond the plus soft limit while moving", "the axis was about to leave its range", LIMIT_REMEDY),
     (0x9, "beyond the minus soft limit while moving", "the axis was about to leave its range", LIMIT_REMEDY),
     (
@@ -125,7 +131,7 @@ const AXIS: [(u8, Text, Text, Text); 14] = [
         "the encoder could not be switched over",
         "switch the power off and on; check the encoder cable",
     ),
-    (0xF, "driver error", "the driver reports a fault of its own", DRIVE),
+    (0xF, "driver error", "the driver reports a fault", DRIVE),
 ];
 
 /// Errors without an axis.
@@ -140,27 +146,27 @@ const OTHERS: [(u8, Text, Text, Text); 40] = [
     (
         0x60,
         "continuous run failed",
-        "the program could not go on where it stopped",
+        "the program could not continue from its stop position",
         "start it from a step: `toyo run sequential STEP`",
     ),
-    (0x61, "return to origin not done", "the axes do not know where they are", "`toyo home` first"),
+    (0x61, "return to origin not done", "the position of the axes is unknown", "run `toyo home` first"),
     (0x62, "cannot be executed", "mode or state do not allow it", "`toyo status` shows mode, servo and errors"),
     (
         0x63,
         "task cannot be started",
-        "the task runs already or has no steps",
+        "the task already runs or has no steps",
         "check the program and parameter E22 (task-steps)",
     ),
     (
         0x64,
         "synchronized axes: origin not searched",
-        "synchronized axes do not know where they are",
-        "`toyo home --sync AXIS` first",
+        "the position of the synchronized axes is unknown",
+        "run `toyo home --sync AXIS` first",
     ),
     (
         0x65,
         "synchronized axes: too far apart",
-        "the axes do not keep together",
+        "the distance between the axes is too large",
         "check the mechanics and parameter P18 (sync-error)",
     ),
     (
@@ -182,18 +188,18 @@ const OTHERS: [(u8, Text, Text, Text); 40] = [
     (
         0x99,
         "identification of a slave",
-        "a slave station is not what was set up",
+        "a slave station does not match the setup",
         "check the I/O stations and their cables",
     ),
-    (0xA0, "instruction not possible", "this controller or this task cannot do the instruction", PROGRAM),
-    (0xA1, "tag undefined", "a jump or call leads to a tag that is not there", PROGRAM),
-    (0xA2, "tag defined twice", "the same tag is there more than once", PROGRAM),
+    (0xA0, "instruction not possible", "this controller or this task does not support the instruction", PROGRAM),
+    (0xA1, "tag undefined", "a jump or call uses a tag that does not exist", PROGRAM),
+    (0xA2, "tag defined twice", "the same tag appears more than once", PROGRAM),
     (0xA3, "stack overflow", "calls are nested too deep", PROGRAM),
     (0xA4, "stack underflow", "a return without a call", PROGRAM),
     (0xA5, "too few points for an arc", "an arc needs three points", PROGRAM),
     (0xA6, "radius of an arc too large", "the three points lie almost on a line", PROGRAM),
-    (0xA7, "calculation error", "a value left its range", PROGRAM),
-    (0xA8, "parameter error", "a parameter has no sensible value", "`toyo param list` shows them"),
+    (0xA7, "calculation error", "a value is out of range", PROGRAM),
+    (0xA8, "parameter error", "a parameter has an invalid value", "`toyo param list` shows them"),
     (0xB0, "step number", "there is no such step", PROGRAM),
     (0xB1, "tag number", "there is no such tag number", PROGRAM),
     (0xB2, "palletizing program number", "there is no such palletizing program", PROGRAM),
@@ -204,7 +210,7 @@ const OTHERS: [(u8, Text, Text, Text); 40] = [
     (0xB7, "group number", "there is no such MVM group", PROGRAM),
     (0xB9, "easy program number", "there is no such easy program", PROGRAM),
     (0xBA, "task number", "there is no such task", PROGRAM),
-    (0xE0, "other error", "the controller does not say more", "read the teach pendant"),
+    (0xE0, "other error", "the controller reports no details", "read the teach pendant"),
 ];
 
 #[cfg(test)]

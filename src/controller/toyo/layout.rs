@@ -45,13 +45,13 @@ pub enum LayoutProblem {
     #[error(transparent)]
     Field(#[from] FieldError),
     /// Too much text.
-    #[error("'{}' is too much", found.escape_debug())]
+    #[error("unexpected text '{}'", found.escape_debug())]
     Rest {
         /// The rest.
         found: String,
     },
     /// A value that was kept as received; it is never sent.
-    #[error("'{}' is not in the manual, and is not written", found.escape_debug())]
+    #[error("'{}' is not in the manual; armctl does not write it", found.escape_debug())]
     Unlisted {
         /// The received text.
         found: String,
@@ -69,7 +69,7 @@ pub enum LayoutProblem {
 /// Layout of received content that is not in the manual, such as an instruction of a newer version. It is kept as
 /// received.
 pub const UNLISTED: Layout =
-    Layout::new("{}", &[Field::new("unlisted", Form::Text, "what the manual does not list, as it came")]);
+    Layout::new("{}", &[Field::new("unlisted", Form::Text, "a value that is not in the manual, as received")]);
 
 impl Layout {
     /// Words only.
@@ -321,7 +321,7 @@ mod tests {
         assert!(TWO.parse_kept("MCNT CN01=00012").unwrap().emit().is_err());
         let foreign = Record::unlisted("FOO X=1 ");
         assert_eq!((foreign.written().as_str(), foreign.is_listed()), ("FOO X=1", false));
-        assert_eq!(foreign.emit().unwrap_err().to_string(), "'FOO X=1' is not in the manual, and is not written");
+        assert_eq!(foreign.emit().unwrap_err().to_string(), "'FOO X=1' is not in the manual; armctl does not write it");
     }
 
     #[test]
@@ -329,7 +329,7 @@ mod tests {
         let error = |text| TWO.parse(text).unwrap_err().to_string();
         assert_eq!(error("MCNT XN01=0000"), "'MCNT CN' is expected at column 6");
         assert_eq!(error("MCNT CN01=x"), "count: 'x' is not a number, 0 to 9999 at column 11");
-        assert_eq!(error("MCNT CN01=0000 R"), "' R' is too much at column 15");
+        assert_eq!(error("MCNT CN01=0000 R"), "unexpected text ' R' at column 15");
         assert_eq!(error(""), "'MCNT CN' is expected at column 1");
     }
 }

@@ -33,10 +33,10 @@ pub enum Answer {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum BlockError {
     /// A block begins with `@`.
-    #[error("a block begins with @")]
+    #[error("a block must begin with @")]
     Start,
     /// The block is too long.
-    #[error("{len} characters; a block has {MOST} at most, its line end included")]
+    #[error("{len} characters; a block has at most {MOST}, with its line end")]
     Long {
         /// Characters, without line end.
         len: usize,
@@ -50,7 +50,7 @@ pub enum BlockError {
         char: char,
     },
     /// Unknown command.
-    #[error("there is no command '{}'", word.escape_debug())]
+    #[error("unknown command '{}'", word.escape_debug())]
     Command {
         /// The word after `@`.
         word: String,
@@ -62,7 +62,7 @@ pub enum BlockError {
     #[error("{0}")]
     Values(#[from] LayoutProblem),
     /// Unknown parameter, instruction or record.
-    #[error("there is no {what} '{}'", name.escape_debug())]
+    #[error("unknown {what} '{}'", name.escape_debug())]
     Unknown {
         /// `parameter`, `instruction` or `record`.
         what: &'static str,
@@ -70,7 +70,7 @@ pub enum BlockError {
         name: String,
     },
     /// An answer to another request.
-    #[error("it answers something else: {field} is {found}, not {asked}")]
+    #[error("it answers another request: {field} is {found}, not {asked}")]
     Other {
         /// The field that differs.
         field: &'static str,
@@ -492,8 +492,8 @@ mod tests {
     #[test]
     fn what_is_no_block_says_why() {
         let error = |text: &str| Request::parse(text).unwrap_err().to_string();
-        assert_eq!(error("STAS"), "a block begins with @");
-        assert_eq!(error("@XXXX"), "there is no command 'XXXX'");
+        assert_eq!(error("STAS"), "a block must begin with @");
+        assert_eq!(error("@XXXX"), "unknown command 'XXXX'");
         assert_eq!(error("@STAS SNO=x"), "page: 'x' is not a number, 0 to 4 at column 11");
         assert_eq!(error("@STAS\tSNO=0"), "character \\t at column 6 is not allowed");
         assert!(error(&format!("@{}", "A".repeat(130))).starts_with("131 characters"));

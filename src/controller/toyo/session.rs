@@ -141,7 +141,7 @@ const LATE: Duration = Duration::from_millis(500);
 /// Program starts: a program may end within the wait for a quiet line, so the status is read instead.
 const RUNS: [Command; 4] = [Command::Spst, Command::Ppst, Command::Sesy, Command::Extp];
 /// Reason why an `@OK` is not valid.
-const BOTH_CAME: &str = "both @OK and @NG came: one of them answers another client of this line";
+const BOTH_CAME: &str = "received both @OK and @NG: one of them is for another client of this line";
 
 impl LineSession {
     /// A line without pending answers.

@@ -26,20 +26,20 @@ pub struct Description {
     pub problem: Option<String>,
 }
 
-/// A piece of a frame.
+/// A part of a frame.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[schemars(rename = "FieldRow")]
 pub struct FieldNote {
-    /// From the start of the frame.
+    /// Offset from the start of the frame.
     pub offset: usize,
-    /// Bytes.
+    /// Number of bytes.
     pub size: usize,
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// The bytes as they travel.
+    /// Its bytes in the frame.
     #[serde(rename = "raw_hex")]
     pub raw: String,
-    /// What they say.
+    /// Its meaning.
     pub meaning: String,
 }
 
@@ -234,7 +234,7 @@ impl<'a> Notes<'a> {
         });
         self.take(1, "ACK", |bytes| match bytes {
             [0] => "request".to_owned(),
-            [1] => "anything but a request".to_owned(),
+            [1] => "any frame except a request".to_owned(),
             _ => "not defined".to_owned(),
         });
         self.take(1, "request ID", |bytes| little(bytes).to_string());
@@ -251,7 +251,7 @@ impl<'a> Notes<'a> {
             for (size, name) in [(2, "command"), (2, "instance"), (1, "attribute"), (1, "service")] {
                 self.take(size, name, |bytes| little(bytes).to_string());
             }
-            return self.finish("frame of a client, cut short".to_owned(), None);
+            return self.finish("truncated frame of a client".to_owned(), None);
         };
         let ack = self.frame.get(ACK_AT) == Some(&1);
         let row = request.row();
@@ -328,7 +328,7 @@ impl<'a> Notes<'a> {
                 if reads {
                     self.payload(row, request);
                 }
-                self.take_rest("data", |_| "more than the command answers".to_owned());
+                self.take_rest("data", |_| "more data than the command has".to_owned());
             }
             (Some(_), _) => self.take_rest("file data", |bytes| format!("{} bytes", bytes.len())),
             // A file server answer identifies its content by the service.

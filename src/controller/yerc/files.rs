@@ -64,7 +64,7 @@ impl FromStr for FileType {
         Self::ALL
             .into_iter()
             .find(|kind| kind.extension().eq_ignore_ascii_case(text))
-            .ok_or_else(|| format!("unknown file type '{text}'; there are jbi, dat, cnd, prm, sys and lst"))
+            .ok_or_else(|| format!("unknown file type '{text}'; known: jbi, dat, cnd, prm, sys and lst"))
     }
 }
 
@@ -125,7 +125,7 @@ pub enum FileNameError {
         len: usize,
     },
     /// A filter that is not in the manual.
-    #[error("the filter '{filter}' is unknown; there are nothing, *.*, *.JBI, *.DAT, *.CND, *.PRM, *.SYS, *.LST")]
+    #[error("unknown filter '{filter}'; known: none, *.*, *.JBI, *.DAT, *.CND, *.PRM, *.SYS, *.LST")]
     Filter {
         /// The filter, escaped.
         filter: String,

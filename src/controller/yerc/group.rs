@@ -70,7 +70,7 @@ impl FromStr for Group {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("'{text}' is not a valid control group; there are R1 to R8, B1 to B8, S1 to S24");
+        let wrong = || format!("'{text}' is not a valid control group; use R1 to R8, B1 to B8 or S1 to S24");
         let mut chars = text.chars();
         let letter = chars.next().ok_or_else(wrong)?;
         let digits = chars.as_str();

@@ -86,7 +86,7 @@ impl std::str::FromStr for Model {
         Self::ALL
             .into_iter()
             .find(|model| model.name().eq_ignore_ascii_case(text))
-            .ok_or_else(|| format!("unknown model '{text}'; there are fs100, dx100, dx200 and yrc1000"))
+            .ok_or_else(|| format!("unknown model '{text}'; known: fs100, dx100, dx200 and yrc1000"))
     }
 }
 

@@ -35,10 +35,10 @@ const MOST: usize = 1 << 16;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum WrongFile {
     /// Unknown first line.
-    #[error("it does not begin as a file of names does")]
+    #[error("its first line is not that of a file of names")]
     Head,
     /// No known section.
-    #[error("it has no section that is known")]
+    #[error("it has no known section")]
     Sections,
     /// Too many names.
     #[error("it has more than {MOST} names")]

@@ -69,7 +69,7 @@ impl<W: WriteQuery> Query for W {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum QueryError {
     /// A control group that does not exist.
-    #[error("{group} does not exist on a {model}; there are R1-R{robots}, B1-B{bases}, S1-S{stations}",
+    #[error("{group} does not exist on a {model}; it has R1-R{robots}, B1-B{bases}, S1-S{stations}",
         robots = Group::counts(*.model).0, bases = Group::counts(*.model).1, stations = Group::counts(*.model).2)]
     Group {
         /// The group given.
@@ -86,7 +86,7 @@ pub enum QueryError {
         reason: &'static str,
     },
     /// A task that does not exist.
-    #[error("task {task} does not exist on a {model}; there are 0 (master) to {last}")]
+    #[error("task {task} does not exist on a {model}; it has 0 (master) to {last}")]
     Task {
         /// The task given.
         task: u8,
@@ -122,7 +122,7 @@ pub enum QueryError {
         what: &'static str,
     },
     /// A speed class that does not fit the kind of move.
-    #[error("a {motion} move takes its speed in {expected}")]
+    #[error("a {motion} move needs its speed in {expected}")]
     SpeedClass {
         /// Link or straight.
         motion: &'static str,
@@ -130,7 +130,7 @@ pub enum QueryError {
         expected: &'static str,
     },
     /// Coordinates that are not valid for a move.
-    #[error("a cartesian move takes base, robot, user or tool coordinates")]
+    #[error("a cartesian move needs base, robot, user or tool coordinates")]
     Coordinate,
     /// Bits that are reserved in the manuals.
     #[error("{what} has reserved bits set: {bits:#x}")]
@@ -141,7 +141,7 @@ pub enum QueryError {
         bits: u32,
     },
     /// Different kinds of values in one plural write.
-    #[error("a plural write takes values of one kind, and at least one")]
+    #[error("a plural write needs at least one value, and all of one type")]
     MixedKinds,
     /// A request that violates the table.
     #[error(transparent)]

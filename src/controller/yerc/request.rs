@@ -27,13 +27,13 @@ pub struct Request {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RequestError {
     /// An unknown command.
-    #[error("command {command:#06x} does not exist; there are 0x70 to 0x8c and 0x300 to 0x30c")]
+    #[error("command {command:#06x} does not exist; known: 0x70 to 0x8c and 0x300 to 0x30c")]
     Command {
         /// The number given.
         command: u16,
     },
     /// An unknown file service.
-    #[error("file service {found:#04x} does not exist; there are 0x09, 0x15, 0x16 and 0x32")]
+    #[error("file service {found:#04x} does not exist; known: 0x09, 0x15, 0x16 and 0x32")]
     FileService {
         /// The number given.
         found: u8,
@@ -97,7 +97,7 @@ pub enum RequestError {
         allowed: String,
     },
     /// Wrong data size.
-    #[error("{name} with service {service:#04x} takes {allowed} data bytes, not {found}")]
+    #[error("{name} with service {service:#04x} must have {allowed} data bytes, not {found}")]
     DataSize {
         /// The command's name.
         name: &'static str,
@@ -141,7 +141,7 @@ pub enum RequestError {
         max: u16,
     },
     /// Elements beyond the range of the first one.
-    #[error("{name}: {count} elements from {first} on reach past {last}")]
+    #[error("{name}: {count} elements from {first} on exceed the last one, {last}")]
     Overrun {
         /// The command's name.
         name: &'static str,
@@ -410,11 +410,11 @@ mod tests {
         );
         assert_eq!(
             text(request(0x8A, 1, 1, 0x02, &[0; 99]), Model::Fs100),
-            "cartesian move with service 0x02 takes 104, 100 data bytes, not 99"
+            "cartesian move with service 0x02 must have 104, 100 data bytes, not 99"
         );
         assert_eq!(
             text(request(0x8A, 1, 1, 0x02, &[0; 100]), Model::Dx200),
-            "cartesian move with service 0x02 takes 104 data bytes, not 100"
+            "cartesian move with service 0x02 must have 104 data bytes, not 100"
         );
     }
 

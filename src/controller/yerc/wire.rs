@@ -72,13 +72,13 @@ impl Division {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum WireError {
     /// Too short for header and sub-header.
-    #[error("{len} bytes are too short for a frame of at least {HEADER_LEN}")]
+    #[error("{len} bytes are too short: a frame has at least {HEADER_LEN}")]
     Truncated {
         /// Bytes received.
         len: usize,
     },
     /// Longer than any frame.
-    #[error("{len} bytes are too long for a frame of at most {MAX_FRAME}")]
+    #[error("{len} bytes are too long: a frame has at most {MAX_FRAME}")]
     Oversized {
         /// Bytes received.
         len: usize,

@@ -114,7 +114,7 @@ const GROUPS: [(u16, &str); 17] = [
 const LINK_CAUSES: &[&str] =
     &["the master closed the connection or stopped sending", "cable, switch or power of the network"];
 const LINK_REMEDIES: &[&str] =
-    &["hold the link open with one resident session", "open the link again, then reset the alarm"];
+    &["keep the connection open with one session", "open the connection again, then reset the alarm"];
 const UNIT_REMEDIES: &[&str] = &["switch the controller off and on", "check the option unit and its settings"];
 
 /// Alarms that are named in the sources.
@@ -122,13 +122,13 @@ pub const KNOWN: [Known; 19] = [
     Known {
         alarm: Alarm::new(2, 334),
         text: "over soft limit",
-        causes: &["the target or the way to it lies outside an axis's range"],
+        causes: &["the target or the path to it is outside the range of an axis"],
         remedies: &["check the point and the soft limits", "jog the axis back into its range"],
     },
     Known {
         alarm: INPUT_FORMAT,
         text: "input format error",
-        causes: &["a word of the command holds what the command does not take, e.g. both position outputs at once"],
+        causes: &["a word of the command has an invalid value, e.g. both position outputs at once"],
         remedies: &["compare the words sent with the section of the command: armctl decode yrcx"],
     },
     Known {
@@ -141,7 +141,7 @@ pub const KNOWN: [Known; 19] = [
         alarm: Alarm::new(12, 76),
         text: "remote command not enabled",
         causes: &[
-            "the programming box has control: only references are taken then",
+            "the programming box has control: the controller accepts only references",
             "a safety setting disables the dedicated inputs, and with them every remote command",
         ],
         remedies: &["give control back at the programming box", "check mode and safety settings"],
@@ -149,7 +149,7 @@ pub const KNOWN: [Known; 19] = [
     Known {
         alarm: STOP_INPUT,
         text: "stopped by the stop input",
-        causes: &["SI(06) went off: somebody stopped the motion"],
+        causes: &["SI(06) went off: the motion was stopped"],
         remedies: &["switch SI(06) on again before the next motion"],
     },
     link(541, "DeviceNet link error"),

@@ -53,7 +53,7 @@ impl std::str::FromStr for Bus {
     fn from_str(text: &str) -> Result<Self, String> {
         Self::ALL.into_iter().find(|bus| bus.name() == text).ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
-            format!("unknown bus '{text}'; there are {names}")
+            format!("unknown bus '{text}'; known: {names}")
         })
     }
 }

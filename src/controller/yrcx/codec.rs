@@ -130,7 +130,8 @@ fn implied(side: Side, layout: impl Layout, given: &Values, context: Option<&Val
         let Some(When { key, least, sets: true, .. }) = field.when else { continue };
         match state.int(key) {
             Some(other) if other != least => {
-                let problem = format!("does not go with {key} = {other}, which is given or follows from another field");
+                let problem =
+                    format!("is not possible with {key} = {other}, which is set or follows from another field");
                 return Err(WordError::of_field(side, field, problem));
             }
             _ => state.set(key, least),
@@ -164,7 +165,7 @@ fn may_be_missing(field: &Field, look: impl Fn(Key) -> i32) -> bool {
 
 fn misplaced(side: Side, mut layout: impl Layout, key: Key) -> WordError {
     let problem = match layout.find(|field| field.key == key).and_then(|field| field.when) {
-        Some(when) => format!("does not go with this {}", when.key),
+        Some(when) => format!("is not possible with this {}", when.key),
         None => "this command has no such field".to_owned(),
     };
     WordError::at(side, None, Some(key), problem)

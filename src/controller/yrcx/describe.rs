@@ -31,15 +31,15 @@ pub struct Description {
 pub struct FieldNote {
     /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
     pub place: String,
-    /// Its name for programs; null for the code, the status and what is not used.
+    /// Its name for programs; null for the code, the status and unused fields.
     #[serde(serialize_with = "key_name")]
     #[schemars(with = "Option<String>")]
     pub key: Option<Key>,
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// As it travels.
+    /// Its value in the words.
     pub raw: String,
-    /// What it says.
+    /// Its meaning.
     pub meaning: String,
 }
 
@@ -50,7 +50,7 @@ impl FieldNote {
     }
 }
 
-#[expect(clippy::ref_option, reason = "serde hands it over so")]
+#[expect(clippy::ref_option, reason = "serde passes it in this form")]
 fn key_name<S: Serializer>(key: &Option<Key>, serializer: S) -> Result<S::Ok, S::Error> {
     key.map(Key::name).serialize(serializer)
 }
@@ -61,7 +61,7 @@ pub fn command(words: &Words) -> Description {
     let Some(row) = Row::from_word(words[0]) else {
         notes.push(0, 0x0FFF, "command code", "unknown".to_owned());
         notes.rest(|_| 0);
-        notes.problems.push(format!("{:#06X} is not a remote command code; there are {}", words[0], ROWS.len()));
+        notes.problems.push(format!("{:#06X} is not a remote command code; known: {}", words[0], ROWS.len()));
         return notes.description("unknown command".to_owned(), None);
     };
     let code = if row.has_robot() { 0x0FFF } else { u16::MAX };
@@ -171,7 +171,7 @@ impl Notes<'_> {
             let left = self.words[word] & !accounted(word);
             if left != 0 {
                 let place = format!("{}{word}", self.side);
-                let meaning = "no field here".to_owned();
+                let meaning = "not a field".to_owned();
                 self.fields.push(FieldNote { place, key: None, name: "not used".to_owned(), raw: hex(left), meaning });
             }
         }
@@ -265,14 +265,14 @@ mod tests {
         let problems = |head: &[u16]| command(&words(head)).problems;
         assert_eq!(
             problems(&[0x0001, 0xC004, 0, 0x0032, 0x0013]),
-            ["WI1 report: 3 is not defined; there are 0 = none, 1 = pulse, 2 = mm"]
+            ["WI1 report: 3 is not defined; use 0 = none, 1 = pulse, 2 = mm"]
         );
         assert_eq!(
             problems(&[0x0001, 0x0004, 0, 101]),
             ["WI3 speed_percent: 101 is out of range; allowed: 1 to 100 %"]
         );
         assert_eq!(problems(&[0x0406, 0x0100]), ["WI1: bits 0x0100 are set, which must be 0 here"]);
-        assert_eq!(problems(&[0x0999]), ["0x0999 is not a remote command code; there are 111"]);
+        assert_eq!(problems(&[0x0999]), ["0x0999 is not a remote command code; known: 111"]);
     }
 
     #[test]
@@ -290,7 +290,7 @@ mod tests {
             ]
         );
         let alone = answer(&words(&[0x0200, 0, 7]), None);
-        assert_eq!(lines(&alone), ["WO0: status 0x0200 = normal end", "WO2: not used 0x0007 = no field here"]);
+        assert_eq!(lines(&alone), ["WO0: status 0x0200 = normal end", "WO2: not used 0x0007 = not a field"]);
         assert_eq!(answer(&words(&[0x0300]), None).problems, ["WO0: undocumented status 0x0300"]);
     }
 

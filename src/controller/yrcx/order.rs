@@ -112,13 +112,15 @@ impl Rule {
                 let places = [Key::CountX, Key::CountY, Key::CountZ].map(|key| i64::from(int(key)));
                 match places.iter().product::<i64>() {
                     1..=32_767 => Ok(()),
-                    product => wrong(Key::CountX, format!("X times Y times Z is {product}; 1 to 32767 fit a pallet")),
+                    product => {
+                        wrong(Key::CountX, format!("X times Y times Z is {product}; a pallet has 1 to 32767 positions"))
+                    }
                 }
             }
             Self::ParameterAxis => {
                 let Some(parameter) = Parameter::from_number(int(Key::Parameter)) else { return Ok(()) };
                 match (parameter.per_axis, int(Key::Axes)) {
-                    (true, 0) => wrong(Key::Axes, format!("{} belongs to an axis; name one", parameter.name)),
+                    (true, 0) => wrong(Key::Axes, format!("{} belongs to an axis; set the axis", parameter.name)),
                     (false, 1..) => {
                         wrong(Key::Axes, format!("{} belongs to the robot, not to an axis", parameter.name))
                     }

@@ -118,7 +118,7 @@ impl Procedure {
         let steps = [
             require(output::EMERGENCY_STOP, false, "release the emergency stop, then run the recovery"),
             require(output::ALARM, false, "run the recovery, which resets the alarm"),
-            require(output::AUTO_MODE, true, "select AUTO mode and give up control at the programming box"),
+            require(output::AUTO_MODE, true, "select AUTO mode, and release the control of the programming box"),
             set(input::EMERGENCY_STOP, true),
             set(input::STOP, true),
             Step::Rise(input::AUTO_START),

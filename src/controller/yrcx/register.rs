@@ -43,10 +43,8 @@ impl Register {
             Some(0 | 1) => {
                 Err(format!("{name}(0) and {name}(1) belong to remote commands; general-purpose are 2 to 15"))
             }
-            _ if is_double => {
-                Err(format!("'{text}' is not a valid double word; there are {name}2, {name}4, … {name}14"))
-            }
-            _ => Err(format!("'{text}' is not a valid word; there are {name}2 to {name}15")),
+            _ if is_double => Err(format!("'{text}' is not a valid double word; use {name}2, {name}4, … {name}14")),
+            _ => Err(format!("'{text}' is not a valid word; use {name}2 to {name}15")),
         })
     }
 
@@ -79,7 +77,7 @@ impl Register {
         let (least, most) = (-(1_i64 << (bits - 1)), (1_i64 << bits) - 1);
         let number = integer(text).ok_or_else(|| format!("'{text}' is not a whole number such as 5 or 0x1F"))?;
         if !(least..=most).contains(&number) {
-            return Err(format!("{number} does not fit {self}; allowed: {least} to {most}"));
+            return Err(format!("{number} is out of range for {self}; allowed: {least} to {most}"));
         }
         // Negative numbers in two's complement.
         Ok(u32::try_from(number.rem_euclid(most + 1)).unwrap_or_default())

@@ -57,10 +57,10 @@ impl fmt::Display for Outcome {
                 write!(f, "{} is not {}{after}", signal.named(), state(on))
             }
             Self::TimedOut { signal, on } => write!(f, "{} did not go {} in time", signal.named(), state(on)),
-            Self::Broken { signal } => write!(f, "{} came on meanwhile", signal.named()),
-            Self::NoImage => f.write_str("the controller shows nothing"),
-            Self::LinkLost { begun: false } => f.write_str("the link went down before anything was switched"),
-            Self::LinkLost { begun: true } => f.write_str("the link went down in the middle"),
+            Self::Broken { signal } => write!(f, "{} went on during the procedure", signal.named()),
+            Self::NoImage => f.write_str("the controller sends no data"),
+            Self::LinkLost { begun: false } => f.write_str("the connection was lost before the first switch"),
+            Self::LinkLost { begun: true } => f.write_str("the connection was lost during the procedure"),
         }
     }
 }

@@ -234,7 +234,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         output::MP_READY,
         "mp-ready",
         "MP RDY status output",
-        "main power is there and servos can be switched on; off after a serious error",
+        "main power is on, and servos can be switched on; off after a serious error",
     ),
     says(output::AUTO_MODE, "auto-mode", "AUTO mode status output", "AUTO mode is selected"),
     says(
@@ -256,7 +256,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "program reset status output",
         "the robot program is reset; off when it starts",
     ),
-    says(output::WARNING, "warning", "warning output", "there is a warning"),
+    says(output::WARNING, "warning", "warning output", "a warning is active"),
 ];
 
 const fn given(

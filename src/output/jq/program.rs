@@ -69,8 +69,8 @@ pub struct Program(jaq_core::Filter<data::JustLut<Val>>);
 impl Program {
     /// Compiles a filter. The error is a text.
     pub fn new(text: &str) -> Result<Self, String> {
-        let ours = parse(DEFS, |parser| parser.defs()).ok_or("the definitions do not parse")?;
-        let body = parse(text, |parser| parser.term()).ok_or("it does not parse")?;
+        let ours = parse(DEFS, |parser| parser.defs()).ok_or("the definitions cannot be parsed")?;
+        let body = parse(text, |parser| parser.term()).ok_or("it cannot be parsed")?;
         let filter = Def { name: FILTER, args: Vec::new(), body: as_in_jq(body) };
         let known = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs()).chain(ours);
         let defs = known.map(as_short_as).chain([filter]);
@@ -78,7 +78,7 @@ impl Program {
         let funs = funs.chain([("__told", v(0), Native::<data::JustLut<Val>>::new(tell))]);
         let arena = Arena::default();
         let modules = Loader::new(defs).load(&arena, File { code: FILTER, path: () });
-        let modules = modules.map_err(|_| "it does not parse")?;
+        let modules = modules.map_err(|_| "it cannot be parsed")?;
         let program = Compiler::default().with_funs(funs).compile(modules).map_err(|errors| {
             let name = errors.iter().flat_map(|(_, errors)| errors).map(|(name, _)| *name).next();
             format!("'{}' is not defined", name.unwrap_or("something"))
@@ -165,7 +165,7 @@ fn shortened(text: &str) -> String {
 /// Converts a value to JSON. Numbers that JSON does not support are written as in jq.
 fn json(value: &Val, depth: usize) -> Result<Value, String> {
     if depth > DEEPEST {
-        return Err(format!("it makes a value that nests deeper than {DEEPEST} levels"));
+        return Err(format!("it makes a value with more than {DEEPEST} nested levels"));
     }
     Ok(match value {
         Val::Null => Value::Null,
@@ -176,7 +176,7 @@ fn json(value: &Val, depth: usize) -> Result<Value, String> {
         Val::Obj(entries) => {
             let entry = |(key, value): (&Val, &Val)| match key {
                 Val::TStr(key) => Ok((String::from_utf8_lossy(key).into_owned(), json(value, depth + 1)?)),
-                _ => Err("it makes an object with a key that is no string".to_owned()),
+                _ => Err("it makes an object with a key that is not a string".to_owned()),
             };
             Value::Object(entries.iter().map(entry).collect::<Result<Map<_, _>, _>>()?)
         }
@@ -359,7 +359,7 @@ mod tests {
     fn what_nests_too_deep_is_an_error() {
         let deep = |levels: usize| made(&format!("reduce range({levels}) as $i (0; [.])"), &Value::Null);
         assert!(deep(DEEPEST).is_ok());
-        assert!(deep(DEEPEST + 1).unwrap_err().contains("nests deeper"));
+        assert!(deep(DEEPEST + 1).unwrap_err().contains("nested levels"));
     }
 
     #[test]

@@ -119,7 +119,7 @@ pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> b
                 };
             }
             Ok(None) => {
-                return Err(FilterError::Failed("it needs too much memory, or calls itself too deep".to_owned()));
+                return Err(FilterError::Failed("it needs too much memory, or its recursion is too deep".to_owned()));
             }
             Err(error) => return Err(failed(&error)),
         }
@@ -134,7 +134,7 @@ impl Worker {
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn()?;
-        let none = || io::Error::other("there is no pipe");
+        let none = || io::Error::other("no pipe");
         let requests = child.stdin.take().ok_or_else(none)?;
         let answers = BufReader::new(child.stdout.take().ok_or_else(none)?);
         Ok(Self { child, requests, answers })

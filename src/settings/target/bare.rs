@@ -42,24 +42,27 @@ impl Given {
             (Some(Family::Toyo), true) => format!("serial://{bare}"),
             (Some(Family::Toyo), false) => {
                 return wrong(
-                    "the port is missing; device servers have no usual one",
+                    "the port is missing; device servers have no default port",
                     format!("write tcp://{host}:PORT"),
                 );
             }
             (Some(Family::Yerc), true) => {
-                return wrong("yerc is not reached over a serial port", "write udp://HOST".into());
+                return wrong("a yerc robot has no serial port", "write udp://HOST".into());
             }
             (Some(Family::Yrcx), true) => {
                 let ways = format!("write slcan://{bare}?mac=N (DeviceNet) or profibus://{bare}?station=N");
-                return wrong("it does not tell the fieldbus", ways);
+                return wrong("armctl cannot infer the fieldbus from this port", ways);
             }
             (None, false) => {
                 let port = if has_port { "" } else { ":PORT" };
                 let ways = format!("write udp://{host} (yerc), eip://{host} (yrcx) or tcp://{host}{port} (toyo)");
-                return wrong("it does not tell the family", ways);
+                return wrong("armctl cannot infer the family from this address", ways);
             }
             (None, true) => {
-                return wrong("it does not tell the family", format!("write serial://{bare} for a toyo controller"));
+                return wrong(
+                    "armctl cannot infer the family from this address",
+                    format!("write serial://{bare} for a toyo controller"),
+                );
             }
         };
         url.parse()

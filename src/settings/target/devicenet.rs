@@ -94,7 +94,7 @@ fn node(place: network::Place, query: &mut Query) -> Result<Place, String> {
     let cycle = time(query, "cycle", &CYCLES)?.unwrap_or(usual.cycle);
     let rate = time(query, "rate", &RATES)?.unwrap_or(Images::rate_of(cycle));
     if rate < cycle {
-        return Err("rate is shorter than cycle: the controller would give up between two polls".to_owned());
+        return Err("rate is shorter than cycle: the controller would time out between two polls".to_owned());
     }
     let address = match &place {
         network::Place::Serial { path, .. } => Address::device(path),
@@ -115,7 +115,7 @@ fn time(query: &mut Query, name: &str, allowed: &RangeInclusive<Duration>) -> Re
         time if allowed.contains(&time) => Ok(Some(time)),
         _ => {
             let (least, most) = (allowed.start().as_millis(), allowed.end().as_millis());
-            Err(format!("{name} is a time from {least}ms to {most}ms, not '{text}'"))
+            Err(format!("{name} must be a time from {least}ms to {most}ms, not '{text}'"))
         }
     }
 }
@@ -173,10 +173,10 @@ mod tests {
             ("slcan:///dev/ttyACM0?mac=5&master=x", "master: a MAC ID"),
             ("slcan:///dev/ttyACM0?mac=5&master=5", "both 5"),
             ("slcan:///dev/ttyACM0?mac=5&bitrate=1M", "500k or 250k or 125k, not '1M'"),
-            ("slcan:///dev/ttyACM0?mac=5&cycle=0ms", "cycle is a time from 1ms"),
-            ("slcan:///dev/ttyACM0?mac=5&rate=2m", "rate is a time"),
+            ("slcan:///dev/ttyACM0?mac=5&cycle=0ms", "cycle must be a time from 1ms"),
+            ("slcan:///dev/ttyACM0?mac=5&rate=2m", "rate must be a time"),
             ("slcan:///dev/ttyACM0?mac=5&cycle=30ms&rate=20ms", "rate is shorter than cycle"),
-            ("slcan:///dev/ttyACM0?mac=5&baud=1", "baud is a number"),
+            ("slcan:///dev/ttyACM0?mac=5&baud=1", "baud must be a number"),
             ("slcan://host?mac=5", "port is missing"),
             ("slcan://host:0?mac=5", "1 to 65535"),
             ("can://can0?mac=5&bitrate=500k", "bitrate"),

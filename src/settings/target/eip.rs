@@ -94,7 +94,7 @@ const RPI: Duration = Duration::from_millis(20);
 fn parse(place: &str, query: &mut Query) -> Result<Eip, String> {
     let (host, own_port) = host_and_port(authority("eip", place)?)?;
     if host.contains(':') {
-        return Err(format!("'{host}' is an IPv6 address; EtherNet/IP has IPv4"));
+        return Err(format!("'{host}' is an IPv6 address; EtherNet/IP needs IPv4"));
     }
     let roles = [("owner", EipRole::Owner), ("input_only", EipRole::InputOnly), ("listen_only", EipRole::ListenOnly)];
     Ok(Eip {
@@ -128,7 +128,7 @@ fn instance(query: &mut Query, name: &str) -> Result<Option<u32>, String> {
 fn number(name: &str, text: &str, allowed: &str) -> Result<u32, String> {
     match text.parse::<u16>() {
         Ok(number @ 1..) => Ok(number.into()),
-        _ => Err(format!("{name} is {allowed}, not '{text}'")),
+        _ => Err(format!("{name} must be {allowed}, not '{text}'")),
     }
 }
 
@@ -138,7 +138,7 @@ fn size(query: &mut Query, name: &str) -> Result<u16, String> {
         Ok(size) if SIZES.contains(&size) => Ok(size),
         _ => {
             let (least, most) = (SIZES.start(), SIZES.end());
-            Err(format!("{name} is a number from {least} (the image) to {most}, not '{text}'"))
+            Err(format!("{name} must be a number from {least} (the image) to {most}, not '{text}'"))
         }
     }
 }
@@ -147,13 +147,13 @@ fn rpi(query: &mut Query) -> Result<Duration, String> {
     let Some(text) = query.take("rpi") else { return Ok(RPI) };
     match duration::parse(&text).map_err(|error| format!("rpi: {error}"))? {
         rpi if RPIS.contains(&rpi) => Ok(rpi),
-        _ => Err(format!("rpi is a time from 1ms to 10s, not '{text}'")),
+        _ => Err(format!("rpi must be a time from 1ms to 10s, not '{text}'")),
     }
 }
 
 /// Parses `VENDOR:TYPE:PRODUCT[:MAJOR.MINOR]`.
 fn key(text: &str) -> Result<EipKey, String> {
-    let wrong = || format!("key is VENDOR:TYPE:PRODUCT[:MAJOR.MINOR] as in 636:43:5:1.1, not '{text}'");
+    let wrong = || format!("key must be VENDOR:TYPE:PRODUCT[:MAJOR.MINOR] as in 636:43:5:1.1, not '{text}'");
     let (key, revision) = match text.split(':').collect::<Vec<_>>()[..] {
         [vendor, device_type, product] => ([vendor, device_type, product], None),
         [vendor, device_type, product, revision] => ([vendor, device_type, product], Some(revision)),
@@ -237,18 +237,18 @@ mod tests {
             ("eip://", "host is missing"),
             ("eip://[::1]", "IPv6"),
             ("eip://h:0", "1 to 65535"),
-            ("eip://h?in=0", "in is a number from 1"),
-            ("eip://h?out=x", "out is a number from 1"),
+            ("eip://h?in=0", "in must be a number from 1"),
+            ("eip://h?out=x", "out must be a number from 1"),
             ("eip://h?config=no", "or none, not 'no'"),
-            ("eip://h?in_size=46", "in_size is a number from 48"),
+            ("eip://h?in_size=46", "in_size must be a number from 48"),
             ("eip://h?out_size=65001", "to 65000"),
-            ("eip://h?rpi=0ms", "rpi is a time from 1ms"),
+            ("eip://h?rpi=0ms", "rpi must be a time from 1ms"),
             ("eip://h?rpi=soon", "rpi: 'soon' is not a valid duration"),
             ("eip://h?multiplier=5", "not '5'"),
-            ("eip://h?multicast=maybe", "multicast is no or yes"),
-            ("eip://h?role=boss", "role is owner or input_only or listen_only"),
-            ("eip://h?key=1:2", "key is VENDOR"),
-            ("eip://h?key=1:2:3:128.1", "key is VENDOR"),
+            ("eip://h?multicast=maybe", "multicast must be no or yes"),
+            ("eip://h?role=boss", "role must be owner or input_only or listen_only"),
+            ("eip://h?key=1:2", "key must be VENDOR"),
+            ("eip://h?key=1:2:3:128.1", "key must be VENDOR"),
             ("eip://h?rpm=20ms", "unknown parameter 'rpm'; did you mean 'rpi'?"),
         ] {
             let message = eip(url).unwrap_err();

@@ -95,7 +95,7 @@ fn parse(place: &str, query: &mut Query) -> Result<Profibus, String> {
     let gsd = query.take("gsd").map(PathBuf::from);
     let module = query.take("module");
     if module.is_some() && gsd.is_none() {
-        return Err("module names one of a file: add gsd=FILE".to_owned());
+        return Err("module needs a GSD file: add gsd=FILE".to_owned());
     }
     Ok(Profibus {
         port: port.to_owned(),
@@ -118,18 +118,18 @@ fn parse(place: &str, query: &mut Query) -> Result<Profibus, String> {
 
 fn address(name: &str, text: &str) -> Result<u8, String> {
     let address = text.parse().ok().filter(|address| *address <= MAX_STATION);
-    address.ok_or_else(|| format!("{name} is a number from 0 to {MAX_STATION}, not '{text}'"))
+    address.ok_or_else(|| format!("{name} must be a number from 0 to {MAX_STATION}, not '{text}'"))
 }
 
 /// Parses `500k`, or a number.
 fn baud(text: &str) -> Result<u32, String> {
     if TOO_FAST.contains(&text) {
-        return Err(format!("baud: {text} is too fast for an adapter; set the bus to 1.5M or less"));
+        return Err(format!("baud: {text} is too fast for a serial adapter; set the bus to 1.5M or less"));
     }
     let found = RATES.iter().find(|(name, baud)| *name == text || baud.to_string() == text);
     found.map(|(_, baud)| *baud).ok_or_else(|| {
         let names = RATES.map(|(name, _)| name).join(", ");
-        format!("baud is one of {names}, not '{text}'")
+        format!("baud must be one of {names}, not '{text}'")
     })
 }
 
@@ -137,7 +137,7 @@ fn retries(text: &str) -> Result<u8, String> {
     text.parse()
         .ok()
         .filter(|count| *count <= 15)
-        .ok_or_else(|| format!("retries is a number from 0 to 15, not '{text}'"))
+        .ok_or_else(|| format!("retries must be a number from 0 to 15, not '{text}'"))
 }
 
 fn time(query: &mut Query, name: &str) -> Result<Option<Duration>, String> {
@@ -147,12 +147,12 @@ fn time(query: &mut Query, name: &str) -> Result<Option<Duration>, String> {
 fn ident(text: &str) -> Result<u16, String> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
     let ident = (digits.len() <= 4).then(|| u16::from_str_radix(digits, 16).ok()).flatten();
-    ident.ok_or_else(|| format!("ident has up to four hexadecimal digits as in 0x1234, not '{text}'"))
+    ident.ok_or_else(|| format!("ident must have up to four hexadecimal digits as in 0x1234, not '{text}'"))
 }
 
 /// Parses `C0D7D7`, optionally with dots or colons.
 fn bytes(name: &str, text: &str) -> Result<Vec<u8>, String> {
-    let wrong = || format!("{name} is bytes in hexadecimal as in C0D7D7, not '{text}'");
+    let wrong = || format!("{name} must be bytes in hexadecimal as in C0D7D7, not '{text}'");
     let digits: Vec<char> = text.chars().filter(|character| !matches!(character, '.' | ':' | ' ')).collect();
     if digits.len() % 2 == 1 || digits.len() > 2 * 244 {
         return Err(wrong());
@@ -200,15 +200,15 @@ mod tests {
             ("profibus://?station=5", "adapter is missing"),
             ("profibus:///dev/ttyUSB0", "station is missing"),
             ("profibus:///dev/ttyUSB0?station=126", "0 to 125, not '126'"),
-            ("profibus:///dev/ttyUSB0?station=5&master=x", "master is a number"),
+            ("profibus:///dev/ttyUSB0?station=5&master=x", "master must be a number"),
             ("profibus:///dev/ttyUSB0?station=5&baud=12M", "too fast"),
             ("profibus:///dev/ttyUSB0?station=5&baud=fast", "1.5M, not 'fast'"),
-            ("profibus:///dev/ttyUSB0?station=5&role=boss", "role is owner or listen"),
+            ("profibus:///dev/ttyUSB0?station=5&role=boss", "role must be owner or listen"),
             ("profibus:///dev/ttyUSB0?station=5&slot=soon", "slot: 'soon'"),
-            ("profibus:///dev/ttyUSB0?station=5&retries=16", "retries is a number from 0 to 15"),
+            ("profibus:///dev/ttyUSB0?station=5&retries=16", "retries must be a number from 0 to 15"),
             ("profibus:///dev/ttyUSB0?station=5&ident=12345", "four hexadecimal digits"),
-            ("profibus:///dev/ttyUSB0?station=5&cfg=C0D", "cfg is bytes in hexadecimal"),
-            ("profibus:///dev/ttyUSB0?station=5&prm=GG", "prm is bytes in hexadecimal"),
+            ("profibus:///dev/ttyUSB0?station=5&cfg=C0D", "cfg must be bytes in hexadecimal"),
+            ("profibus:///dev/ttyUSB0?station=5&prm=GG", "prm must be bytes in hexadecimal"),
             ("profibus:///dev/ttyUSB0?station=5&module=M", "add gsd=FILE"),
             ("profibus:///dev/ttyUSB0?station=5&words=middle", "words is le or be"),
             ("profibus:///dev/ttyUSB0?station=5&speed=1", "unknown parameter 'speed'"),

@@ -21,7 +21,7 @@ pub const SCHEME: Scheme = Scheme {
     simulators: &["profinet"],
     shortest: "profinet://STATION@IFACE",
     form: "profinet://STATION@IFACE[?gsdml=FILE&cycle=16ms&watchdog=320ms&ip=ADDRESS/24], or layout=MODULES for gsdml=FILE",
-    about: "yrcx: name (or MAC address) of the station, and the Ethernet interface that leads to it",
+    about: "yrcx: name (or MAC address) of the station, and the Ethernet interface of this computer",
     parse: |place, query| {
         let profinet = parse(place, query)?;
         let (_, name) = words(&profinet.station);
@@ -95,7 +95,7 @@ fn parse(place: &str, query: &mut Query) -> Result<Profinet, String> {
     let layout = layout.map_err(|error: String| format!("layout: {error}"))?;
     let gsdml = query.take("gsdml").map(PathBuf::from);
     if layout.is_some() && gsdml.is_some() {
-        return Err("layout and gsdml both tell the modules: remove one of them".to_owned());
+        return Err("layout and gsdml both define the modules: remove one of them".to_owned());
     }
     Ok(Profinet {
         station: self::station(station)?,
@@ -118,7 +118,7 @@ fn station(text: &str) -> Result<Station, String> {
     if text.contains(':') {
         let mac: Mac = text.parse()?;
         return if mac.is_group() {
-            Err(format!("{mac} is an address of many cards, not of one"))
+            Err(format!("{mac} is a group address, not the address of one network card"))
         } else {
             Ok(Station::Mac(mac))
         };
@@ -129,7 +129,7 @@ fn station(text: &str) -> Result<Station, String> {
 
 /// Checks a station name.
 pub fn name(text: &str) -> Result<String, String> {
-    let wrong = |why| format!("'{text}' is not a name of a station: {why}{}", similar(text));
+    let wrong = |why| format!("'{text}' is not a valid station name: {why}{}", similar(text));
     check_name(text).map(|()| text.to_owned()).map_err(wrong)
 }
 
@@ -146,7 +146,9 @@ fn cycle(text: &str) -> Result<Duration, String> {
         return Ok(cycle);
     }
     let near = u64::try_from(cycle.as_millis()).unwrap_or(u64::MAX).clamp(1, 512).next_power_of_two();
-    Err(format!("cycle is 1ms, 2ms, 4ms, 8ms, 16ms, 32ms, 64ms, 128ms, 256ms or 512ms, not '{text}'; try {near}ms"))
+    Err(format!(
+        "cycle must be 1ms, 2ms, 4ms, 8ms, 16ms, 32ms, 64ms, 128ms, 256ms or 512ms, not '{text}'; try {near}ms"
+    ))
 }
 
 fn ratio(cycle: Duration) -> Option<u16> {
@@ -160,24 +162,24 @@ fn watchdog(text: &str, cycle: Duration) -> Result<Duration, String> {
         return Ok(watchdog);
     }
     let (least, most) = (least.as_millis(), LONGEST_WATCHDOG.as_millis());
-    Err(format!("watchdog is a time from three cycles, {least}ms, to {most}ms, not '{text}'"))
+    Err(format!("watchdog must be a time from {least}ms (three cycles) to {most}ms, not '{text}'"))
 }
 
 /// Parses `192.168.0.5`, optionally with a prefix length.
 pub fn suite(text: &str) -> Result<IpSuite, String> {
-    let wrong = || format!("ip is an address as in 192.168.0.5 or 192.168.0.5/24, not '{text}'");
+    let wrong = || format!("ip must be an address as in 192.168.0.5 or 192.168.0.5/24, not '{text}'");
     let (address, bits) = match text.split_once('/') {
         None => (text, PREFIX),
         Some((address, bits)) => (address, bits.parse().map_err(|_| wrong())?),
     };
     let address: Ipv4Addr = address.parse().map_err(|_| wrong())?;
     if !(1..=30).contains(&bits) {
-        return Err(format!("ip: a mask has 1 to 30 bits, not {bits}"));
+        return Err(format!("ip: the mask must have 1 to 30 bits, not {bits}"));
     }
     let mask = u32::MAX << (32 - bits);
     let host = u32::from(address) & !mask;
     if host == 0 || host == !mask || address.is_multicast() || address.is_loopback() {
-        return Err(format!("ip: {address}/{bits} is not the address of a device"));
+        return Err(format!("ip: {address}/{bits} is not a valid device address"));
     }
     Ok(IpSuite { address, mask: mask.into(), gateway: Ipv4Addr::UNSPECIFIED })
 }
@@ -227,18 +229,18 @@ mod tests {
             ("profinet://robot@eth 0", "name of an interface"),
             ("profinet://robot_7@eth0", "did you mean 'robot-7'?"),
             ("profinet://-robot@eth0", "begins or ends with '-'"),
-            ("profinet://01:0e:cf:00:00:00@eth0", "many cards"),
+            ("profinet://01:0e:cf:00:00:00@eth0", "group address"),
             ("profinet://02:00@eth0", "not a MAC address"),
             ("profinet://robot@eth0?cycle=20ms", "try 32ms"),
             ("profinet://robot@eth0?cycle=soon", "cycle: 'soon'"),
-            ("profinet://robot@eth0?watchdog=30ms", "three cycles, 48ms, to 1920ms, not '30ms'"),
+            ("profinet://robot@eth0?watchdog=30ms", "48ms (three cycles) to 1920ms, not '30ms'"),
             ("profinet://robot@eth0?watchdog=3s", "to 1920ms"),
             ("profinet://robot@eth0?layout=1:2:x", "layout: '1:2:x' is not a submodule such as"),
             ("profinet://robot@eth0?layout=1:1:i48&gsdml=a.xml", "remove one"),
-            ("profinet://robot@eth0?ip=robot", "ip is an address"),
-            ("profinet://robot@eth0?ip=10.0.0.0/24", "not the address of a device"),
+            ("profinet://robot@eth0?ip=robot", "ip must be an address"),
+            ("profinet://robot@eth0?ip=10.0.0.0/24", "not a valid device address"),
             ("profinet://robot@eth0?ip=10.0.0.5/33", "1 to 30 bits"),
-            ("profinet://robot@eth0?words=middle", "words is le or be"),
+            ("profinet://robot@eth0?words=middle", "words must be le or be"),
             ("profinet://robot@eth0?rate=1", "unknown parameter 'rate'"),
         ] {
             let message = profinet(url).unwrap_err();

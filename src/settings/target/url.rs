@@ -20,7 +20,7 @@ pub fn choice<T: Copy, const N: usize>(query: &mut Query, key: &str, known: [(&s
     let found = known.iter().find(|(word, _)| *word == given);
     found.map(|(_, value)| *value).ok_or_else(|| {
         let words = known.map(|(word, _)| word).join(" or ");
-        format!("{key} is {words}, not '{given}'")
+        format!("{key} must be {words}, not '{given}'")
     })
 }
 
@@ -29,7 +29,7 @@ pub fn baud(query: &mut Query) -> Result<Option<u32>, String> {
     let Some(text) = query.take("baud") else { return Ok(None) };
     match text.parse() {
         Ok(baud) if BAUDS.contains(&baud) => Ok(Some(baud)),
-        _ => Err(format!("baud is a number from {} to {}, not '{text}'", BAUDS.start(), BAUDS.end())),
+        _ => Err(format!("baud must be a number from {} to {}, not '{text}'", BAUDS.start(), BAUDS.end())),
     }
 }
 
@@ -40,7 +40,7 @@ pub fn host_and_port(authority: &str) -> Result<(String, Option<&str>), String> 
         match rest.strip_prefix(':') {
             Some(port) => (host, Some(port)),
             None if rest.is_empty() => (host, None),
-            None => return Err(format!("'{rest}' after the address is no port")),
+            None => return Err(format!("'{rest}' after the address is not a port")),
         }
     } else {
         match authority.split_once(':') {
@@ -55,7 +55,7 @@ pub fn host_and_port(authority: &str) -> Result<(String, Option<&str>), String> 
         return Err(format!("'{host}' is not a valid host name"));
     }
     if is_unspecified(host) {
-        return Err(format!("{host} is the address of no robot"));
+        return Err(format!("{host} is not a valid robot address"));
     }
     Ok((host.to_owned(), port))
 }
@@ -72,7 +72,7 @@ fn is_unspecified(host: &str) -> bool {
 pub fn port(name: &str, text: &str) -> Result<u16, String> {
     match text.parse() {
         Ok(port) if port > 0 => Ok(port),
-        _ => Err(format!("{name} is a number from 1 to 65535, not '{text}'")),
+        _ => Err(format!("{name} must be a number from 1 to 65535, not '{text}'")),
     }
 }
 
@@ -97,7 +97,7 @@ impl Query {
         for pair in text.split('&').filter(|pair| !pair.is_empty()) {
             let (key, value) = pair.split_once('=').ok_or_else(|| format!("'{pair}' has no value"))?;
             if pairs.iter().any(|(known, _)| known == key) {
-                return Err(format!("'{key}' is there twice"));
+                return Err(format!("'{key}' appears twice"));
             }
             pairs.push((key.to_owned(), percent_decoded(value)?));
         }
@@ -116,14 +116,14 @@ impl Query {
         let Some((key, _)) = self.pairs.first() else { return Ok(()) };
         Err(match nearest(key, self.known.iter().map(String::as_str)) {
             Some(near) => format!("unknown parameter '{key}'; did you mean '{near}'?"),
-            None => format!("unknown parameter '{key}'; there are {}", self.known.join(", ")),
+            None => format!("unknown parameter '{key}'; known: {}", self.known.join(", ")),
         })
     }
 }
 
 /// Decodes percent escapes.
 pub fn percent_decoded(text: &str) -> Result<String, String> {
-    let wrong = || format!("'{text}' has a damaged % escape");
+    let wrong = || format!("'{text}' has an invalid % escape");
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.bytes();
     while let Some(byte) = rest.next() {

@@ -48,7 +48,7 @@ pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_
         let bytes = match (next, form) {
             (Ok(taken), Form::Hexadecimal) => parse_hex(&String::from_utf8_lossy(&taken))
                 .map(|bytes| (taken.len(), bytes))
-                .map_err(|_| "a line is not in hexadecimal"),
+                .map_err(|_| "a line is not hexadecimal"),
             (taken, _) => taken.map(|bytes| (bytes.len(), bytes)),
         };
         match bytes {
@@ -71,7 +71,7 @@ pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_
     pieces.summary
 }
 
-const UNREADABLE: &str = "it cannot be read any further";
+const UNREADABLE: &str = "cannot read more of the file";
 
 /// Reads the next line; empty at the end of the file.
 fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
@@ -210,7 +210,7 @@ mod tests {
         let (all, summary) = pieces(b"E5\n1 0 5\n123\n");
         assert_eq!(all.len(), 2, "{all:?}");
         let damage = summary.damage.unwrap();
-        assert_eq!((damage.offset, damage.problem), (9, "a line is not in hexadecimal"));
+        assert_eq!((damage.offset, damage.problem), (9, "a line is not hexadecimal"));
     }
 
     #[test]

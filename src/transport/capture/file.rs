@@ -36,13 +36,13 @@ pub struct Damage {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum OpenError {
     /// The file is compressed by gzip or zstd.
-    #[error("it is compressed")]
+    #[error("the file is compressed")]
     Compressed,
     /// Not a pcap or pcapng file.
-    #[error("it is not a pcap or pcapng file")]
+    #[error("the file is not pcap or pcapng")]
     Other,
     /// A read failed.
-    #[error("it cannot be read")]
+    #[error("cannot read the file")]
     Unreadable,
 }
 
@@ -201,7 +201,7 @@ struct PacketSpan {
     original: usize,
 }
 
-const UNREADABLE: &str = "the file cannot be read any further";
+const UNREADABLE: &str = "cannot read more of the file";
 
 impl<R: Read> Packets<R> {
     /// Reads the header of a file.
@@ -273,7 +273,7 @@ impl<R: Read> Packets<R> {
         };
         let (seconds, parts, len, original) = header().ok_or("the file ends inside the header of a packet")?;
         if len > MOST {
-            return Err("a packet of an impossible length");
+            return Err("a packet with an invalid length");
         }
         let whole = PACKET_HEADER + len;
         if self.file.look(whole).map_err(|_| UNREADABLE)?.len() < whole {
@@ -300,27 +300,27 @@ impl<R: Read> Packets<R> {
         let order = self.byte_order;
         let len = order.size(head, 4).ok_or(short)?;
         if len < 12 || len % 4 != 0 || len > MOST {
-            return Err("a block of an impossible length");
+            return Err("a block with an invalid length");
         }
         let block = self.file.look(len).map_err(|_| UNREADABLE)?;
         if block.len() < len {
             return Err(short);
         }
         if order.size(block, len - 4) != Some(len) {
-            return Err("a block whose two lengths differ");
+            return Err("a block with two different lengths");
         }
         let body = &block[8..len - 4];
         match kind {
-            SECTION_HEADER if order.short(body, 4) != Some(1) => return Err("a section of an unknown version"),
+            SECTION_HEADER if order.short(body, 4) != Some(1) => return Err("a section with an unknown version"),
             SECTION_HEADER => {
                 self.section += 1;
                 self.format = Format::Blocks(Vec::new());
             }
             INTERFACE => {
-                let interface = interface(order, body).ok_or("an interface that is too short")?;
+                let interface = interface(order, body).ok_or("a truncated interface block")?;
                 if let Format::Blocks(interfaces) = &mut self.format {
                     if interfaces.len() >= MOST_INTERFACES {
-                        return Err("more interfaces than a machine has");
+                        return Err("too many interfaces");
                     }
                     interfaces.push(interface);
                 }
@@ -342,7 +342,7 @@ impl<R: Read> Packets<R> {
             _ => Some(0),
         };
         let interface = number.and_then(|number| interfaces.get(number).copied());
-        let interface = interface.ok_or("a packet of an interface that is not there")?;
+        let interface = interface.ok_or("a packet of an undefined interface")?;
         // Offset of the packet in the body, and its recorded length.
         let parts = || {
             if kind == SIMPLE_PACKET {
@@ -354,7 +354,7 @@ impl<R: Read> Packets<R> {
             Some((Some(interface.clock.time(count)), 20, order.size(body, 12)?.min(MOST), order.size(body, 16)?))
         };
         let whole = parts().filter(|(_, start, len, _)| start + len <= body.len());
-        let (time, start, len, original) = whole.ok_or("a packet that is longer than its block")?;
+        let (time, start, len, original) = whole.ok_or("a packet longer than its block")?;
         Ok(PacketSpan { interface, time, bytes: 8 + start..8 + start + len, original })
     }
 }
@@ -434,9 +434,9 @@ mod tests {
         let block =
             |len: u32| [&SECTION_HEADER.to_be_bytes()[..], &len.to_be_bytes(), &[0x1A, 0x2B, 0x3C, 0x4D]].concat();
         for (len, problem) in [
-            (0, "a block of an impossible length"),
-            (13, "a block of an impossible length"),
-            (u32::MAX, "a block of an impossible length"),
+            (0, "a block with an invalid length"),
+            (13, "a block with an invalid length"),
+            (u32::MAX, "a block with an invalid length"),
             (28, "the file ends inside a block"),
         ] {
             let file = block(len);

@@ -175,7 +175,7 @@ fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summar
             Ok(0) => return summary,
             Ok(len) => len,
             Err(_) => {
-                summary.damage = Some(Damage { offset, problem: "it cannot be read any further" });
+                summary.damage = Some(Damage { offset, problem: "cannot read more of the file" });
                 return summary;
             }
         };

@@ -12,7 +12,7 @@ use crate::image::view::BusError;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Error {
     /// Another node has the MAC of this master.
-    #[error("MAC {mac}, which was to be this master's, is taken on the bus: by vendor {vendor}, serial {serial:08X}")]
+    #[error("another node has MAC {mac} of this master: vendor {vendor}, serial {serial:08X}")]
     Duplicate {
         /// The MAC.
         mac: Mac,
@@ -22,13 +22,13 @@ pub enum Error {
         serial: u32,
     },
     /// Another master owns the connections of the slave.
-    #[error("MAC {mac} does not give its connections, which another has")]
+    #[error("another master owns the connections of MAC {mac}")]
     Owned {
         /// The slave.
         mac: Mac,
     },
     /// The image sizes of the slave do not match any profile.
-    #[error("MAC {mac} takes {consumed} bytes and sends {produced}; known are {known}")]
+    #[error("MAC {mac} receives {consumed} bytes and sends {produced}; armctl supports {known}")]
     Size {
         /// The slave.
         mac: Mac,
@@ -40,7 +40,7 @@ pub enum Error {
         known: String,
     },
     /// The slave refused a request.
-    #[error("{what} of MAC {mac} was refused: {} (general {general:#04x}, additional {additional:#04x})", general::meaning(*general))]
+    #[error("MAC {mac} refused {what}: {} (general {general:#04x}, additional {additional:#04x})", general::meaning(*general))]
     Refused {
         /// The request.
         what: &'static str,
@@ -52,7 +52,7 @@ pub enum Error {
         additional: u8,
     },
     /// The slave did not answer.
-    #[error("MAC {mac} does not answer {what}: {}", silence(*is_bus_alive, *state))]
+    #[error("no answer from MAC {mac} to {what}: {}", silence(*is_bus_alive, *state))]
     Silent {
         /// The slave.
         mac: Mac,
@@ -64,8 +64,8 @@ pub enum Error {
         state: BusState,
     },
     /// The slave stopped answering polls.
-    #[error("MAC {mac} has not answered a poll for {} ms: {}", after.as_millis(),
-        if *is_heard { "it is heard, but no image of it comes whole" } else { silence(*is_bus_alive, *state) })]
+    #[error("no answer from MAC {mac} to a poll for {} ms: {}", after.as_millis(),
+        if *is_heard { "frames arrive, but no complete image" } else { silence(*is_bus_alive, *state) })]
     Lost {
         /// The slave.
         mac: Mac,
@@ -79,7 +79,7 @@ pub enum Error {
         state: BusState,
     },
     /// The slave sent an invalid answer.
-    #[error("the answer of MAC {mac} to {what} makes no sense: {why}")]
+    #[error("MAC {mac} sent an invalid answer to {what}: {why}")]
     Senseless {
         /// The slave.
         mac: Mac,
@@ -98,10 +98,10 @@ pub enum Error {
     #[error("{0}")]
     Settings(String),
     /// The link was lost after the caller last looked at it (an older generation).
-    #[error("the link was lost meanwhile")]
+    #[error("the connection was lost")]
     Outdated,
     /// The connection is closed.
-    #[error("it is closed")]
+    #[error("the connection is closed")]
     Ended,
 }
 
@@ -114,9 +114,9 @@ impl BusError for Error {
 const fn silence(is_bus_alive: bool, state: BusState) -> &'static str {
     match (is_bus_alive, state) {
         (_, BusState::Off) => "the adapter is bus-off",
-        (true, _) => "other nodes are heard",
-        (false, BusState::Passive) => "no node is heard, and nobody acknowledges what is sent (adapter error passive)",
-        (false, BusState::Warning) => "no node is heard, and the adapter counts errors",
-        (false, BusState::Active) => "no node is heard",
+        (true, _) => "other nodes send",
+        (false, BusState::Passive) => "no traffic on the bus, and no node acknowledges (adapter error passive)",
+        (false, BusState::Warning) => "no traffic on the bus, and the adapter counts errors",
+        (false, BusState::Active) => "no traffic on the bus",
     }
 }

@@ -31,7 +31,7 @@ impl Polled {
     pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
         let connection = network.connect(settings).await?;
         let size = connection.view().details.size;
-        let size = size.ok_or_else(|| Error::Settings("the connection is for messages".to_owned()))?;
+        let size = size.ok_or_else(|| Error::Settings("the connection is only for messages".to_owned()))?;
         Ok(Self::over(connection, Sizes { output: size, input: size }))
     }
 }
@@ -65,7 +65,7 @@ impl Bus for Connection {
             (counted.late, "late"),
             (counted.skipped, "not sent in time"),
             (health.overruns, "lost in the adapter"),
-            (health.rejected, "not taken by the adapter"),
+            (health.rejected, "refused by the adapter"),
         ];
         let intervals = view.details.rate.map(|rate| (rate, rate));
         Traffic { sent: counted.sent, received: counted.received, intervals, odd }
@@ -114,12 +114,7 @@ impl Listened {
                 _ if known.is_up => {
                     let mac = self.slave;
                     let text = self.network.trouble().map_or_else(
-                        || {
-                            format!(
-                                "no answer of MAC {mac} to its master was heard for {} ms",
-                                self.patience.as_millis()
-                            )
-                        },
+                        || format!("no answer from MAC {mac} to its master for {} ms", self.patience.as_millis()),
                         |trouble| trouble.to_string(),
                     );
                     return Event::Lost(LinkError::Lost { cause: Cause::new(text), outputs: Outputs::Never });
@@ -212,7 +207,7 @@ impl ImageConnection for Reading {
     }
 }
 
-const IMAGE: &str = "what it shows";
+const IMAGE: &str = "the read of its signals";
 /// Attribute 14 of a connection object: path of the produced data.
 const PRODUCED_PATH: u8 = 14;
 
@@ -224,7 +219,7 @@ pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Erro
         // Class, instance and attribute, each in one byte.
         [0x20, class, 0x24, instance, 0x30, attribute] => Ok(Request::get(*class, (*instance).into(), *attribute)),
         [0x20, class, 0x24, instance] => Ok(Request::get(*class, (*instance).into(), 3)),
-        _ => Err(Error::Senseless { mac, what: IMAGE, why: "the path to it is not one of an attribute" }),
+        _ => Err(Error::Senseless { mac, what: IMAGE, why: "the path is not that of an attribute" }),
     }
 }
 
@@ -240,37 +235,37 @@ pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Resul
 fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
     Some(match error {
         Error::Duplicate { .. } => {
-            "close the session that has it (`armctl session list`), or choose another number for this master: master= of the \
-             URL (0 to 63)"
+            "close the session that uses it (`armctl session list`), or set another number for this master with \
+             master= in the URL (0 to 63)"
                 .into()
         }
         Error::Owned { .. } => {
-            "stop the other master's scan of this node, or look beside it: `yrcx status` and `yrcx io get` \
-             listen to what passes"
+            "remove this node from the scan list of the other master, or only read: `yrcx status` and `yrcx io get` \
+             listen to its traffic"
                 .into()
         }
         Error::Size { .. } => {
-            "set the I/O size of the controller's unit to Normal (48 bytes) or Compact (4); check mac of the \
-             URL: `yrcx devicenet scan` lists the nodes"
+            "set the I/O size of the controller's unit to Normal (48 bytes) or Compact (4); check mac in the URL: \
+             `yrcx devicenet scan` lists the nodes"
                 .into()
         }
         Error::Silent { is_bus_alive: true, .. } => {
-            "check mac of the URL: `yrcx devicenet scan` lists the nodes that answer".into()
+            "check mac in the URL: `yrcx devicenet scan` lists the nodes that answer".into()
         }
         Error::Silent { .. } | Error::Lost { .. } => {
-            "check the bit rate, the 24 V of the bus, its plugs and both terminators \
-             (121 ohm), and that the controller is on"
+            "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm); check that the \
+             controller is on"
                 .into()
         }
         Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)".into(),
         Error::Port(PortError::Open { advice, .. }) => advice.clone(),
         Error::Port(PortError::Setup { .. } | PortError::Mute { .. } | PortError::Flooded { .. }) => {
-            "check that it is an SLCAN (Lawicel) adapter, and baud of the URL".into()
+            "check that it is an SLCAN (Lawicel) adapter; check baud in the URL".into()
         }
         Error::Port(PortError::Gone { .. }) => "plug the adapter in again".into(),
-        Error::Port(PortError::Stuck { .. }) => "poll more slowly (cycle of the URL), or check the bus".into(),
+        Error::Port(PortError::Stuck { .. }) => "set a longer cycle in the URL, or check the bus".into(),
         Error::Refused { .. } | Error::Senseless { .. } => {
-            "check mac of the URL: `yrcx devicenet identity` tells who it is".into()
+            "check mac in the URL: `yrcx devicenet identity` shows the device".into()
         }
         Error::Settings(_) | Error::Outdated | Error::Ended => return None,
     })

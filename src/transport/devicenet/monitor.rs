@@ -104,7 +104,7 @@ impl Monitor {
 
 /// Text of a frame for traces: `MAC 5: poll by the master, fragment 0 (first)`.
 pub fn describe(frame: &Frame) -> String {
-    let Some(id) = Id::parse(frame.id()) else { return format!("{:03X}: no identifier of DeviceNet", frame.id()) };
+    let Some(id) = Id::parse(frame.id()) else { return format!("{:03X}: not a DeviceNet identifier", frame.id()) };
     let mut text = id.to_string();
     if let (Id::Poll(_) | Id::PollAnswer(_), [first, _, _, _, _, ..]) = (id, frame.data()) {
         let Fragment { kind, count } = Fragment::parse(*first);

@@ -140,7 +140,7 @@ impl Network {
                 if !fits || adapter.bitrate != other.bitrate {
                     let place = &adapter.place;
                     return Err(Error::Settings(format!(
-                        "{place} is in use with another bit rate or master MAC; one adapter has one of each"
+                        "{place} is in use with another bit rate or master MAC; an adapter has only one of each"
                     )));
                 }
                 if tap.is_open() {
@@ -532,7 +532,7 @@ async fn open(adapter: &Adapter) -> Result<Box<dyn CanPort>, PortError> {
             let connected = timeout(CONNECT, TcpStream::connect((host.as_str(), *port))).await;
             let stream = connected.map_err(|_| failed("no answer".to_owned(), advice))?;
             let stream = stream.map_err(|error| match error.kind() {
-                std::io::ErrorKind::ConnectionRefused => failed("nobody listens there".to_owned(), advice),
+                std::io::ErrorKind::ConnectionRefused => failed("no program listens on this port".to_owned(), advice),
                 _ => failed(error.to_string(), advice),
             })?;
             Pipe::tcp(stream).map_err(|error| failed(error.to_string(), advice))?
@@ -556,7 +556,7 @@ fn socket_can(interface: &str) -> Result<Box<dyn CanPort>, PortError> {
 const fn serial_advice(error: &serial::OpenError) -> &'static str {
     match error {
         serial::OpenError::Absent => "plug the adapter in, and check the name of its port: `armctl robots discover`",
-        serial::OpenError::Busy => "end the other program, or reach the robot through its session",
+        serial::OpenError::Busy => "end the other program, or use the session of the robot",
         serial::OpenError::Forbidden => "on Linux, join the group that owns the port (dialout)",
         _ => "check the port and its baud rate",
     }

@@ -74,7 +74,7 @@ impl Settings {
     pub fn check(&self, own: Mac) -> Result<(), Error> {
         let wrong = |text: String| Err(Error::Settings(text));
         if self.slave == own {
-            return wrong(format!("MAC {own} is this master's own; the controller has another"));
+            return wrong(format!("MAC {own} is the MAC of this master; the controller must have a different MAC"));
         }
         let Purpose::Images(images) = &self.purpose else { return Ok(()) };
         if !CYCLES.contains(&images.cycle) {
@@ -87,7 +87,7 @@ impl Settings {
             ));
         }
         if images.profiles.iter().any(|profile| profile.resting.is_empty()) {
-            return wrong("an image has one byte at least".to_owned());
+            return wrong("an image has at least one byte".to_owned());
         }
         Ok(())
     }

@@ -21,7 +21,7 @@ pub enum EipError {
         host: String,
     },
     /// The host has no IPv4 address.
-    #[error("'{host}' has no IPv4 address, as EtherNet/IP needs")]
+    #[error("'{host}' has no IPv4 address, but EtherNet/IP needs one")]
     NotIpv4 {
         /// Host name.
         host: String,
@@ -35,13 +35,13 @@ pub enum EipError {
         text: String,
     },
     /// The TCP connection was closed before the answer.
-    #[error("the TCP connection ended before {what} was answered")]
+    #[error("the TCP connection ended before the answer to {what}")]
     Hangup {
         /// The request.
         what: &'static str,
     },
     /// No answer in time.
-    #[error("{what} was not answered within {} ms", after.as_millis())]
+    #[error("no answer to {what} within {} ms", after.as_millis())]
     NoAnswer {
         /// The request.
         what: &'static str,
@@ -65,7 +65,7 @@ pub enum EipError {
         status: Status,
     },
     /// The answer cannot be decoded.
-    #[error("the answer to {what} cannot be read: {error}")]
+    #[error("cannot decode the answer to {what}: {error}")]
     Malformed {
         /// The request.
         what: &'static str,
@@ -73,7 +73,7 @@ pub enum EipError {
         error: WireError,
     },
     /// The answer can be decoded, but is not valid.
-    #[error("the answer to {what} makes no sense: {why}")]
+    #[error("invalid answer to {what}: {why}")]
     Senseless {
         /// The request.
         what: &'static str,
@@ -81,13 +81,13 @@ pub enum EipError {
         why: &'static str,
     },
     /// Timeout: the device stopped sending its image.
-    #[error("no image came for {} ms", after.as_millis())]
+    #[error("no image received for {} ms", after.as_millis())]
     Silent {
         /// Time waited.
         after: Duration,
     },
     /// The connection was lost after the caller last looked at it (an older generation).
-    #[error("the connection was lost meanwhile")]
+    #[error("the connection was lost")]
     Outdated,
     /// An assembly does not have the expected size.
     #[error("the input assembly has {found} bytes, not {expected}")]

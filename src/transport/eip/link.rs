@@ -71,7 +71,7 @@ impl Bus for Device {
             (counted.lost, "lost"),
             (counted.late, "late"),
             (counted.stale, "stale"),
-            (counted.misfit, "of a wrong size"),
+            (counted.misfit, "with a wrong size"),
             (counted.skipped, "not sent in time"),
         ];
         Traffic { sent: counted.sent, received: counted.received, intervals: view.details.intervals, odd }
@@ -158,7 +158,7 @@ impl From<EipError> for LinkError {
             | EipError::NoAnswer { .. }
             | EipError::Hangup { .. }
             | EipError::Silent { .. } => Self::Silent(
-                cause.advice("check the address, that the controller is on, and that its EtherNet/IP board is enabled"),
+                cause.advice("check the address; check that the controller is on and its EtherNet/IP board enabled"),
             ),
             EipError::Encapsulation { .. } | EipError::Refused { .. } => match known {
                 Some(code) if code.code == OWNED => Self::Owned(cause),
@@ -166,12 +166,12 @@ impl From<EipError> for LinkError {
                 None => Self::Refused(cause.options(CONNECTION)),
             },
             EipError::Malformed { .. } | EipError::Senseless { .. } => {
-                Self::Malformed(cause.advice("check that an EtherNet/IP adapter has this address"))
+                Self::Malformed(cause.advice("check that this is the address of an EtherNet/IP device"))
             }
             EipError::WrongSize { .. } => Self::Size(cause.options(&["in", "in_size"])),
             EipError::Impossible(_) => Self::Settings(cause),
             EipError::Local(_) | EipError::Outdated | EipError::Ended => {
-                Self::Local(cause.advice("check the network settings of this machine, and its firewall"))
+                Self::Local(cause.advice("check the network settings and the firewall of this computer"))
             }
         }
     }

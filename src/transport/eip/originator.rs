@@ -372,10 +372,10 @@ impl Originator {
         let addresses = RrData::parse_answer(data).map_err(malformed)?;
         let opened = Opened::parse(&answer.done(FORWARD_OPEN)?).map_err(malformed)?;
         if opened.triad != self.triad {
-            return Err(senseless("it is about another connection"));
+            return Err(senseless("it belongs to another connection"));
         }
         if opened.t_o_id != self.id && !self.settings.multicast {
-            return Err(senseless("it changes the id that is ours to choose"));
+            return Err(senseless("it changes the connection id that armctl chose"));
         }
         let interval = |us: u32| {
             let interval = Duration::from_micros(us.into());
@@ -393,7 +393,7 @@ impl Originator {
         };
         let group = addresses.t_o.map(|address| *address.ip()).filter(Ipv4Addr::is_multicast);
         if self.settings.multicast && group.is_none() {
-            return Err(senseless("it names no group to hear"));
+            return Err(senseless("it contains no multicast group"));
         }
         self.actions.extend(group.map(Action::Join));
         let intervals = self.settings.multiplier.intervals();

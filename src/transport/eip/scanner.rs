@@ -134,7 +134,7 @@ impl Scanner {
     pub async fn open(&self, target: SocketAddrV4, settings: Settings, tap: Tap) -> Result<Connection, EipError> {
         let inner = &self.owner.inner;
         if settings.multicast && self.port() != IO_PORT {
-            let text = format!("images to a group come on UDP port {IO_PORT}, which another program here has");
+            let text = format!("multicast images use UDP port {IO_PORT}, but another program on this computer has it");
             return Err(EipError::Impossible(text));
         }
         let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;

@@ -117,7 +117,7 @@ impl Session {
     /// Queues a request.
     pub fn ask(&mut self, ask: Ask) {
         if self.waiting.len() >= MOST_WAITING {
-            let why = "too many requests wait already";
+            let why = "too many waiting requests";
             self.answer(ask.token, false, Err(EipError::Impossible(why.to_owned())));
         } else {
             self.waiting.push_back(ask);

@@ -116,10 +116,10 @@ impl Settings {
     pub fn check(&self) -> Result<(), EipError> {
         let wrong = |text: String| Err(EipError::Impossible(text));
         if self.output_size.max(self.input_size) > MOST_IMAGE {
-            return wrong(format!("an image has {MOST_IMAGE} bytes at most"));
+            return wrong(format!("an image has at most {MOST_IMAGE} bytes"));
         }
         if self.role != Role::ExclusiveOwner && self.output_size != 0 {
-            return wrong("a connection that only listens has no output image".to_owned());
+            return wrong("a listen-only connection has no output image".to_owned());
         }
         if self.resting.len() != usize::from(self.output_size) {
             let (len, size) = (self.resting.len(), self.output_size);
@@ -129,7 +129,9 @@ impl Settings {
             return wrong(format!("the rpi must be {SHORTEST:?} to {LONGEST:?}, not {:?}", self.rpi));
         }
         if self.configuration_data.len() > MOST_CONFIGURATION || self.configuration_data.len() % 2 == 1 {
-            return wrong(format!("configuration data has an even number of bytes, {MOST_CONFIGURATION} at most"));
+            return wrong(format!(
+                "configuration data must have an even number of bytes, at most {MOST_CONFIGURATION}"
+            ));
         }
         Ok(())
     }

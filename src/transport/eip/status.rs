@@ -41,8 +41,8 @@ pub const ENCAPSULATION: &[Code] = &[
     code(
         0x64,
         "invalid session",
-        "The device has forgotten the session, as after a restart.",
-        "Connect again; the link does that by itself.",
+        "The device does not know the session, for example after a restart.",
+        "Connect again; armctl does this automatically.",
     ),
     code(
         0x65,
@@ -53,7 +53,7 @@ pub const ENCAPSULATION: &[Code] = &[
     code(
         0x69,
         "unsupported protocol version",
-        "The device speaks another version of the encapsulation.",
+        "The device uses another version of the encapsulation.",
         "Check that the address is that of an EtherNet/IP device.",
     ),
 ];
@@ -70,7 +70,7 @@ pub const GENERAL: &[Code] = &[
     code(
         0x02,
         "resource unavailable",
-        "The device has no room left for the request.",
+        "The device has no memory for the request.",
         "Close connections of other masters and tools, or wait until they time out.",
     ),
     code(
@@ -91,24 +91,29 @@ pub const GENERAL: &[Code] = &[
         "The device has no such object.",
         "Check class and instance; probe the target for the assemblies it has.",
     ),
-    code(0x06, "partial transfer", "Only a part of the data fitted.", "Read the rest in another request."),
-    code(0x07, "connection lost", "The connection that carried the request is gone.", "Open it again."),
+    code(
+        0x06,
+        "partial transfer",
+        "Only a part of the data fits into the answer.",
+        "Read the rest in another request.",
+    ),
+    code(0x07, "connection lost", "The connection of the request was lost.", "Open it again."),
     code(
         0x08,
         "service not supported",
         "The object does not have this service.",
-        "Check the service; many objects can be read only whole or only by attribute.",
+        "Check the service; many objects allow only a complete read, or only a read of one attribute.",
     ),
     code(0x09, "invalid attribute value", "The attribute cannot have this value.", "Check the value and its size."),
-    code(0x0A, "attribute list error", "An attribute of a list has a status of its own.", "Read them one by one."),
-    code(0x0B, "already in requested state", "The object is already in the mode or state asked for.", "Nothing to do."),
+    code(0x0A, "attribute list error", "Each attribute of the list has its own status.", "Read them one by one."),
+    code(0x0B, "already in requested state", "The object is already in the requested mode or state.", "Nothing to do."),
     code(
         0x0C,
         "object state conflict",
         "The object cannot do this in its state; an assembly that is owned by a connection cannot be written.",
-        "End what holds the object, such as the connection of a PLC, and try again.",
+        "End the connection that uses the object, such as that of a PLC, and try again.",
     ),
-    code(0x0D, "object already exists", "An object of this number is there.", "Use another instance."),
+    code(0x0D, "object already exists", "An object with this number exists.", "Use another instance."),
     code(0x0E, "attribute not settable", "The attribute can only be read.", "Nothing to do; it cannot be changed."),
     code(
         0x0F,
@@ -122,14 +127,14 @@ pub const GENERAL: &[Code] = &[
         "The device cannot do this in its mode.",
         "Check the mode of the device, and whether a master owns it.",
     ),
-    code(0x11, "reply data too large", "The answer does not fit into a reply.", "Ask for less at a time."),
+    code(0x11, "reply data too large", "The answer does not fit into a reply.", "Read less data per request."),
     code(0x12, "fragmentation of a value", "A value would be cut in two.", "Ask for whole values."),
     code(0x13, "not enough data", "The request is too short.", "Check the size of the data."),
     code(
         0x14,
         "attribute not supported",
         "The object does not have this attribute.",
-        "Check the attribute; optional ones are often left out.",
+        "Check the attribute; many devices do not have the optional ones.",
     ),
     code(0x15, "too much data", "The request is too long.", "Check the size of the data."),
     code(
@@ -138,31 +143,46 @@ pub const GENERAL: &[Code] = &[
         "The device has no such instance.",
         "Check the instance; probe the target for the assemblies it has.",
     ),
-    code(0x17, "no fragmentation in progress", "A part came without a beginning.", "Start the transfer again."),
-    code(0x18, "no stored attribute data", "Nothing was saved that could be restored.", "Save first."),
+    code(0x17, "no fragmentation in progress", "The first part is missing.", "Start the transfer again."),
+    code(0x18, "no stored attribute data", "No saved data exists.", "Save first."),
     code(0x19, "store operation failure", "The device could not save.", "Check the memory of the device."),
-    code(0x1A, "request too large for the route", "A network on the way takes less.", "Send less at a time."),
-    code(0x1B, "reply too large for the route", "A network on the way takes less.", "Ask for less at a time."),
-    code(0x1C, "missing attribute list entry", "A list lacks an attribute that is needed.", "Complete the list."),
+    code(
+        0x1A,
+        "request too large for the route",
+        "A network on the route allows less data.",
+        "Send less data per request.",
+    ),
+    code(
+        0x1B,
+        "reply too large for the route",
+        "A network on the route allows less data.",
+        "Read less data per request.",
+    ),
+    code(0x1C, "missing attribute list entry", "A list does not have a required attribute.", "Complete the list."),
     code(0x1D, "invalid attribute list", "The list of attributes is not valid.", "Check the list."),
-    code(0x1E, "embedded service error", "A request within the request failed.", "Look at the status within."),
+    code(0x1E, "embedded service error", "A request within the request failed.", "Check the inner status."),
     code(
         0x1F,
         "vendor-specific error",
-        "The device has a reason of its own, in the extended status.",
+        "The device reports its own code in the extended status.",
         "Look it up in the device's manual.",
     ),
     code(0x20, "invalid parameter", "A parameter of the service is not valid.", "Check the data of the request."),
     code(0x21, "write-once value already written", "The value can be written only once.", "Nothing to do."),
-    code(0x22, "invalid reply", "Something behind the device answered nonsense.", "Check what is behind it."),
+    code(
+        0x22,
+        "invalid reply",
+        "A device behind this one sent an invalid answer.",
+        "Check the devices behind this one.",
+    ),
     code(
         0x25,
         "key failure in path",
-        "The device is not the one that the electronic key names.",
+        "The device does not match the electronic key.",
         "Compare the key with the identity of the device, or leave the key out.",
     ),
     code(0x26, "invalid path size", "The length of the path does not fit its content.", "Check the path."),
-    code(0x27, "unexpected attribute in list", "An attribute of the list cannot be set now.", "Take it out."),
+    code(0x27, "unexpected attribute in list", "An attribute of the list cannot be set now.", "Remove it."),
     code(0x28, "invalid member id", "The object has no such member.", "Check the member."),
     code(0x29, "member not settable", "The member can only be read.", "Nothing to do; it cannot be changed."),
 ];
@@ -172,55 +192,55 @@ pub const CONNECTION: &[Code] = &[
     code(
         0x0100,
         "connection in use or duplicate open",
-        "The device has a connection with the same serial numbers, left over from an earlier one.",
+        "The device still has an earlier connection with the same serial numbers.",
         "Wait until it times out there (at most 10 s), then try again.",
     ),
     code(
         0x0103,
         "transport class or trigger not supported",
-        "The device does not offer this kind of connection.",
+        "The device does not support this connection class or trigger.",
         "Check that it has cyclic (class 1) connections.",
     ),
     code(
         0x0106,
         "ownership conflict",
         "Another master owns the outputs, or a dead connection has not timed out yet.",
-        "Find out which PLC or session holds the device; end it, or wait until it times out.",
+        "Find the PLC or session that owns the device; end it, or wait until it times out.",
     ),
     code(
         0x0107,
         "connection not found",
         "There is no such connection, or it has timed out.",
-        "Nothing to do when closing; else open it again.",
+        "Nothing to do at a close; otherwise, open it again.",
     ),
     code(
         0x0108,
         "invalid connection type",
-        "The device does not offer this kind of travel (point to point, multicast).",
-        "Try with multicast on, or off.",
+        "The device does not support this connection type (point to point, multicast).",
+        "Set multicast to the other value.",
     ),
     code(
         0x0109,
         "invalid connection size",
-        "The sizes are not those of the device's assemblies; a word that follows is the right one.",
+        "The sizes do not match the device's assemblies; the word that follows is the correct size.",
         "Set the sizes that a probe of the target finds.",
     ),
     code(
         0x0110,
         "device not configured",
-        "The device waits for its configuration.",
+        "The device has no configuration yet.",
         "Check the configuration instance, and the settings of the network unit.",
     ),
     code(
         0x0111,
         "RPI not supported",
-        "The device does not offer this packet interval.",
+        "The device does not support this packet interval.",
         "Set another rpi; 10 ms to 100 ms are usual.",
     ),
     code(
         0x0112,
         "RPI not acceptable",
-        "The device cannot hold this packet interval; what follows may say which it can.",
+        "The device cannot keep this packet interval; the words that follow may give a valid one.",
         "Set a longer rpi.",
     ),
     code(
@@ -232,19 +252,19 @@ pub const CONNECTION: &[Code] = &[
     code(
         0x0114,
         "vendor or product code mismatch",
-        "The device is not the one that the electronic key names.",
+        "The device does not match the electronic key.",
         "Compare the key with the identity of the device, or leave the key out.",
     ),
     code(
         0x0115,
         "device type mismatch",
-        "The device is not of the type that the electronic key names.",
+        "The type of the device does not match the electronic key.",
         "Compare the key with the identity of the device, or leave the key out.",
     ),
     code(
         0x0116,
         "revision mismatch",
-        "The device has another revision than the electronic key names.",
+        "The revision of the device differs from the electronic key.",
         "Compare the key with the identity of the device, allow compatible revisions, or leave the key out.",
     ),
     code(
@@ -262,8 +282,8 @@ pub const CONNECTION: &[Code] = &[
     code(
         0x0119,
         "no controlling connection",
-        "Listening needs a connection of another kind to listen to.",
-        "Open with an owner first, or input only.",
+        "A listen-only connection needs an owner connection.",
+        "Open an owner connection first, or use input only.",
     ),
     code(
         0x011A,
@@ -271,20 +291,20 @@ pub const CONNECTION: &[Code] = &[
         "All connections of the device are in use.",
         "Close those of other masters and tools, or wait until they time out.",
     ),
-    code(0x011B, "RPI below the production inhibit time", "The device is not to send as often.", "Set a longer rpi."),
+    code(0x011B, "RPI below the production inhibit time", "The device must not send so often.", "Set a longer rpi."),
     code(0x011C, "transport class not supported", "The device does not offer cyclic connections.", "Check the device."),
     code(0x011D, "production trigger not supported", "The device does not send cyclically.", "Check the device."),
     code(0x011E, "direction not supported", "The device does not offer this direction.", "Check the device."),
     code(
         0x011F,
         "invalid O->T fixed or variable",
-        "The device wants the other kind of size to it.",
+        "The device needs the other size type (fixed or variable) for its outputs.",
         "Probe the target; report the device.",
     ),
     code(
         0x0120,
         "invalid T->O fixed or variable",
-        "The device wants the other kind of size from it.",
+        "The device needs the other size type (fixed or variable) for its inputs.",
         "Probe the target; report the device.",
     ),
     code(0x0121, "invalid O->T priority", "The device does not offer this priority.", "Report the device."),
@@ -292,32 +312,32 @@ pub const CONNECTION: &[Code] = &[
     code(
         0x0123,
         "invalid O->T connection type",
-        "The device does not take its outputs this way.",
+        "The device does not accept its outputs with this connection type.",
         "Report the device; point to point is usual.",
     ),
     code(
         0x0124,
         "invalid T->O connection type",
-        "The device does not send its inputs this way.",
-        "Try with multicast on, or off.",
+        "The device does not send its inputs with this connection type.",
+        "Set multicast to the other value.",
     ),
-    code(0x0125, "invalid redundant owner", "The device has one owner at most.", "Report the device."),
+    code(0x0125, "invalid redundant owner", "The device has at most one owner.", "Report the device."),
     code(
         0x0126,
         "invalid configuration size",
-        "The configuration data has another size; a word that follows is the right one in words.",
+        "The size of the configuration data is wrong; the next word is the correct size, as a number of words.",
         "Set no configuration data, or what the device expects.",
     ),
     code(
         0x0127,
         "invalid O->T size",
-        "The output image has another size; a word that follows is the right one.",
+        "The size of the output image is wrong; the word that follows is the correct one.",
         "Set the sizes that a probe of the target finds.",
     ),
     code(
         0x0128,
         "invalid T->O size",
-        "The input image has another size; a word that follows is the right one.",
+        "The size of the input image is wrong; the word that follows is the correct one.",
         "Set the sizes that a probe of the target finds.",
     ),
     code(
@@ -352,45 +372,65 @@ pub const CONNECTION: &[Code] = &[
     code(
         0x0203,
         "connection timed out",
-        "The connection had been silent for too long.",
+        "The connection had no traffic for too long.",
         "Open it again; check cables and load of the network.",
     ),
     code(
         0x0204,
         "unconnected request timed out",
-        "What is behind the device did not answer.",
-        "Check what is behind it.",
+        "A device behind this one did not answer.",
+        "Check the devices behind this one.",
     ),
     code(0x0205, "bad parameter in unconnected request", "A time-out or path is not valid.", "Check the request."),
-    code(0x0206, "message too large", "The message does not fit the unconnected service.", "Send less at a time."),
-    code(0x0207, "unconnected acknowledge without reply", "It was taken, but not answered.", "Try again."),
+    code(
+        0x0206,
+        "message too large",
+        "The message does not fit the unconnected service.",
+        "Send less data per request.",
+    ),
+    code(
+        0x0207,
+        "unconnected acknowledge without reply",
+        "The device acknowledged the request, but did not answer it.",
+        "Try again.",
+    ),
     code(0x0301, "no buffer memory", "The device has no room.", "Close connections, wait, try again."),
     code(0x0302, "bandwidth not available", "The network has no room for this interval.", "Set a longer rpi."),
     code(0x0303, "no consumed connection id available", "The device has no room.", "Close other connections."),
     code(0x0304, "not configured to send scheduled data", "The network is not scheduled.", "Check the network."),
     code(0x0305, "schedule signature mismatch", "The schedule changed.", "Check the network."),
-    code(0x0311, "port not available", "The path leaves by a port that is not there.", "Leave the route out."),
-    code(0x0312, "link address not valid", "The path names an address behind a port that is not there.", "Check it."),
+    code(0x0311, "port not available", "The path uses a port that does not exist.", "Remove the route."),
+    code(
+        0x0312,
+        "link address not valid",
+        "The path contains an address behind a port that does not exist.",
+        "Check it.",
+    ),
     code(
         0x0315,
         "invalid segment in connection path",
         "The device does not understand the path.",
-        "Leave out the key and the configuration, or change the instances.",
+        "Remove the key and the configuration, or change the instances.",
     ),
     code(0x0316, "error in close path", "The path differs from that of the open.", "Wait until it times out."),
-    code(0x0317, "scheduling not specified", "The network wants a schedule.", "Check the network."),
-    code(0x0318, "link address to self", "The path leads back to the device.", "Leave the route out."),
+    code(0x0317, "scheduling not specified", "The network needs a schedule.", "Check the network."),
+    code(0x0318, "link address to self", "The path leads back to the device.", "Remove the route."),
     code(0x0319, "secondary resources unavailable", "The redundant device has no room.", "Check the device."),
-    code(0x031A, "rack connection already open", "A connection to the whole rack holds it.", "Close that one."),
-    code(0x031B, "module connection already open", "A connection to a module holds it.", "Close that one."),
-    code(0x031C, "miscellaneous", "The device has a reason of its own.", "Look into the device's manual."),
+    code(0x031A, "rack connection already open", "A connection to the whole rack uses it.", "Close that one."),
+    code(0x031B, "module connection already open", "A connection to a module uses it.", "Close that one."),
+    code(0x031C, "miscellaneous", "The device reports its own code.", "See the device's manual."),
     code(0x031D, "redundant connection mismatch", "Redundant owners ask for different things.", "Check the owners."),
     code(0x031E, "no more consumers", "All links of the producer are in use.", "Close other connections."),
     code(0x031F, "no configuration for the path", "The producer is not configured.", "Check its configuration."),
-    code(0x0800, "network link offline", "A network on the way is down.", "Check the network."),
+    code(0x0800, "network link offline", "A network on the route is down.", "Check the network."),
     code(0x0810, "no target application data", "The device has no data to send yet.", "Start its application."),
-    code(0x0811, "no originator application data", "There was no data to send yet.", "Try again."),
-    code(0x0813, "not configured for off-subnet multicast", "Groups do not cross routers here.", "Turn multicast off."),
+    code(0x0811, "no originator application data", "The originator has no data to send yet.", "Try again."),
+    code(
+        0x0813,
+        "not configured for off-subnet multicast",
+        "Multicast does not cross routers here.",
+        "Turn multicast off.",
+    ),
 ];
 
 /// Description of an encapsulation status.
@@ -424,7 +464,7 @@ pub fn describe(status: &Status) -> String {
     }
     text.push(')');
     if let (1, [0x0109 | 0x0127 | 0x0128, right, ..]) = (status.general, &status.extended[..]) {
-        let _ = write!(text, ", the right one is {right} bytes");
+        let _ = write!(text, ", the correct size is {right} bytes");
     }
     text
 }
@@ -452,7 +492,7 @@ mod tests {
     #[test]
     fn statuses_are_told_in_a_line() {
         let size = Status::connection(0x0109, &[54]);
-        assert_eq!(describe(&size), "invalid connection size (0x01/0x0109), the right one is 54 bytes");
+        assert_eq!(describe(&size), "invalid connection size (0x01/0x0109), the correct size is 54 bytes");
         assert_eq!(describe(&Status::general(0x16)), "object does not exist (0x16)");
         assert_eq!(describe(&Status { general: 0xD0, extended: vec![7] }), "an unknown status (0xd0/0x0007)");
         assert_eq!(meaning(&Status::connection(0x7777, &[])).unwrap().name, "connection failure");

@@ -231,14 +231,14 @@ mod tests {
 
     #[test]
     fn errors_name_the_key_and_the_form() {
-        let share = "a share of 0% to 100% with at most two decimals, as in 2.5%";
+        let share = "a percentage from 0% to 100% with at most two decimals, as in 2.5%";
         let time = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
         let cases = [
-            ("", "'' is not of the form key=value, as in drop=5%"),
-            ("drop", "'drop' is not of the form key=value, as in drop=5%"),
-            ("drop=5%,", "'' is not of the form key=value, as in drop=5%"),
-            ("lose=5%", "unknown key 'lose'; there are drop, dup, delay, reorder, corrupt, busy and seed"),
-            ("drop=1%,drop=2%", "drop is given twice"),
+            ("", "'' must be key=value, as in drop=5%"),
+            ("drop", "'drop' must be key=value, as in drop=5%"),
+            ("drop=5%,", "'' must be key=value, as in drop=5%"),
+            ("lose=5%", "unknown key 'lose'; known: drop, dup, delay, reorder, corrupt, busy and seed"),
+            ("drop=1%,drop=2%", "drop appears twice"),
             ("drop=5", &format!("drop: '5' is not {share}")),
             ("dup=101%", &format!("dup: '101%' is not {share}")),
             ("dup=-1%", &format!("dup: '-1%' is not {share}")),
@@ -248,7 +248,7 @@ mod tests {
             ("delay=50..20ms", &format!("delay: '50..20ms' is not {time}")),
             ("delay=61s", &format!("delay: '61s' is not {time}")),
             ("delay=ä..é", &format!("delay: 'ä..é' is not {time}")),
-            ("seed=-1", "seed: '-1' is not a whole number of 0 to 18446744073709551615"),
+            ("seed=-1", "seed: '-1' is not a whole number from 0 to 18446744073709551615"),
         ];
         for (text, message) in cases {
             assert_eq!(text.parse::<FaultSpec>().unwrap_err().to_string(), message, "{text}");

@@ -188,11 +188,11 @@ mod tests {
     #[test]
     fn errors_name_the_key_and_the_form() {
         for (text, message) in [
-            ("echo=on", "echo takes no value, but has 'on'"),
-            ("echo,echo", "echo is given twice"),
-            ("noise", "'noise' is not of the form key=value, as in drop=5%"),
-            ("reorder=1%", "unknown key 'reorder'; there are noise, parity, drop, dup, delay, busy, echo and seed"),
-            ("noise=1", "noise: '1' is not a share of 0% to 100% with at most two decimals, as in 2.5%"),
+            ("echo=on", "echo has no value, but got 'on'"),
+            ("echo,echo", "echo appears twice"),
+            ("noise", "'noise' must be key=value, as in drop=5%"),
+            ("reorder=1%", "unknown key 'reorder'; known: noise, parity, drop, dup, delay, busy, echo and seed"),
+            ("noise=1", "noise: '1' is not a percentage from 0% to 100% with at most two decimals, as in 2.5%"),
         ] {
             assert_eq!(text.parse::<LineFaultSpec>().unwrap_err().to_string(), message, "{text}");
         }

@@ -66,13 +66,13 @@ impl fmt::Display for Share {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FaultSpecError {
     /// A part without a value.
-    #[error("'{part}' is not of the form key=value, as in drop=5%")]
+    #[error("'{part}' must be key=value, as in drop=5%")]
     NoValue {
         /// The part.
         part: String,
     },
     /// An unknown key.
-    #[error("unknown key '{key}'; there are {known}")]
+    #[error("unknown key '{key}'; known: {known}")]
     UnknownKey {
         /// The key.
         key: String,
@@ -80,7 +80,7 @@ pub enum FaultSpecError {
         known: String,
     },
     /// A repeated key.
-    #[error("{key} is given twice")]
+    #[error("{key} appears twice")]
     Twice {
         /// The key.
         key: &'static str,
@@ -96,7 +96,7 @@ pub enum FaultSpecError {
         form: &'static str,
     },
     /// A value for a key that takes none.
-    #[error("{key} takes no value, but has '{value}'")]
+    #[error("{key} has no value, but got '{value}'")]
     NeedlessValue {
         /// The key.
         key: &'static str,
@@ -105,9 +105,9 @@ pub enum FaultSpecError {
     },
 }
 
-const SHARE_FORM: &str = "a share of 0% to 100% with at most two decimals, as in 2.5%";
+const SHARE_FORM: &str = "a percentage from 0% to 100% with at most two decimals, as in 2.5%";
 const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
-const SEED_FORM: &str = "a whole number of 0 to 18446744073709551615";
+const SEED_FORM: &str = "a whole number from 0 to 18446744073709551615";
 
 /// Key of a specification `S`, with the function that sets its value.
 type Key<S> = (&'static str, Setter<S>);

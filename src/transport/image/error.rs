@@ -72,7 +72,7 @@ impl Cause {
 
     /// Cause of a loss; without an error, the connection was opened again in the meantime.
     pub fn of_loss(trouble: Option<impl fmt::Display>) -> Self {
-        trouble.map_or_else(|| Self::new("it was opened anew"), Self::new)
+        trouble.map_or_else(|| Self::new("armctl opened the connection again"), Self::new)
     }
 
     /// Adds advice.
@@ -113,10 +113,10 @@ impl fmt::Display for Cause {
 impl fmt::Display for Outputs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Never => f.write_str("its outputs are not shown from here"),
-            Self::Released => f.write_str("it has let go of its outputs"),
+            Self::Never => f.write_str("armctl does not control its outputs"),
+            Self::Released => f.write_str("the controller has cleared its outputs"),
             Self::ReleasedWithin(time) => {
-                write!(f, "it holds its outputs as they were, for at most {} ms more", time.as_millis())
+                write!(f, "the controller keeps its outputs for at most {} ms more", time.as_millis())
             }
         }
     }

@@ -62,7 +62,7 @@ pub trait ImageConnection: fmt::Debug {
     /// # Errors
     /// The image has another size, or the connection is read-only. A loss is not an error here; `next` reports it.
     fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
-        Err(LinkError::Settings(Cause::new("a link that only reads or listens shows nothing")))
+        Err(LinkError::Settings(Cause::new("a read-only connection sends no outputs")))
     }
 
     /// Waits for news beyond `known`: [`Event::Sent`], [`Event::Image`], [`Event::Lost`] or [`Event::Reopened`]. Cancel

@@ -49,7 +49,7 @@ impl Client {
     pub async fn open(endpoint: &Endpoint, hello: &Hello, within: Duration) -> Result<Self, Loss> {
         let by = Instant::now() + within;
         let opened = timeout_at(by, stream(endpoint)).await.unwrap_or(Err(ConnectError::TimedOut.into()))?;
-        let invalid = |error: SendError| Loss::Io(format!("what is to be said to it: {error}"));
+        let invalid = |error: SendError| Loss::Io(format!("cannot encode the packet: {error}"));
         let session = Session::new(hello, Instant::now(), by).map_err(invalid)?;
         Ok(Self { stream: opened, session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None })
     }

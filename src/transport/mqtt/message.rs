@@ -101,10 +101,10 @@ pub enum Event {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum SendError {
     /// The broker does not accept packets of this size.
-    #[error("the broker takes no message of this size")]
+    #[error("the broker accepts no message of this size")]
     TooLarge,
     /// Not valid in MQTT, such as a wrong topic.
-    #[error("it cannot be said in MQTT")]
+    #[error("MQTT cannot encode the message")]
     Invalid,
 }
 

@@ -33,7 +33,7 @@ pub enum Loss {
     #[error("{0}")]
     Tls(TlsError),
     /// The broker accepted the connection but did not answer.
-    #[error("it takes the connection and does not answer")]
+    #[error("it accepts the connection, but does not answer")]
     Unanswered,
     /// The broker stopped answering.
     #[error("it does not answer any more")]
@@ -50,16 +50,16 @@ pub enum Loss {
         reason: Option<String>,
     },
     /// Not MQTT, or not valid.
-    #[error("what it says is not MQTT ({0})")]
+    #[error("it does not send MQTT ({0})")]
     Garbage(String),
     /// Violation of the MQTT protocol.
     #[error("it breaks the MQTT protocol: {0}")]
     Protocol(&'static str),
     /// The broker sends too much; see the flood limit.
-    #[error("it sends too much: more than {} packets or {} bytes in {} s that answer nothing", FLOOD.0, FLOOD.1, FLOOD.2)]
+    #[error("it sends too much: more than {} packets or {} bytes in {} s without a request", FLOOD.0, FLOOD.1, FLOOD.2)]
     Flood,
     /// The broker does not read what is sent to it.
-    #[error("it does not read what is sent to it")]
+    #[error("it does not read the sent data")]
     Unread,
     /// The broker sent a packet above the size limit.
     #[error("it sends a packet of more than {LARGEST} bytes")]
@@ -92,9 +92,9 @@ fn goodbye(code: u8, reason: Option<&str>) -> String {
         (0x96, "message rate too high"),
         (0x97, "quota exceeded"),
         (0x98, "administrative action"),
-        (0x9a, "it keeps no retained messages"),
+        (0x9a, "it stores no retained messages"),
         (0x9c, "use another server"),
-        (0x9d, "it has moved"),
+        (0x9d, "it has a new address"),
     ];
     let name = CODES.iter().find(|(known, _)| *known == code).map_or("unspecified", |(_, name)| name);
     match reason {

@@ -25,7 +25,7 @@ pub struct Identity {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum TlsError {
     /// The issuer of the broker's certificate is not trusted.
-    #[error("its certificate is issued by nobody who is trusted here")]
+    #[error("this computer does not trust the issuer of its certificate")]
     UnknownIssuer,
     /// The certificate is for another host name.
     #[error("its certificate is for another name")]
@@ -43,13 +43,13 @@ pub enum TlsError {
     #[error("its certificate is not valid: {0}")]
     Certificate(String),
     /// The port does not use TLS.
-    #[error("it does not speak TLS on this port")]
+    #[error("it does not use TLS on this port")]
     NoTls,
     /// The broker rejects this client's certificate, or requires one.
     #[error("it does not accept this client's certificate ({0})")]
     Rejected(String),
     /// The two sides have no common TLS version or cipher.
-    #[error("no version or cipher of TLS is common to both ({0})")]
+    #[error("no common TLS version or cipher ({0})")]
     NothingInCommon(String),
     /// A local certificate or key is not valid.
     #[error("{0}")]
@@ -95,7 +95,7 @@ mod rustls_link {
         /// A certificate or key is not valid, or the system has no roots.
         pub fn new(host: &str, trust: &Trust, identity: Option<&Identity>) -> Result<Self, TlsError> {
             let name = ServerName::try_from(host.to_owned())
-                .map_err(|_| TlsError::Setup(format!("'{host}' is not a valid name of a server")))?;
+                .map_err(|_| TlsError::Setup(format!("'{host}' is not a valid server name")))?;
             let builder = ClientConfig::builder_with_provider(Arc::new(default_provider()))
                 .with_safe_default_protocol_versions()
                 .map_err(|error| TlsError::Other(error.to_string()))?
@@ -108,7 +108,7 @@ mod rustls_link {
                         TlsError::Setup("the key of this client is not a private key in PEM".to_owned())
                     })?;
                     builder.with_client_auth_cert(chain, key).map_err(|error| {
-                        TlsError::Setup(format!("certificate and key of this client do not fit: {error}"))
+                        TlsError::Setup(format!("certificate and key of this client do not match: {error}"))
                     })?
                 }
             };
@@ -133,7 +133,7 @@ mod rustls_link {
                 let found = rustls_native_certs::load_native_certs();
                 let (_, _) = store.add_parsable_certificates(found.certs);
                 if store.is_empty() {
-                    return Err(TlsError::Setup("this machine has no certificates of authorities".to_owned()));
+                    return Err(TlsError::Setup("this computer has no certificates of authorities".to_owned()));
                 }
             }
             Trust::Roots(pem) => {
@@ -202,7 +202,7 @@ mod rustls_link {
             Err(TlsError::Setup("this armctl was built without TLS (feature plant-tls)".to_owned()))
         }
 
-        #[expect(clippy::unused_async, reason = "the other one waits")]
+        #[expect(clippy::unused_async, reason = "the other version waits")]
         pub(in super::super) async fn connect(&self, _: TcpStream) -> Result<TcpStream, TlsError> {
             match *self {}
         }

@@ -25,13 +25,13 @@ pub enum ProfibusError {
         text: String,
     },
     /// The adapter was disconnected.
-    #[error("the adapter is gone: {text}")]
+    #[error("the adapter was disconnected: {text}")]
     Gone {
         /// Reason of the system.
         text: String,
     },
     /// Another master is on the bus. Nothing was sent after it was heard.
-    #[error("another master, station {master}, is on the bus ({heard})")]
+    #[error("another master is on the bus: station {master} ({heard})")]
     OtherMaster {
         /// Address of the master.
         master: u8,
@@ -39,13 +39,13 @@ pub enum ProfibusError {
         heard: &'static str,
     },
     /// Unreadable traffic is on the bus. Nothing was sent.
-    #[error("there is traffic on the bus that cannot be read at this bit rate ({bytes} bytes)")]
+    #[error("cannot decode the traffic on the bus at this bit rate ({bytes} bytes)")]
     Unreadable {
         /// Number of unreadable bytes.
         bytes: usize,
     },
     /// The station did not answer.
-    #[error("station {station} did not answer {asked} ({attempts} attempts, {} ms each{heard})", slot.as_millis())]
+    #[error("no answer from station {station} to {asked} ({attempts} attempts, {} ms each{heard})", slot.as_millis())]
     NoAnswer {
         /// Address of the station.
         station: u8,
@@ -75,7 +75,7 @@ pub enum ProfibusError {
         status: Status,
     },
     /// The answer cannot be decoded.
-    #[error("the answer of station {station} to {asked} cannot be read: {why}")]
+    #[error("cannot decode the answer of station {station} to {asked}: {why}")]
     Malformed {
         /// Address of the station.
         station: u8,
@@ -96,7 +96,8 @@ pub enum ProfibusError {
     },
     /// The configuration has other image sizes.
     #[error(
-        "the configuration {} has {input} bytes from station {station} and {output} to it, not {expected_input} and {expected_output}",
+        "the configuration {} has {input} input bytes from station {station} and {output} output bytes, not \
+         {expected_input} and {expected_output}",
         hex(configuration)
     )]
     Size {
@@ -124,7 +125,7 @@ pub enum ProfibusError {
         expected: usize,
     },
     /// The slave reports a parameter fault.
-    #[error("station {station} does not take the user parameters {}", hex(sent))]
+    #[error("station {station} refuses the user parameters {}", hex(sent))]
     ParameterFault {
         /// Address of the station.
         station: u8,
@@ -132,7 +133,7 @@ pub enum ProfibusError {
         sent: Vec<u8>,
     },
     /// The slave reports a configuration fault.
-    #[error("station {station} does not take the configuration {}; {}", hex(sent), wants(wanted.as_deref()))]
+    #[error("station {station} refuses the configuration {}; {}", hex(sent), wants(wanted.as_deref()))]
     ConfigurationFault {
         /// Address of the station.
         station: u8,
@@ -142,7 +143,7 @@ pub enum ProfibusError {
         wanted: Option<Vec<u8>>,
     },
     /// The slave is locked by another master.
-    #[error("station {station} belongs to master {}", master.map_or_else(|| "?".to_owned(), |master| master.to_string()))]
+    #[error("master {} owns station {station}", master.map_or_else(|| "?".to_owned(), |master| master.to_string()))]
     Locked {
         /// Address of the station.
         station: u8,
@@ -168,7 +169,8 @@ pub enum ProfibusError {
         why: String,
     },
     /// No data exchange of the station with a master was heard. Nothing was sent.
-    #[error("no exchange of station {station} with a master was heard within {} ms ({telegrams} telegrams, {noise} bytes of noise)", after.as_millis())]
+    #[error("no data exchange between station {station} and a master within {} ms ({telegrams} telegrams, {noise} \
+             bytes of noise)", after.as_millis())]
     NotHeard {
         /// Address of the station.
         station: u8,
@@ -180,7 +182,7 @@ pub enum ProfibusError {
         noise: u64,
     },
     /// The link was lost after the caller last looked at it (an older generation).
-    #[error("the connection was lost meanwhile")]
+    #[error("the connection was lost")]
     Outdated,
     /// The link was closed by this program.
     #[error("the connection is closed")]
@@ -204,19 +206,22 @@ pub struct Heard {
 impl std::fmt::Display for Heard {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match (self.noise, self.echo) {
-            (false, false) => "; nothing was heard",
-            (true, false) => "; damaged bytes were heard",
-            (false, true) => "; only the echo of the adapter was heard",
-            (true, true) => "; the echo of the adapter and damaged bytes were heard",
+            (false, false) => "; no bytes received",
+            (true, false) => "; only damaged bytes received",
+            (false, true) => "; only the echo of the adapter received",
+            (true, true) => "; the echo of the adapter and damaged bytes received",
         })
     }
 }
 
 /// Bytes in the form of URLs.
 pub fn hex(bytes: &[u8]) -> String {
-    if bytes.is_empty() { "of no bytes".to_owned() } else { bytes.iter().map(|byte| format!("{byte:02X}")).collect() }
+    if bytes.is_empty() { "(empty)".to_owned() } else { bytes.iter().map(|byte| format!("{byte:02X}")).collect() }
 }
 
 fn wants(wanted: Option<&[u8]>) -> String {
-    wanted.map_or_else(|| "it does not say which it wants".to_owned(), |wanted| format!("it wants {}", hex(wanted)))
+    wanted.map_or_else(
+        || "it does not report the configuration that it needs".to_owned(),
+        |wanted| format!("it needs {}", hex(wanted)),
+    )
 }

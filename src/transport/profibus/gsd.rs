@@ -80,7 +80,7 @@ impl Entry<'_> {
     }
 
     fn byte(&self, text: &str) -> Result<u8, GsdError> {
-        u8::try_from(self.number(text)?).map_err(|_| self.error(format!("'{}' does not fit a byte", text.trim())))
+        u8::try_from(self.number(text)?).map_err(|_| self.error(format!("'{}' is more than a byte", text.trim())))
     }
 
     fn bytes(&self, text: &str) -> Result<Vec<u8>, GsdError> {
@@ -89,12 +89,12 @@ impl Entry<'_> {
             .filter(|part| !part.trim().is_empty())
             .map(|part| self.byte(part))
             .collect::<Result<_, _>>()?;
-        if bytes.len() > MAX_DATA { Err(self.error(format!("{} bytes are too many", bytes.len()))) } else { Ok(bytes) }
+        if bytes.len() > MAX_DATA { Err(self.error(format!("{} bytes: too many", bytes.len()))) } else { Ok(bytes) }
     }
 
     /// Splits the value into the quoted text and the rest.
     fn quoted(&self) -> Result<(&str, &str), GsdError> {
-        let wrong = || self.error("a name in quotation marks belongs here");
+        let wrong = || self.error("a name in quotation marks is expected");
         let rest = self.value.trim().strip_prefix('"').ok_or_else(wrong)?;
         rest.split_once('"').ok_or_else(wrong)
     }
@@ -108,7 +108,7 @@ impl Entry<'_> {
         let at = usize::try_from(self.number(rest.trim_end_matches([')', ' ']))?).unwrap_or(usize::MAX);
         let bytes = self.bytes(self.value)?;
         if at.saturating_add(bytes.len()) > Parameters::MAX_USER {
-            return Err(self.error(format!("there are {} bytes of user parameters at most", Parameters::MAX_USER)));
+            return Err(self.error(format!("at most {} bytes of user parameters are possible", Parameters::MAX_USER)));
         }
         if parameters.len() < at + bytes.len() {
             parameters.resize(at + bytes.len(), 0);
@@ -121,7 +121,7 @@ impl Entry<'_> {
     fn length(&self, parameters: &mut Vec<u8>) -> Result<(), GsdError> {
         let len = usize::try_from(self.number(self.value)?).unwrap_or(usize::MAX);
         if len > Parameters::MAX_USER {
-            return Err(self.error(format!("there are {} bytes of user parameters at most", Parameters::MAX_USER)));
+            return Err(self.error(format!("at most {} bytes of user parameters are possible", Parameters::MAX_USER)));
         }
         if parameters.len() < len {
             parameters.resize(len, 0);
@@ -151,7 +151,7 @@ impl Gsd {
                 continue;
             }
             if !has_header {
-                return Err(entry.error("#Profibus_DP belongs before it; this may be another kind of file"));
+                return Err(entry.error("#Profibus_DP must be before this line; check that this is a GSD file"));
             }
             if let Some((_, inside)) = &mut module {
                 if entry.is("EndModule") {
@@ -169,10 +169,10 @@ impl Gsd {
                 Configuration::parse(&configuration).map_err(|error| entry.error(error.to_string()))?;
                 module = Some((line, Module { name: name.trim().to_owned(), configuration, parameters: Vec::new() }));
             } else if entry.is("EndModule") {
-                return Err(entry.error("there is no Module before it"));
+                return Err(entry.error("no Module is before it"));
             } else if entry.is("Ident_Number") {
                 let number = entry.number(entry.value)?;
-                ident = Some(u16::try_from(number).map_err(|_| entry.error("it has two bytes"))?);
+                ident = Some(u16::try_from(number).map_err(|_| entry.error("it must have two bytes"))?);
             } else {
                 gsd.take(&entry)?;
             }
@@ -227,13 +227,13 @@ impl Gsd {
             let found = self.modules.iter().find(|module| module.name.eq_ignore_ascii_case(name.trim()));
             let module = found.ok_or_else(|| {
                 let names: Vec<&str> = self.modules.iter().map(|module| module.name.as_str()).collect();
-                format!("there is no module '{name}'; there are {}", names.join(", "))
+                format!("no module '{name}'; known: {}", names.join(", "))
             })?;
             configuration.extend(&module.configuration);
             parameters.extend(&module.parameters);
         }
         if parameters.len() > Parameters::MAX_USER {
-            return Err("these modules have more user parameters than a telegram carries".to_owned());
+            return Err("these modules have too many user parameters for a telegram".to_owned());
         }
         Ok((configuration, parameters))
     }
@@ -337,31 +337,31 @@ EndModule
         assert_eq!((configuration.as_slice(), parameters.len()), (&[0xC0, 0xD7, 0xD7][..], 7));
         assert_eq!(gsd.fitting(48, 48).unwrap().name, "24 words in, out");
         assert_eq!(gsd.fitting(2, 2), None);
-        assert!(gsd.assemble(&["24"]).unwrap_err().contains("there are 24 words in, out, 2 words"));
+        assert!(gsd.assemble(&["24"]).unwrap_err().contains("known: 24 words in, out, 2 words"));
     }
 
     #[test]
     fn what_is_wrong_is_named_with_line_and_keyword() {
         for (from, to, message) in [
-            ("0x1234", "0x12345", "line 6: Ident_Number: it has two bytes"),
+            ("0x1234", "0x12345", "line 6: Ident_Number: it must have two bytes"),
             ("Ident_Number = 0x1234", "", "line 1: Ident_Number: it is missing"),
-            ("0x10, 0x20", "0x10, 0x200", "line 18: Ext_User_Prm_Data_Const(3): '0x200' does not fit a byte"),
+            ("0x10, 0x20", "0x10, 0x200", "line 18: Ext_User_Prm_Data_Const(3): '0x200' is more than a byte"),
             (
                 "Const(3)",
                 "Const(300)",
-                "line 18: Ext_User_Prm_Data_Const(300): there are 237 bytes of user parameters at most",
+                "line 18: Ext_User_Prm_Data_Const(300): at most 237 bytes of user parameters are possible",
             ),
             (
                 "0xC0, 0xD7, \\\n  0xD7",
                 "0xC0",
-                "line 19: Module: length of an identifier at offset 1: needs 1 bytes, 0 are there",
+                "line 19: Module: length of an identifier at offset 1: needs 1 bytes, but only 0 are present",
             ),
-            ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks belongs here"),
+            ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks is expected"),
             ("0x71\nEndModule", "0x71", "line 25: Module: it has no EndModule"),
             (
                 "#Profibus_DP",
                 "",
-                "line 3: GSD_Revision: #Profibus_DP belongs before it; this may be another kind of file",
+                "line 3: GSD_Revision: #Profibus_DP must be before this line; check that this is a GSD file",
             ),
             ("User_Prm_Data_Len = 5", "User_Prm_Data_Len = five", "line 15: User_Prm_Data_Len: 'five' is not a number"),
         ] {

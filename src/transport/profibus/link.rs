@@ -179,53 +179,65 @@ impl From<ProfibusError> for LinkError {
         match error {
             ProfibusError::Settings(_) => Self::Settings(cause),
             ProfibusError::Port { .. } => Self::Silent(cause.advice(
-                "check the name of the port (`armctl robots discover` lists those of this machine), what the adapter can do, and \
-                 that no session and no other program has it open",
+                "check the name of the port (`armctl robots discover` lists the ports) and the abilities of the \
+                 adapter; close every session and program that uses the port",
             )),
-            ProfibusError::Gone { .. } => Self::Silent(cause.advice("check the plug and the supply of the adapter")),
+            ProfibusError::Gone { .. } => {
+                Self::Silent(cause.advice("check the plug and the power supply of the adapter"))
+            }
             ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
-                "this program must be the only master of the line: disconnect the other one, or add role=listen to the URL to \
-                 see the images beside it",
+                "disconnect the other master, because armctl must be the only one; or add role=listen to the URL to \
+                 only read",
             )),
             ProfibusError::Unreadable { .. } => Self::Owned(cause.advice(
-                "another master may be on the line: baud of the URL must be that of the bus; check the terminators, and that \
-                 A and B are not crossed",
+                "set baud in the URL to that of the bus; check for another master, missing terminators, and crossed \
+                 A and B wires",
             )),
             ProfibusError::NoAnswer { .. } => Self::Silent(cause.advice(
-                "check station and baud of the URL, that A and B are not crossed, the terminators at both ends with their \
-                 supply, and that the controller is on; with a slow adapter, set slot=50ms",
+                "check station and baud in the URL, the A and B wires, and both terminators with their supply; check \
+                 that the controller is on. With a slow adapter, set slot=50ms",
             )),
-            ProfibusError::IsMaster { .. } => Self::Malformed(cause.advice("check station of the URL: `yrcx profibus scan`")),
+            ProfibusError::IsMaster { .. } => {
+                Self::Malformed(cause.advice("check station in the URL: `yrcx profibus scan`"))
+            }
             ProfibusError::Refused { .. } => Self::Refused(
-                cause.options(&["station", "cfg", "prm"]).advice(
-                    "the slave does not have what was asked for; where it was Get_Cfg, set cfg= or gsd= in the URL",
-                ),
-            ),
-            ProfibusError::Malformed { .. } => Self::Malformed(cause.advice("check that a PROFIBUS slave has this address")),
-            ProfibusError::Ident { found, .. } => Self::Refused(
-                cause.advice(format!("set ident={found:#06x} in the URL, or leave it away, if this is the controller")),
-            ),
-            ProfibusError::Size { .. } | ProfibusError::Length { .. } => Self::Size(
                 cause
-                    .options(&["station", "cfg"])
-                    .advice("the image has 48 bytes each way: check station and cfg of the URL, and the unit of the controller"),
+                    .options(&["station", "cfg", "prm"])
+                    .advice("the slave does not support this request; for Get_Cfg, set cfg= or gsd= in the URL"),
             ),
+            ProfibusError::Malformed { .. } => {
+                Self::Malformed(cause.advice("check that this is the address of a PROFIBUS slave"))
+            }
+            ProfibusError::Ident { found, .. } => Self::Refused(
+                cause.advice(format!("if this is the controller, set ident={found:#06x} in the URL, or remove ident")),
+            ),
+            ProfibusError::Size { .. } | ProfibusError::Length { .. } => {
+                Self::Size(cause.options(&["station", "cfg"]).advice(
+                    "the image must have 48 bytes each way: check station and cfg in the URL, and the unit of the \
+                     controller",
+                ))
+            }
             ProfibusError::ParameterFault { .. } => Self::Refused(
-                cause.options(&["prm", "gsd"]).advice("set prm= in the URL to the bytes in the GSD file of the unit, or gsd= to the file"),
+                cause
+                    .options(&["prm", "gsd"])
+                    .advice("set prm= in the URL to the bytes in the GSD file of the unit, or gsd= to the file"),
             ),
             ProfibusError::ConfigurationFault { .. } => Self::Refused(
-                cause.options(&["cfg", "gsd"]).advice("leave cfg away to take what the slave wants, or set gsd= to the file of the unit"),
+                cause
+                    .options(&["cfg", "gsd"])
+                    .advice("remove cfg to use the configuration of the slave, or set gsd= to the file of the unit"),
             ),
             ProfibusError::Locked { .. } => Self::Owned(cause.advice(
-                "disconnect that master, or close the session that holds the controller; role=listen in the URL sees the images \
-                 beside a PLC",
+                "disconnect that master, or close the session of the controller; with role=listen in the URL, armctl \
+                 only reads",
             )),
-            ProfibusError::NotReady { .. } | ProfibusError::Left { .. } => Self::Silent(
-                cause.advice("look at the unit's lamps and at the controller's display; `yrcx profibus probe` shows the diagnosis"),
-            ),
+            ProfibusError::NotReady { .. } | ProfibusError::Left { .. } => Self::Silent(cause.advice(
+                "check the lamps of the unit and the display of the controller; `yrcx profibus probe` shows the \
+                 diagnosis",
+            )),
             ProfibusError::NotHeard { .. } => Self::Silent(cause.advice(
-                "a controller shows its images to its master only: open a session, which commands it (`armctl session open`), or \
-                 listen where a PLC exchanges data with it, with station and baud of the URL as they are there",
+                "a controller sends its images only to its master. Open a session, which takes control (`armctl \
+                 session open`), or listen on the bus of its PLC; set station and baud to those of the bus",
             )),
             ProfibusError::Outdated | ProfibusError::Ended => Self::Local(cause),
         }

@@ -46,7 +46,7 @@ impl Quiet {
                 }
                 Piece::Telegram(Telegram::Frame(frame), _) => match frame.control {
                     Control::Request(..) => (frame.from, "it sent a request"),
-                    Control::Answer(..) => (frame.to, "it was answered by a station"),
+                    Control::Answer(..) => (frame.to, "a station answered it"),
                 },
                 // One byte, which can be noise.
                 Piece::Telegram(Telegram::ShortAcknowledge, _) | Piece::Noise(..) => {

@@ -94,14 +94,14 @@ impl Settings {
             return wrong(format!("station and master cannot both be {}", self.station));
         }
         if self.output_size.max(self.input_size) > MAX_DATA || self.resting.len() != self.output_size {
-            return wrong(format!("an image has {MAX_DATA} bytes at most, and rests at one of its own size"));
+            return wrong(format!("an image has at most {MAX_DATA} bytes, and its resting image has the same size"));
         }
         if self.parameters.as_ref().is_some_and(|user| user.len() > Parameters::MAX_USER) {
-            return wrong(format!("there are {} bytes of user parameters at most", Parameters::MAX_USER));
+            return wrong(format!("at most {} bytes of user parameters are possible", Parameters::MAX_USER));
         }
         if let Some(bytes) = &self.configuration {
             let configuration = Configuration::parse(bytes)
-                .map_err(|error| ProfibusError::Settings(format!("the configuration cannot be read: {error}")))?;
+                .map_err(|error| ProfibusError::Settings(format!("cannot decode the configuration: {error}")))?;
             self.fits(&configuration)?;
         }
         let slot = self.slot.unwrap_or_else(|| self.usual_slot());
@@ -115,7 +115,7 @@ impl Settings {
         let usual = Duration::from_millis(self.rate.cycle_ms);
         let cycle = self.cycle.unwrap_or(usual);
         if cycle > LONGEST {
-            return wrong(format!("the cycle is {LONGEST:?} at most, not {cycle:?}"));
+            return wrong(format!("the cycle must be at most {LONGEST:?}, not {cycle:?}"));
         }
         let exchange = self.rate.exchange(self.output_size, self.input_size);
         let attempt = exchange + slot;
@@ -126,7 +126,7 @@ impl Settings {
             return wrong(format!("with this cycle, slot time and bit rate the watchdog must be {least} ms or more"));
         }
         let Some(watchdog) = Watchdog::at_least(wanted) else {
-            return wrong("the watchdog is 650 s at most".to_owned());
+            return wrong("the watchdog must be at most 650 s".to_owned());
         };
         // The token timeout rises with the address: 6 + 2 x address slot times.
         let listen = self.rate.bits(self.rate.slot * (6 + 2 * u32::from(self.master))).max(Duration::from_millis(100));
@@ -184,13 +184,13 @@ mod tests {
         for (settings, message) in [
             (Settings { station: 126, ..usual.clone() }, "0 to 125"),
             (Settings { station: 2, ..usual.clone() }, "both be 2"),
-            (Settings { resting: vec![0; 47], ..usual.clone() }, "of its own size"),
+            (Settings { resting: vec![0; 47], ..usual.clone() }, "the same size"),
             (Settings { slot: Some(Duration::from_micros(100)), ..usual.clone() }, "slot time at 500k"),
             (Settings { watchdog: ms(100), ..usual.clone() }, "or more"),
             (Settings { watchdog: Some(Duration::from_secs(700)), ..usual.clone() }, "650 s"),
             (Settings { cycle: Some(Duration::from_secs(11)), ..usual.clone() }, "cycle"),
-            (Settings { configuration: Some(vec![0x1F]), ..usual.clone() }, "16 bytes from station 5"),
-            (Settings { configuration: Some(vec![0xC0]), ..usual.clone() }, "cannot be read"),
+            (Settings { configuration: Some(vec![0x1F]), ..usual.clone() }, "16 input bytes from station 5"),
+            (Settings { configuration: Some(vec![0xC0]), ..usual.clone() }, "cannot decode"),
             (Settings { parameters: Some(vec![0; 238]), ..usual }, "237 bytes"),
         ] {
             let error = settings.timing().unwrap_err().to_string();

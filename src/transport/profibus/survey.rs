@@ -158,7 +158,7 @@ impl Survey {
                 return;
             }
             Outcome::NoAnswer { .. } => Err(Unknown::NoAnswer),
-            Outcome::Answer(Answer::Short) => Err(Unknown::Malformed("no more than an acknowledgement".to_owned())),
+            Outcome::Answer(Answer::Short) => Err(Unknown::Malformed("only an acknowledgement".to_owned())),
             Outcome::Answer(Answer::Frame(frame)) => {
                 let Control::Answer(kind, status) = frame.control else { return };
                 if self.question == Question::Kind {

@@ -24,7 +24,7 @@ pub enum ProfinetError {
         after: Duration,
     },
     /// Two stations have the same name.
-    #[error("{station} is there twice: {} and {}", cards.0, cards.1)]
+    #[error("{station} exists twice: {} and {}", cards.0, cards.1)]
     Duplicate {
         /// The station.
         station: String,
@@ -38,7 +38,7 @@ pub enum ProfinetError {
         station: String,
     },
     /// The device is in another IP network than this computer.
-    #[error("{station} has the address {device}, which is in another network than {here} of this machine")]
+    #[error("{station} has the address {device}, but this computer has {here} in another network")]
     OtherNetwork {
         /// The station.
         station: String,
@@ -48,7 +48,7 @@ pub enum ProfinetError {
         here: Ipv4Addr,
     },
     /// Another station has the same IP address.
-    #[error("{station} reports that another station has its address {address} too")]
+    #[error("{station} reports that another station also has its address {address}")]
     AddressConflict {
         /// The station.
         station: String,
@@ -64,7 +64,7 @@ pub enum ProfinetError {
         error: u8,
     },
     /// No answer in time.
-    #[error("{what} was not answered within {} s", after.as_secs())]
+    #[error("no answer to {what} within {} s", after.as_secs())]
     NoAnswer {
         /// The request.
         what: &'static str,
@@ -88,7 +88,7 @@ pub enum ProfinetError {
         status: u32,
     },
     /// The answer cannot be decoded.
-    #[error("the answer to {what} cannot be read: {error}")]
+    #[error("cannot decode the answer to {what}: {error}")]
     Malformed {
         /// The request.
         what: &'static str,
@@ -96,7 +96,7 @@ pub enum ProfinetError {
         error: WireError,
     },
     /// The answer can be decoded, but is not valid.
-    #[error("the answer to {what} makes no sense: {why}")]
+    #[error("invalid answer to {what}: {why}")]
     Senseless {
         /// The request.
         what: &'static str,
@@ -110,7 +110,7 @@ pub enum ProfinetError {
         Vec<ModuleMismatch>,
     ),
     /// The device accepted everything but never called ApplicationReady.
-    #[error("the device did not get ready within {} s", after.as_secs())]
+    #[error("the device was not ready within {} s", after.as_secs())]
     NeverReady {
         /// Time waited.
         after: Duration,
@@ -124,13 +124,13 @@ pub enum ProfinetError {
         missing: Unusable,
     },
     /// The device is running, but its data is not usable now.
-    #[error("the data of the device cannot be used: {0}")]
+    #[error("the data of the device is not usable: {0}")]
     Unusable(
         /// The reason.
         Unusable,
     ),
     /// Watchdog: the device stopped sending.
-    #[error("no cyclic frame came for {} ms", after.as_millis())]
+    #[error("no cyclic frame received for {} ms", after.as_millis())]
     Silent {
         /// Time waited.
         after: Duration,
@@ -148,19 +148,19 @@ pub enum ProfinetError {
         slot: u16,
     },
     /// The device did not accept the acknowledgement of an alarm.
-    #[error("the acknowledgement of an alarm was not taken by the device")]
+    #[error("the device did not accept the acknowledgement of an alarm")]
     AlarmUnanswered,
     /// The connection was lost after the caller last looked at it (an older generation).
-    #[error("the connection was lost meanwhile")]
+    #[error("the connection was lost")]
     Outdated,
     /// The connection was closed by this program.
     #[error("the connection is closed")]
     Ended,
     /// No permission for raw Ethernet.
-    #[error("PROFINET needs raw Ethernet, which this program is not allowed to open (CAP_NET_RAW)")]
+    #[error("PROFINET needs raw Ethernet, but armctl has no right to open it (CAP_NET_RAW)")]
     Privilege,
     /// The network interface does not exist.
-    #[error("there is no network interface '{name}' here")]
+    #[error("this computer has no network interface '{name}'")]
     NoInterface {
         /// Name of the interface.
         name: String,
@@ -176,7 +176,7 @@ pub enum ProfinetError {
         problem: &'static str,
     },
     /// Another program uses UDP port 34964.
-    #[error("another program on this machine has UDP port 34964 of {address}")]
+    #[error("another program on this computer uses UDP port 34964 of {address}")]
     PortTaken {
         /// The local address.
         address: Ipv4Addr,
@@ -233,9 +233,9 @@ impl fmt::Display for ModuleMismatch {
             None => write!(f, " holds no {what}")?,
         }
         match self.expected {
-            Some(expected) if self.found == Some(expected) => write!(f, ", which cannot be used now"),
-            Some(expected) => write!(f, ", the layout says {expected:#x}"),
-            None => write!(f, ", the layout says none"),
+            Some(expected) if self.found == Some(expected) => write!(f, ", which is not usable now"),
+            Some(expected) => write!(f, ", but the layout has {expected:#x}"),
+            None => write!(f, ", but the layout has none"),
         }
     }
 }
@@ -256,7 +256,7 @@ pub enum Unusable {
 impl fmt::Display for Unusable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing => write!(f, "no cyclic frame came"),
+            Self::Missing => write!(f, "no cyclic frame received"),
             Self::Status(status, transfer) => {
                 let text = super::wire::cyclic::describe_status(*status, *transfer);
                 write!(f, "{text} (data status {status:#04x})")
@@ -265,7 +265,7 @@ impl fmt::Display for Unusable {
                 write!(f, "the device marks the data of slot {slot}, subslot {subslot:#x} as bad (IOPS)")
             }
             Self::Consumer(slot, subslot) => {
-                write!(f, "the device does not take the data for slot {slot}, subslot {subslot:#x} (IOCS)")
+                write!(f, "the device refuses the data for slot {slot}, subslot {subslot:#x} (IOCS)")
             }
         }
     }

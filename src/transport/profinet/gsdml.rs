@@ -113,7 +113,7 @@ impl Gsdml {
     pub fn parse(bytes: &[u8]) -> Result<Self, GsdmlError> {
         let whole = |problem: String| GsdmlError { line: 1, element: "file".to_owned(), problem };
         if u64::try_from(bytes.len()).is_ok_and(|length| length > MOST_BYTES) {
-            return Err(whole(format!("it has {} bytes, {MOST_BYTES} are the most", bytes.len())));
+            return Err(whole(format!("it has {} bytes; at most {MOST_BYTES} are possible", bytes.len())));
         }
         let text = match std::str::from_utf8(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)) {
             Ok(text) => Cow::Borrowed(text),
@@ -125,7 +125,7 @@ impl Gsdml {
             // The error of a truncated file has no position.
             let end = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
             let line = if matches!(error, Error::UnexpectedEndOfStream) { end } else { error.pos().row };
-            GsdmlError { line, element: "file".to_owned(), problem: format!("it is no XML: {error}") }
+            GsdmlError { line, element: "file".to_owned(), problem: format!("it is not XML: {error}") }
         })?;
         Reader { document: &document }.device()
     }
@@ -160,7 +160,7 @@ impl Head {
         let mut all: Vec<(u16, &Fitting)> = fixed.collect();
         for (slot, fitting) in chosen {
             if !fitting.slots.contains(slot) {
-                return Err(format!("module {} does not fit slot {slot}", fitting.module.id));
+                return Err(format!("module {} is not possible in slot {slot}", fitting.module.id));
             }
             if !all.contains(&(*slot, fitting)) {
                 all.push((*slot, fitting));
@@ -246,15 +246,15 @@ impl<'a, 'input> Reader<'a, 'input> {
     fn device(&self) -> GsdmlResult<Gsdml> {
         let root = self.document.root_element();
         let identity = self.all("DeviceIdentity").next();
-        let identity = identity.ok_or_else(|| self.wrong(root, "there is no DeviceIdentity in it"))?;
+        let identity = identity.ok_or_else(|| self.wrong(root, "DeviceIdentity is missing"))?;
         let (vendor, device) = (self.number(identity, "VendorID")?, self.number(identity, "DeviceID")?);
         let heads: Vec<_> = self.all("DeviceAccessPointItem").take(MOST_HEADS + 1).collect();
         if let Some(node) = heads.get(MOST_HEADS) {
-            return Err(self.wrong(*node, format!("{MOST_HEADS} access points are the most")));
+            return Err(self.wrong(*node, format!("at most {MOST_HEADS} access points are possible")));
         }
         let heads = heads.into_iter().map(|node| self.head(node)).collect::<Result<Vec<_>, _>>()?;
         if heads.is_empty() {
-            return Err(self.wrong(root, "there is no DeviceAccessPointItem in it"));
+            return Err(self.wrong(root, "DeviceAccessPointItem is missing"));
         }
         Ok(Gsdml { vendor, device, heads })
     }
@@ -274,7 +274,10 @@ impl<'a, 'input> Reader<'a, 'input> {
         let slots = self.slots(node, "PhysicalSlots")?;
         let references: Vec<_> = node.descendants().filter(|item| item.has_tag_name_local("ModuleItemRef")).collect();
         if references.len() > MOST_MODULES {
-            return Err(self.wrong(node, format!("{} modules fit it, {MOST_MODULES} are the most", references.len())));
+            return Err(self.wrong(
+                node,
+                format!("{} modules are usable in it; at most {MOST_MODULES} are possible", references.len()),
+            ));
         }
         let modules =
             references.into_iter().map(|reference| self.fitting(reference, &slots)).collect::<Result<_, _>>()?;
@@ -294,7 +297,7 @@ impl<'a, 'input> Reader<'a, 'input> {
     fn fitting(&self, node: Node<'a, 'input>, slots: &[u16]) -> GsdmlResult<Fitting> {
         let target = self.text(node, "ModuleItemTarget")?;
         let module = self.all("ModuleItem").find(|module| module.attribute("ID") == Some(target));
-        let module = module.ok_or_else(|| self.wrong(node, format!("there is no ModuleItem '{target}'")))?;
+        let module = module.ok_or_else(|| self.wrong(node, format!("ModuleItem '{target}' is missing")))?;
         let fixed = self.slots(node, "FixedInSlots")?;
         let mut allowed = self.slots(node, "AllowedInSlots")?;
         allowed.extend(&fixed);
@@ -315,7 +318,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         let mut items = Vec::new();
         let add = |items: &mut Vec<Item>, node, subslot| {
             if items.len() == MOST_MODULES {
-                return Err(self.wrong(node, format!("{MOST_MODULES} submodules are the most")));
+                return Err(self.wrong(node, format!("at most {MOST_MODULES} submodules are possible")));
             }
             items.push(self.item(node, subslot)?);
             Ok(())
@@ -329,7 +332,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         for reference in node.descendants().filter(|item| item.has_tag_name_local("SubmoduleItemRef")) {
             let target = self.text(reference, "SubmoduleItemTarget")?;
             let found = self.all("SubmoduleItem").find(|item| item.attribute("ID") == Some(target));
-            let found = found.ok_or_else(|| self.wrong(reference, format!("there is no SubmoduleItem '{target}'")))?;
+            let found = found.ok_or_else(|| self.wrong(reference, format!("SubmoduleItem '{target}' is missing")))?;
             for subslot in self.slots(reference, "FixedInSubslots")? {
                 add(&mut items, found, subslot)?;
             }
@@ -369,7 +372,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             "Float32+Unsigned8" | "Float32+Status8" => 5,
             "Unsigned64" | "Integer64" | "Float64" => 8,
             "OctetString" | "VisibleString" | "UnicodeString8" => self.number(node, "Length")?,
-            other => return Err(self.wrong(node, format!("the length of DataType '{other}' is not known"))),
+            other => return Err(self.wrong(node, format!("the length of DataType '{other}' is unknown"))),
         })
     }
 
@@ -378,7 +381,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         let index = self.number(node, "Index")?;
         let length = usize::from(self.number(node, "Length")?);
         if length > LONGEST_RECORD {
-            return Err(self.wrong(node, format!("a record has {LONGEST_RECORD} bytes at most")));
+            return Err(self.wrong(node, format!("a record has at most {LONGEST_RECORD} bytes")));
         }
         let mut data = vec![0; length];
         for part in node.children().filter(Node::is_element) {
@@ -392,7 +395,7 @@ impl<'a, 'input> Reader<'a, 'input> {
                 _ => continue,
             };
             let place = data.get_mut(at..at + bytes.len());
-            place.ok_or_else(|| self.wrong(part, "it does not fit its record"))?.copy_from_slice(&bytes);
+            place.ok_or_else(|| self.wrong(part, "it is too long for its record"))?.copy_from_slice(&bytes);
         }
         Ok((index, data))
     }
@@ -401,7 +404,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         let text = self.text(node, "Data")?;
         let byte = |part: &str| parse(part).and_then(|number| u8::try_from(number).ok());
         let bytes: Option<Vec<u8>> = text.split(',').map(byte).collect();
-        bytes.ok_or_else(|| self.wrong(node, format!("'{text}' are no bytes")))
+        bytes.ok_or_else(|| self.wrong(node, format!("'{text}' is not a list of bytes")))
     }
 
     /// Default value. Bits are combined with the existing byte.

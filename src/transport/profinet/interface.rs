@@ -104,7 +104,7 @@ impl Interface {
     pub fn check(&self) -> Result<(), ProfinetError> {
         let problem = match (self.is_up, self.has_carrier) {
             (false, _) => "is switched off",
-            (true, false) => "has no carrier: no cable, or nothing switched on at its other end",
+            (true, false) => "has no carrier: no cable, or the device at its other end is off",
             (true, true) => return Ok(()),
         };
         Err(ProfinetError::Interface { name: self.name.clone(), problem })
@@ -112,7 +112,7 @@ impl Interface {
 
     /// IP address, which RPC calls need.
     pub fn address(&self) -> Result<IpSuite, ProfinetError> {
-        let problem = "has no IPv4 address, which PROFINET needs beside its frames";
+        let problem = "has no IPv4 address, but PROFINET needs one";
         self.ip.ok_or_else(|| ProfinetError::Interface { name: self.name.clone(), problem })
     }
 

@@ -70,7 +70,7 @@ impl Layout {
         for pair in submodules.windows(2) {
             let [one, two] = [pair[0], pair[1]];
             if (one.slot, one.subslot) == (two.slot, two.subslot) {
-                return Err(format!("slot {}, subslot {:#x} is there twice", one.slot, one.subslot));
+                return Err(format!("slot {}, subslot {:#x} appears twice", one.slot, one.subslot));
             }
             if one.slot == two.slot && one.module != two.module {
                 return Err(format!("slot {} has two modules, {:#x} and {:#x}", one.slot, one.module, two.module));
@@ -79,7 +79,7 @@ impl Layout {
         let layout = Self(submodules);
         for direction in [Direction::Input, Direction::Output] {
             if layout.place(direction).1 > usize::from(LONGEST) {
-                return Err(format!("the data does not fit a frame, which has {LONGEST} bytes"));
+                return Err(format!("the data is too long for a frame of {LONGEST} bytes"));
             }
         }
         Ok(layout)
@@ -342,11 +342,9 @@ mod tests {
         for text in ["", "1", "1:", "x:1", "1:1:48", "1:1:i", "1:1:i48:o2", "1:1:i9999", "70000:1", "1:0x+1", "1:-1"] {
             assert!(text.parse::<Layout>().is_err(), "{text}");
         }
-        for (text, reason) in [
-            ("1:1:i1,1:1:o1", "is there twice"),
-            ("1:1:i1,1.2:2:o1", "two modules"),
-            ("1:1:i1400,2:1:i41", "does not fit"),
-        ] {
+        for (text, reason) in
+            [("1:1:i1,1:1:o1", "appears twice"), ("1:1:i1,1.2:2:o1", "two modules"), ("1:1:i1400,2:1:i41", "too long")]
+        {
             assert!(text.parse::<Layout>().unwrap_err().contains(reason), "{text}");
         }
     }

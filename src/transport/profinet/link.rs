@@ -57,7 +57,7 @@ impl Bus for Device {
     fn traffic(&self) -> Traffic {
         let counted = self.connection.statistics();
         let odd = vec![
-            (counted.stale, "late or doubled"),
+            (counted.stale, "late or duplicate"),
             (counted.skipped, "not sent in time"),
             (counted.alarms, "alarms"),
             (counted.losses, "losses"),

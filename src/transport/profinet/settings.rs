@@ -93,18 +93,18 @@ impl Settings {
         if let Station::Name(name) = &self.station
             && let Err(why) = dcp::check_name(name)
         {
-            return wrong(format!("'{name}' is not a name of a station: {why}"));
+            return wrong(format!("'{name}' is not a valid station name: {why}"));
         }
         if let Station::Mac(mac) = &self.station
             && mac.is_group()
         {
-            return wrong(format!("{mac} is not the address of one card"));
+            return wrong(format!("{mac} is not the address of one network card"));
         }
         if let Some(ip) = &self.ip {
             let host = u32::from(ip.address) & !u32::from(ip.mask);
             let is_mask = (!u32::from(ip.mask)).wrapping_add(1).is_power_of_two() && !ip.mask.is_unspecified();
             if !is_mask || ip.address.is_multicast() || ip.address.is_loopback() || host == 0 {
-                return wrong(format!("{} with mask {} is not the address of a device", ip.address, ip.mask));
+                return wrong(format!("{} with mask {} is not a valid device address", ip.address, ip.mask));
             }
         }
         if self.ratio().is_none() {
@@ -122,10 +122,10 @@ impl Settings {
             return wrong(format!("the resting image has {} bytes, the output image {size}", self.resting.len()));
         }
         if self.swapped % 2 == 1 {
-            return wrong("an odd number of bytes are no pairs".to_owned());
+            return wrong("the number of bytes must be even".to_owned());
         }
         if dcp::check_name(&self.name).is_err() {
-            return wrong(format!("'{}' is not a name of a controller", self.name));
+            return wrong(format!("'{}' is not a valid controller name", self.name));
         }
         Ok(())
     }

@@ -16,7 +16,7 @@ use super::wire::{
 };
 
 /// Reason for the end of a session without a message: its process was killed or crashed.
-const HOLDER_GONE: &str = "the session's holder has ended";
+const HOLDER_GONE: &str = "the process of the session has ended";
 
 /// Time limit for answers that the host gives without asking the device.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
@@ -34,7 +34,7 @@ pub enum AttachError {
     #[error("{0}")]
     Refused(String),
     /// The answer is not that of a session of this version.
-    #[error("what answers is not a session of this version of armctl")]
+    #[error("the answer is not from a session of this version of armctl")]
     Foreign,
     /// The socket failed.
     #[error("{0}")]
@@ -68,13 +68,13 @@ pub enum SessionBusy {
     #[error("{0}")]
     Ended(String),
     /// Another client has the line, and did not release it in time.
-    #[error("the line is in use by another client")]
+    #[error("another client uses the connection")]
     Busy(Option<Peer>),
     /// Another client moves the robot.
     #[error("another client moves the robot; nothing was sent")]
     Moved(Peer),
     /// The robot is read-only, so the session passes only reads and stops.
-    #[error("the robot is read-only, and its session passed nothing on")]
+    #[error("the robot is read-only, so its session sent nothing")]
     ReadOnly,
 }
 
@@ -348,7 +348,7 @@ impl Attached {
     /// Marks the session as ended after its socket was closed or failed.
     fn end_with(&mut self, error: Option<WireError>) -> String {
         let why = match error {
-            Some(error) if !is_gone(&error) => format!("the session is gone: {error}"),
+            Some(error) if !is_gone(&error) => format!("the session was lost: {error}"),
             _ => HOLDER_GONE.to_owned(),
         };
         self.ended = Some(why.clone());

@@ -10,7 +10,7 @@ use tokio::io::DuplexStream;
 pub type ReadHalf = DuplexStream;
 
 fn absent<T>() -> io::Result<T> {
-    Err(io::Error::new(io::ErrorKind::Unsupported, "sessions need Unix sockets, which this system has not"))
+    Err(io::Error::new(io::ErrorKind::Unsupported, "sessions need Unix sockets, but this system has none"))
 }
 
 /// Write half of a socket; never exists.

@@ -19,7 +19,7 @@ const LONGEST_LOCK: u64 = 1 << 16;
 #[derive(Debug, Error)]
 pub enum PlaceError {
     /// Another user could be behind it.
-    #[error("{path} is not to be trusted: {why}")]
+    #[error("{path} is not safe: {why}")]
     Unsafe {
         /// Path of the folder or socket.
         path: PathBuf,

@@ -44,9 +44,9 @@ pub fn check_private(path: &Path, is_folder: bool) -> io::Result<Result<(), &'st
     Ok(if !fits {
         Err(if is_folder { "it is not a folder" } else { "it is not a socket" })
     } else if found.uid() != geteuid().as_raw() {
-        Err("it is another user's")
+        Err("it belongs to another user")
     } else if found.mode() & 0o077 != 0 {
-        Err("other users may use it")
+        Err("other users have access to it")
     } else {
         Ok(())
     })
@@ -132,7 +132,7 @@ pub fn detach(arguments: impl Iterator<Item = std::ffi::OsString>, log: &Path) -
         .stdout(Stdio::piped())
         .stderr(log)
         .spawn()?;
-    let stdout = child.stdout.take().ok_or_else(|| io::Error::other("there is no pipe"))?;
+    let stdout = child.stdout.take().ok_or_else(|| io::Error::other("no pipe"))?;
     Ok(Detached { pid: child.id(), stdout: BufReader::new(stdout) })
 }
 

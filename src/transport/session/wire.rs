@@ -309,7 +309,7 @@ pub enum WireError {
     #[error("a frame of {0} bytes")]
     TooLong(usize),
     /// Unknown type, or invalid content.
-    #[error("a frame that makes no sense")]
+    #[error("an invalid frame")]
     Senseless,
     /// The socket failed.
     #[error("{0}")]

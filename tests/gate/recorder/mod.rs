@@ -246,7 +246,7 @@ impl<'a> Bench<'a> {
                 // The third of the list, which each key draws anew.
                 0 => {
                     setup.press("\x1b[B\x1b[B\r");
-                    setup.says("What now?: go on all the same");
+                    setup.says("What now?: continue anyway");
                 }
                 1 => break,
                 _ => {

@@ -1,5 +1,5 @@
-//! `armctl decode FAMILY FILE.pcapng`: what a capture file holds of a family, in the words of a trace. `report` is what
-//! is printed, `stream` prints what there is no room for at once.
+//! `armctl decode FAMILY FILE.pcapng`: messages of a family in a capture file. `report` is the printed report,
+//! `stream` prints reports that do not fit into memory.
 
 mod report;
 mod stream;
@@ -30,23 +30,23 @@ use crate::transport::capture::{Carrier, Message, OpenError, Summary, read};
 pub use crate::transport::capture::{holds_telegram, parse_hex};
 use crate::transport::tap::Direction;
 
-/// What of a capture file is shown.
+/// Selection of messages in a capture file.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Capture files")]
 pub struct Selection {
-    /// Show the messages of one packet, field by field
+    /// Show the messages of one packet with all fields
     #[arg(long, value_name = "NUMBER")]
     frame: Option<u64>,
-    /// Only what comes from or goes to this address
+    /// Only messages from or to this address
     #[arg(long, value_name = "ADDRESS")]
     host: Option<IpAddr>,
-    /// Only what comes from or goes to this port
+    /// Only messages from or to this port
     #[arg(long, value_name = "PORT")]
     port: Option<u16>,
 }
 
 impl Selection {
-    /// Whether anything is left out.
+    /// Whether anything is filtered.
     pub const fn is_given(&self) -> bool {
         self.frame.is_some() || self.host.is_some() || self.port.is_some()
     }
@@ -63,7 +63,7 @@ impl Selection {
     }
 }
 
-/// The capture file that the only argument of a command names, if it is one.
+/// Capture file, if it is the only argument.
 pub fn file_among(arguments: &[String]) -> Option<&Path> {
     let [argument] = arguments else { return None };
     let path = Path::new(argument);
@@ -71,12 +71,12 @@ pub fn file_among(arguments: &[String]) -> Option<&Path> {
     matches!(extension.as_str(), "pcap" | "pcapng" | "cap").then_some(path)
 }
 
-/// Where a capture is.
+/// Source of a capture.
 #[derive(Debug)]
 pub enum Input<'a> {
-    /// In a file.
+    /// A file.
     File(&'a Path),
-    /// Here; with what it is called.
+    /// Bytes, with their name.
     Bytes(&'static str, Vec<u8>),
 }
 
@@ -96,32 +96,32 @@ impl Input<'_> {
     }
 }
 
-/// A report, unless there is no room for one, and the decoder, ready to begin anew.
+/// Report, unless it does not fit into memory, and the decoder, ready to restart.
 type Captured<D> = (Option<Capture<<D as CaptureDecoder>::Field>>, D);
 
-/// Finds the messages of a family in what a file holds.
+/// Decoder for the messages of a family.
 pub trait CaptureDecoder: Sized {
     /// A field of a message.
     type Field: Field;
-    /// Takes what passed, of whatever family.
+    /// Handles a message of any family.
     fn take(&mut self, message: &Message<'_>);
-    /// Takes note of the end of the file.
+    /// Handles the end of the file.
     fn finish(&mut self);
-    /// What has been decoded so far.
+    /// Messages decoded so far.
     fn decoded(&mut self) -> &mut DecodedCapture<Self::Field>;
-    /// Begins anew with the same file.
+    /// Restarts on the same file.
     #[must_use]
     fn restart(self) -> Self;
 }
 
-/// What was decoded of a file.
+/// Decoded content of a file.
 #[derive(Debug)]
 pub struct DecodedCapture<F> {
-    /// Messages that nobody has taken yet.
+    /// Messages that were not taken yet.
     pub messages: Vec<DecodedMessage<F>>,
-    /// Packets that belong to the family.
+    /// Number of packets of the family.
     pub packets: u64,
-    /// What else there is to say.
+    /// Notes.
     pub notes: Vec<String>,
 }
 
@@ -131,12 +131,12 @@ impl<F> Default for DecodedCapture<F> {
     }
 }
 
-/// Says what else there is to say, as far as anybody reads it.
+/// Adds a note, up to a reasonable number.
 pub fn note(notes: &mut Vec<String>, text: String) {
     const MOST: usize = 1000;
 
     match notes.len() {
-        MOST => notes.push("more of the same kind is not told".to_owned()),
+        MOST => notes.push("further notes are omitted".to_owned()),
         len if len < MOST => notes.push(text),
         _ => {}
     }
@@ -145,45 +145,45 @@ pub fn note(notes: &mut Vec<String>, text: String) {
 /// A message of a family.
 #[derive(Debug)]
 pub struct DecodedMessage<F> {
-    /// Of its packet.
+    /// Packet number.
     pub number: u64,
-    /// Since 1970.
+    /// Time since 1970.
     pub time: Duration,
-    /// Which way.
+    /// Direction.
     pub direction: Direction,
-    /// Client and controller, as the table of links has them.
+    /// Client and controller, as in the table of links.
     pub link: (String, String),
-    /// As a trace tells it.
+    /// Text, as in a trace.
     pub text: String,
-    /// Packet with the request that it answers.
+    /// Packet of the request that it answers.
     pub answers: Option<u64>,
     /// Section of the manual.
     pub section: Option<String>,
-    /// As it travels.
+    /// Raw data.
     pub raw: String,
-    /// In all its parts.
+    /// Fields.
     pub fields: Vec<F>,
-    /// What is wrong with it.
+    /// Problem found in it.
     pub problem: Option<String>,
 }
 
-/// Messages that are kept until the end of the file: those that are wanted, as far as there is room.
+/// Buffer of the selected messages, with limited size.
 #[derive(Debug)]
 struct MessageBuffer<F> {
     list: Vec<DecodedMessage<F>>,
-    /// Those of one packet only.
+    /// Only the messages of this packet.
     frame: Option<u64>,
-    /// A line of each is enough: fields, bytes and section are left out.
+    /// Whether fields, bytes and section are left out, because one line per message is sufficient.
     without_fields: bool,
     weight: usize,
     room: usize,
-    /// There were more than there is room for.
+    /// Whether there were too many messages.
     is_full: bool,
 }
 
-/// Room for messages in bytes where they are written one after the other otherwise.
+/// Memory limit for messages if they can be streamed instead.
 const FEW: usize = 16 << 20;
-/// The same where all of them are one value: for a filter.
+/// Memory limit if all messages are needed as one value, for a filter.
 const ROOM: usize = 256 << 20;
 
 impl<F> MessageBuffer<F> {
@@ -198,7 +198,7 @@ impl<F> MessageBuffer<F> {
         }
     }
 
-    /// Keeps a message, if it is wanted. Says whether there is room for more.
+    /// Stores a message, if it is selected. Returns whether there is space for more.
     fn push(&mut self, mut message: DecodedMessage<F>) -> bool {
         if !self.is_full && self.frame.is_none_or(|frame| frame == message.number) {
             if self.without_fields {
@@ -215,9 +215,9 @@ impl<F> MessageBuffer<F> {
 }
 
 impl<F> DecodedMessage<F> {
-    /// Bytes of memory that it takes, as good as.
+    /// Approximate memory size.
     fn weight(&self) -> usize {
-        /// Names and meanings of a field, with what it takes to keep them.
+        /// Approximate memory of a field: names and meanings.
         const FIELD: usize = 100;
 
         let texts = [self.text.len(), self.raw.len(), self.link.0.len(), self.link.1.len()].iter().sum::<usize>();
@@ -225,7 +225,7 @@ impl<F> DecodedMessage<F> {
     }
 }
 
-/// Decodes a file and prints what it holds.
+/// Decodes a file and prints the result.
 pub fn print<D: CaptureDecoder>(
     run: &Run,
     id: &str,
@@ -242,12 +242,14 @@ pub fn print<D: CaptureDecoder>(
         source.capture(decoder, room, without_fields)?
     };
     if run.screen.format == Format::Value {
-        return Err(Failure::usage("a capture is no list of values").hint("-o csv has a row a message").into());
+        return Err(Failure::usage("a capture has no list of values")
+            .hint("use -o csv for one row per message")
+            .into());
     }
-    // Rows of CSV are written as they come, but for the fields of one packet.
+    // CSV rows are written immediately, except for the fields of one packet.
     let is_whole = run.screen.format != Format::Csv || selection.frame.is_some();
     let Some(capture) = capture.filter(|_| is_whole) else { return stream::print(run, id, &source, decoder) };
-    // Never as a value in between, which takes many times the memory.
+    // Never as an intermediate JSON value, which needs many times the memory.
     if is_streamed && !run.is_for_people() {
         let failure = capture.failure();
         let whole = ReportEnvelope::new(run, id, &capture, failure.as_ref());
@@ -257,7 +259,7 @@ pub fn print<D: CaptureDecoder>(
     run.local(id, &capture)
 }
 
-/// An envelope around a report as it is.
+/// Envelope around a report.
 #[derive(Serialize)]
 struct ReportEnvelope<'a, D> {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -278,7 +280,7 @@ impl<'a, D> ReportEnvelope<'a, D> {
     }
 }
 
-/// A file, to be read as often as it takes.
+/// A file that can be read several times.
 struct Source<'a, O> {
     name: &'a str,
     open: O,
@@ -286,8 +288,8 @@ struct Source<'a, O> {
 }
 
 impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
-    /// What the file holds, unless there is no room for that; then it has to be written as it is read. With the
-    /// decoder, ready to begin anew.
+    /// Content of the file, unless it does not fit into memory and must be streamed; also the decoder, ready to
+    /// restart.
     fn capture<D: CaptureDecoder>(
         &self,
         mut decoder: D,
@@ -296,7 +298,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
     ) -> Result<Captured<D>, Failure> {
         let frame = self.selection.frame;
         let mut kept = MessageBuffer::new(room, frame, without_fields);
-        // Of one packet, the links still are those of the whole file.
+        // For one packet, the links are still those of the whole file.
         let mut links = Links::default();
         let summary = self.decode(&mut decoder, |message| {
             if frame.is_some() {
@@ -309,12 +311,12 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
             return Ok((None, decoder.restart()));
         }
         let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
-        // Of one packet, they stay in their order.
+        // Messages of one packet stay in their order.
         kept.list.sort_by_key(|message| message.number);
         let messages: Vec<_> = kept.list.into_iter().map(|message| links.row(message, summary.first)).collect();
         if let Some(frame) = frame.filter(|_| messages.is_empty()) {
-            let message = format!("there is no message of this family in packet {frame} of {}", self.name);
-            return Err(Failure::usage(message).hint("the numbers are in the list, without --frame"));
+            let message = format!("no message of this family in packet {frame} of {}", self.name);
+            return Err(Failure::usage(message).hint("list the packet numbers without --frame"));
         }
         let mut problems = Problems::default();
         for row in &messages {
@@ -327,7 +329,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         Ok((Some(capture), decoder.restart()))
     }
 
-    /// A report without messages.
+    /// Report without messages.
     fn about<F>(&self, summary: &Summary, packets: u64, mut notes: Vec<String>) -> Capture<F> {
         if summary.fragments > 0 {
             notes.push(format!("{} left out", counted(summary.fragments, "IP fragment")));
@@ -349,7 +351,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         }
     }
 
-    /// Decodes the whole file, and hands on its messages until nobody wants more.
+    /// Decodes the whole file and passes on its messages until the callback ends.
     fn decode<D: CaptureDecoder>(
         &self,
         decoder: &mut D,
@@ -374,16 +376,16 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         let file = (self.open)().with_context(|| self.name.to_owned())?;
         read(file, each).map_err(|error| {
             let hint = match error {
-                OpenError::Compressed => "unpack it first: gunzip, or unzstd",
-                OpenError::Unreadable => "check the disk that it is on",
-                OpenError::Other => "tcpdump, Wireshark and --trace write such files",
+                OpenError::Compressed => "decompress it first with gunzip or unzstd",
+                OpenError::Unreadable => "check the disk of the file",
+                OpenError::Other => "use a file from tcpdump, Wireshark or --trace",
             };
             Failure::local(format!("{}: {error}", self.name)).hint(hint)
         })
     }
 }
 
-/// Problem of a message that was not recorded whole.
+/// Problem of a message that was not recorded completely.
 pub fn cut() -> String {
-    "the capture has only a part of it; record whole packets, as `tcpdump -s 0` does".to_owned()
+    "the capture has only part of the message; record whole packets, for example with `tcpdump -s 0`".to_owned()
 }

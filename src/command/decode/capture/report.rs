@@ -1,4 +1,4 @@
-//! What a capture file holds of a family, as it is printed.
+//! Report of the messages of a family in a capture file.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -14,31 +14,31 @@ use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::transport::tap::Direction;
 
-/// What a capture file holds of a family.
+/// Messages of a family in a capture file.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Capture<F> {
     pub(super) file: String,
-    /// All that are in the file.
+    /// Number of packets in the file.
     pub(super) packets: u64,
-    /// Those with nothing of the family, or left out by --host and --port.
+    /// Number of packets without messages of the family, or excluded by --host and --port.
     pub(super) other_packets: u64,
     pub(super) links: Vec<Link>,
     pub(super) messages: Vec<Row<F>>,
-    /// What is missing.
+    /// Notes on missing data.
     pub(super) notes: Vec<String>,
-    /// Where the file is damaged; all before it was read.
+    /// Damage of the file; everything before it was read.
     pub(super) damage: Option<String>,
     #[serde(skip)]
     pub(super) problems: Problems,
-    /// Every field is shown.
+    /// Whether all fields are shown.
     #[serde(skip)]
     pub(super) is_detailed: bool,
-    /// By host or port.
+    /// Whether messages are filtered by host or port.
     #[serde(skip)]
     pub(super) is_filtered: bool,
 }
 
-/// Two ends that talk to each other.
+/// Two communicating ends.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Link {
     link: usize,
@@ -50,25 +50,25 @@ pub struct Link {
 /// A message.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Row<F> {
-    /// Of the packet where it ends, as Wireshark counts them.
+    /// Number of the packet that contains its end, as in Wireshark.
     number: u64,
-    /// Since the first packet of the file.
+    /// Time since the first packet of the file.
     time_s: f64,
     link: usize,
     /// `client` or `controller`.
     sender: &'static str,
     from: String,
     to: String,
-    /// What it is, as --trace tells it.
+    /// Text, as in --trace.
     text: String,
-    /// Packet with the request that it answers.
+    /// Packet of the request that it answers.
     answers: Option<u64>,
-    /// Section of the manual, where the command is known.
+    /// Section of the manual, if the command is known.
     section: Option<String>,
-    /// As it travels: bytes in hexadecimal, a line, or words.
+    /// Raw data: bytes in hexadecimal, a line, or words.
     raw: String,
     fields: Vec<F>,
-    /// What is wrong with it.
+    /// Problem found in it.
     problem: Option<String>,
 }
 
@@ -79,12 +79,12 @@ impl<F> Row<F> {
 }
 
 impl<F> Row<F> {
-    /// The columns of its table.
+    /// Columns of the table.
     pub(super) const COLUMNS: [&'static str; 6] = ["number", "time s", "link", "way", "answers", "message"];
 
-    /// What stands in them, in the words of a trace.
+    /// Cells of the columns, as in a trace.
     pub(super) fn cells(&self) -> [Cell; 6] {
-        // Where there is no telling what it is, the text says why already.
+        // If the message cannot be identified, the text already contains the reason.
         let text = match &self.problem {
             Some(problem) if !self.text.contains("no valid") => format!("{}; problem: {problem}", self.text),
             _ => self.text.clone(),
@@ -102,7 +102,7 @@ impl<F> Row<F> {
 }
 
 impl<F: Field> Capture<F> {
-    /// Rows of a table, in the words of a trace.
+    /// Table rows, as in a trace.
     pub(super) fn list(&self) -> View {
         let mut table = Table::new(&Row::<F>::COLUMNS, "no message of this family");
         self.messages.iter().for_each(|row| table.row(row.cells()));
@@ -113,7 +113,7 @@ impl<F: Field> Capture<F> {
         View { sections }
     }
 
-    /// How much there is, and between whom.
+    /// Summary of the number of messages and their links.
     pub(super) fn head(&self) -> String {
         let told = self.packets.saturating_sub(self.other_packets);
         let what = if self.is_filtered { "selected and of this family" } else { "of this family" };
@@ -152,11 +152,13 @@ impl<F: Field> Report for Capture<F> {
     fn failure(&self) -> Option<Failure> {
         if self.damage.as_deref() == Some(FULL) {
             let failure = Failure::local(format!("{}: {FULL}", self.file));
-            return Some(failure.hint("choose with --host, --port or --frame, or cut the file, as `editcap -c` does"));
+            return Some(
+                failure.hint("select messages with --host, --port or --frame, or split the file with `editcap -c`"),
+            );
         }
         if let Some(damage) = &self.damage {
             let failure = Failure::local(format!("{}: {damage}", self.file));
-            return Some(failure.hint("what came before is told; a capture that was broken off ends like this"));
+            return Some(failure.hint("the part before the damage is shown; an aborted capture ends like this"));
         }
         let Problems { all, damaged, first } = &self.problems;
         let (number, problem) = first.as_ref()?;
@@ -164,24 +166,27 @@ impl<F: Field> Report for Capture<F> {
             1 => format!("the message in packet {number} is damaged: {problem}"),
             _ => format!("{damaged} of {all} messages are damaged; the first, in packet {number}: {problem}"),
         };
-        Some(Failure::new(Kind::Malformed, message).hint("--frame NUMBER explains one as far as it goes"))
+        Some(
+            Failure::new(Kind::Malformed, message)
+                .hint("--frame NUMBER shows the fields of a message up to the damage"),
+        )
     }
 }
 
-/// Why not all messages are told.
-pub const FULL: &str = "it has more messages than there is room for; the first ones are told";
+/// Reason why not all messages are shown.
+pub const FULL: &str = "it has too many messages; only the first ones are shown";
 
-/// The links of a file, in the order in which they are met.
+/// Links of a file, in the order of their first message.
 #[derive(Debug, Default)]
 pub struct Links {
     pub(super) list: Vec<Link>,
     numbers: HashMap<(String, String), usize>,
-    /// Rows are of messages that were counted before.
+    /// Whether rows are of messages that were already counted.
     pub(super) are_counted: bool,
 }
 
 impl Links {
-    /// Where a link is in the list.
+    /// Index of a link.
     fn at(&mut self, link: &(String, String)) -> usize {
         if let Some(at) = self.numbers.get(link) {
             return *at;
@@ -198,7 +203,7 @@ impl Links {
         self.list[at].messages += 1;
     }
 
-    /// A message with the link it belongs to.
+    /// Message with its link.
     pub(super) fn row<F>(&mut self, message: DecodedMessage<F>, first: Duration) -> Row<F> {
         if !self.are_counted {
             self.count(&message.link);
@@ -226,7 +231,7 @@ impl Links {
     }
 }
 
-/// What is wrong with messages.
+/// Problems of messages.
 #[derive(Debug, Default)]
 pub struct Problems {
     pub(super) all: u64,
@@ -245,7 +250,7 @@ impl Problems {
     }
 }
 
-/// Packets of several interfaces may come in another order than their times.
+/// Packets of several interfaces may not be in the order of their times.
 fn seconds(time: Duration, first: Duration) -> f64 {
     match time.checked_sub(first) {
         Some(after) => after.as_secs_f64(),
@@ -253,7 +258,7 @@ fn seconds(time: Duration, first: Duration) -> f64 {
     }
 }
 
-/// So many of them.
+/// Count with singular or plural noun.
 pub fn counted(count: u64, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }

@@ -1,5 +1,5 @@
-//! A report of more messages than there is room for: written as the file is read again, in a memory that does not depend
-//! on its size. The first time it is read for what stands before the messages, and for the widths of columns.
+//! Streamed report with more messages than fit into memory: the file is read a second time while it is printed, with
+//! constant memory. The first pass collects the summary and the column widths.
 
 use std::cell::RefCell;
 use std::io::{self, Read};
@@ -20,10 +20,10 @@ use crate::output::render::{self, Layout};
 use crate::output::view::{Table, View};
 use crate::transport::capture::Summary;
 
-/// Rows that are laid out at a time.
+/// Number of rows per layout batch.
 const PIECE: usize = 1000;
 
-/// Prints a file as it is read.
+/// Prints a file while it is read.
 pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
     run: &Run,
     id: &str,
@@ -65,7 +65,7 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
     failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
-/// The file once more, up to as many messages as were seen before.
+/// Second pass through the file, up to the number of messages of the first pass.
 struct SecondPass<'a, 'b, O> {
     source: &'a Source<'b, O>,
     summary: &'a Summary,
@@ -73,7 +73,7 @@ struct SecondPass<'a, 'b, O> {
 }
 
 impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
-    /// Hands over every message until nobody wants more.
+    /// Passes on every message until the callback ends.
     fn rows<D: CaptureDecoder>(
         &self,
         mut decoder: D,
@@ -126,7 +126,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         screen.data(&format!("\n{}", text(about.notes.join("\n"))))
     }
 
-    /// The messages as CSV, each without its list of fields.
+    /// Messages as CSV, without their lists of fields.
     fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<(), Failure> {
         let sheet = Sheet::of(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
         let (mut text, mut count) = (sheet.header(&[]), 0_usize);
@@ -144,7 +144,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
     }
 }
 
-/// The same fields as those of a [`Capture`].
+/// Fields of a [`Capture`].
 #[derive(serde::Serialize)]
 struct Written<'a, M> {
     file: &'a str,
@@ -156,7 +156,7 @@ struct Written<'a, M> {
     damage: &'a Option<String>,
 }
 
-/// Messages that are read when they are written.
+/// Messages that are read during serialization.
 struct Messages<'a, 'b, O, D>(RefCell<Option<(SecondPass<'a, 'b, O>, D)>>);
 
 impl<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder> Serialize for Messages<'_, '_, O, D> {

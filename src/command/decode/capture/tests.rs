@@ -11,11 +11,11 @@ fn whole<D: CaptureDecoder>(file: &[u8], selection: &Selection, decoder: D) -> R
     Ok(capture.expect("there is room"))
 }
 
-/// Messages and packets without one, for each family.
+/// Number of messages and of packets without a message, for each family.
 fn counts(file: &[u8], selection: &Selection) -> [Option<(usize, u64)>; 3] {
     fn count<F: Field>(capture: Result<Capture<F>, Failure>) -> Option<(usize, u64)> {
         let capture = capture.ok()?;
-        // Views must cope with anything, too.
+        // Views must accept any content.
         capture.list();
         capture.details();
         Some((capture.messages.len(), capture.other_packets))

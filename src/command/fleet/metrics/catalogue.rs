@@ -34,15 +34,15 @@ use Kind::{Counter, Gauge, Histogram, Info};
 /// All metrics in the order of the page.
 #[rustfmt::skip]
 pub const METRICS: &[Metric] = &[
-    metric("armctl_build", Info, "", "The armctl that serves this.", |_, samples| {
+    metric("armctl_build", Info, "", "Version of the armctl that serves these metrics.", |_, samples| {
         let build = [("version", env!("CARGO_PKG_VERSION")), ("revision", env!("BUILT_COMMIT"))];
         samples.put(&labels("", &build), 1);
     }),
-    metric("armctl_robots", Gauge, "", "Robots that are polled.", |board, samples| {
+    metric("armctl_robots", Gauge, "", "Number of polled robots.", |board, samples| {
         samples.put("", board.robots.len());
     }),
     metric("armctl_inventory_last_reload_successful", Gauge, "",
-        "Whether robots.toml could be read when it had changed last.",
+        "Whether armctl could read robots.toml after its last change.",
         |board, samples| samples.put("", u8::from(!board.is_inventory_broken))),
     metric("armctl_robot_up", Gauge, "", "Whether the robot answered the latest poll.",
         |board, samples| each(board, samples, |seen| seen.is_known.then(|| u8::from(seen.look.is_some())))),
@@ -54,9 +54,9 @@ pub const METRICS: &[Metric] = &[
         |board, samples| each(board, samples, |seen| flag(seen.line()?.state.held))),
     metric("armctl_robot_faulted", Gauge, "", "Whether an alarm or error is present.",
         |board, samples| each(board, samples, |seen| flag(seen.line()?.state.fault.faulted))),
-    metric("armctl_robot_fault", Info, "", "The alarm or error that is present: the first one, with its code and text.",
+    metric("armctl_robot_fault", Info, "", "The first active alarm or error, with its code and text.",
         faults),
-    metric("armctl_robot_mode", Info, "", "Who moves the robot: manual or automatic.", modes),
+    metric("armctl_robot_mode", Info, "", "Operating mode: manual or automatic.", modes),
     metric("armctl_axis_position_meters", Gauge, "meters", "Position of a linear axis or coordinate.",
         // Divide instead of multiplying by 0.001, so that 0.1025 is not rounded.
         |board, samples| axes(board, samples, MILLIMETRE.symbol, 1000.0)),
@@ -64,31 +64,31 @@ pub const METRICS: &[Metric] = &[
         |board, samples| axes(board, samples, DEGREE.symbol, 1.0)),
     metric("armctl_axis_position_pulses", Gauge, "pulses", "Position of a joint in pulses of its encoder.",
         |board, samples| axes(board, samples, PULSE.symbol, 1.0)),
-    metric("armctl_axis_torque_ratio", Gauge, "ratio", "Torque of an axis, as a part of the greatest.",
+    metric("armctl_axis_torque_ratio", Gauge, "ratio", "Torque of an axis, as a ratio of its maximum.",
         |board, samples| torques(board, samples, "% of max", 100.0)),
-    metric("armctl_axis_torque_raw", Gauge, "raw", "Torque of an axis, as the controller has it, whose unit is not known.",
+    metric("armctl_axis_torque_raw", Gauge, "raw", "Torque of an axis in the unit of the controller (not known).",
         |board, samples| torques(board, samples, "raw", 1.0)),
     metric("armctl_session_open", Gauge, "", "Whether the polls go through a session.",
         |board, samples| each(board, samples, |seen| flag(Some(seen.look.as_ref()?.through_session)))),
-    metric("armctl_robot_last_answer_timestamp_seconds", Gauge, "seconds", "When the robot answered last.",
+    metric("armctl_robot_last_answer_timestamp_seconds", Gauge, "seconds", "Time of the last answer of the robot.",
         |board, samples| each(board, samples, |seen| seen.answered)),
-    metric("armctl_poll_duration_seconds", Histogram, "seconds", "How long polls took that were answered.", times),
-    metric("armctl_polls", Counter, "", "Polls that were begun.", |board, samples| {
+    metric("armctl_poll_duration_seconds", Histogram, "seconds", "Duration of answered polls.", times),
+    metric("armctl_polls", Counter, "", "Polls that were started.", |board, samples| {
         each(board, samples, |seen| Some(seen.polls));
     }),
-    metric("armctl_poll_failures", Counter, "", "Polls that failed, by the kind of the failure.", failures),
-    metric("armctl_polls_missed", Counter, "", "Polls that were left out, because the one before took too long.",
+    metric("armctl_poll_failures", Counter, "", "Failed polls, by error kind.", failures),
+    metric("armctl_polls_missed", Counter, "", "Polls that were skipped because the poll before took too long.",
         |board, samples| each(board, samples, |seen| Some(seen.missed))),
-    metric("armctl_poll_backoffs", Counter, "", "How often the pause before the next try was made longer.",
+    metric("armctl_poll_backoffs", Counter, "", "How often armctl increased the pause before the next try.",
         |board, samples| each(board, samples, |seen| Some(seen.backoffs))),
     metric("armctl_poll_pause_seconds", Gauge, "seconds", "The pause before the next try; 0 while the robot answers.",
         |board, samples| each(board, samples, |seen| Some(seen.pause.unwrap_or_default().as_secs_f64()))),
     metric("armctl_link_sent", Counter, "", "Frames, blocks or images that were sent to the robot.",
         |board, samples| each(board, samples, |seen| Some(seen.traffic.sent))),
-    metric("armctl_link_received", Counter, "", "Frames, blocks or images that came from the robot.",
+    metric("armctl_link_received", Counter, "", "Frames, blocks or images that were received from the robot.",
         |board, samples| each(board, samples, |seen| Some(seen.traffic.received))),
     metric("armctl_link_disturbances", Counter, "",
-        "What was late, doubled, garbled, lost or sent again on the way to the robot and back.",
+        "Late, duplicate, damaged, lost or repeated frames, in both directions.",
         |board, samples| each(board, samples, |seen| Some(seen.traffic.disturbances))),
 ];
 

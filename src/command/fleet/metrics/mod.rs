@@ -35,16 +35,17 @@ use crate::output::log::Level;
 use crate::output::view::View;
 use crate::transport::http::{Answer, Request, Server, Status};
 
-/// Serves metrics of all robots, or of those that are named, until Ctrl-C or SIGTERM.
+/// Serves metrics of all robots, or of the selected ones, until Ctrl-C or SIGTERM.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "GET /metrics is OpenMetrics, or the older text of Prometheus for who asks for that; GET /healthz tells \
-                  whether this is alive. --watch INTERVAL sets how often robots are asked (1s), however often they are \
-                  read. Without -r, --tag, --sim or -t, all robots of the inventory, as it changes. Nothing in here can \
-                  move a robot or change anything. There is no password: whoever reaches the port can read."
+    after_help = "GET /metrics answers with OpenMetrics, or with the older Prometheus text format if the client asks \
+                  for it. GET /healthz answers while armctl runs. --watch INTERVAL sets how often armctl polls the \
+                  robots (1s). Without -r, --tag, --sim or -t, armctl polls all robots in the inventory, and follows \
+                  its changes. It cannot move a robot or change anything. There is no password: every client that \
+                  reaches the port can read."
 )]
 pub struct Metrics {
-    /// Where to listen
+    /// Address to listen on
     #[arg(long, alias = "bind", value_name = "ADDRESS", default_value_t = USUAL, value_parser = address)]
     listen: SocketAddr,
 }
@@ -55,14 +56,14 @@ const USUAL: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 9464)
 const EVERY: Duration = Duration::from_secs(1);
 const LEAST: Duration = Duration::from_millis(50);
 
-/// Where metrics are served.
+/// Address of the metrics server.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listening {
     /// The URL to read them from.
     url: String,
-    /// How many robots it begins with.
+    /// Number of robots at the start.
     robots: usize,
-    /// Time from look to look.
+    /// Polling interval.
     every_ms: u64,
 }
 
@@ -99,7 +100,7 @@ impl Metrics {
         let ended = interruptible(async {
             tokio::select! {
                 () = &mut polled => Err(Failure::local("internal error: polling has ended")),
-                () = listen(&mut events, &service, &board) => Err(Failure::local("nobody tells of the robots any more")),
+                () = listen(&mut events, &service, &board) => Err(Failure::local("internal error: no more updates")),
                 ended = server.run(|request| answer(request, &board)) => {
                     ended.map_err(|error| Failure::io("metrics", &error))
                 }
@@ -120,7 +121,7 @@ impl Metrics {
     /// Warns if the address is reachable from the network.
     fn warn(&self, service: &Service) {
         if !self.listen.ip().is_loopback() {
-            let text = "others on the network can read where these robots are and what is wrong with them; there is no \
+            let text = "everyone on the network can read the positions and alarms of these robots; there is no \
                         password";
             service.say(Level::Warning, text, &[("listen", &self.listen.to_string())]);
         }
@@ -147,7 +148,7 @@ fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
             Answer { status: Status::Ok, kind: form.content_type(), body: catalogue::page(&board.borrow(), form) }
         }
         "/healthz" => Answer::text(Status::Ok, "ok"),
-        _ => Answer::text(Status::NotFound, "there are /metrics and /healthz"),
+        _ => Answer::text(Status::NotFound, "the paths are /metrics and /healthz"),
     }
 }
 
@@ -155,13 +156,13 @@ fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
 fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("serve metrics {what}")).hint(hint));
     if run.repeat.count.is_some() || run.repeat.until.is_some() {
-        return wrong("goes on until it is ended", "`armctl status --until FILTER` waits for a condition");
+        return wrong("runs until Ctrl-C or SIGTERM", "`armctl status --until FILTER` waits for a condition");
     }
     if run.trace.is_some() {
         return wrong("does not record its traffic", "use --trace with `armctl status --watch`");
     }
     if every < LEAST {
-        return wrong("asks every 50ms at most", "use --watch 50ms or more");
+        return wrong("polls at most every 50ms", "use --watch 50ms or more");
     }
     Ok(())
 }
@@ -174,9 +175,9 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 
 fn cannot_listen(on: SocketAddr, error: &io::Error) -> Failure {
     let hint = match error.kind() {
-        io::ErrorKind::AddrInUse => "another program listens there; choose another port with --listen 127.0.0.1:9465",
-        io::ErrorKind::PermissionDenied => "ports below 1024 need rights; choose a higher one with --listen",
-        _ => "choose an address of this machine with --listen",
+        io::ErrorKind::AddrInUse => "another program uses this port; set another one with --listen 127.0.0.1:9465",
+        io::ErrorKind::PermissionDenied => "ports below 1024 need special rights; set a higher one with --listen",
+        _ => "set an address of this computer with --listen",
     };
     Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)
 }

@@ -31,7 +31,7 @@ pub struct Extra {
 /// A parsed command, or the error.
 pub type Read = Result<Box<dyn AnyCommand>, Failure>;
 
-const EXAMPLE: &str = "such as 'yerc var get B0..B9' or 'toyo counter get'";
+const EXAMPLE: &str = "examples: 'yerc var get B0..B9', 'toyo counter get'";
 
 impl Extra {
     /// Parses a command; its first word is the family.
@@ -40,9 +40,9 @@ impl Extra {
     /// The text is not a command, does more than read, or does not end by itself.
     pub fn parse(text: &str) -> Result<Self, Failure> {
         let wrong = |why: &str, hint: &str| Err(wrong(text, why, hint));
-        let Some(words) = shlex::split(text) else { return wrong("has a quote without an end", EXAMPLE) };
+        let Some(words) = shlex::split(text) else { return wrong("has an unclosed quote", EXAMPLE) };
         if words.iter().any(|word| word.contains(';')) {
-            return wrong("is more than one command", "give one command without ';'; --also may be repeated");
+            return wrong("is more than one command", "write one command without ';', and repeat --also");
         }
         let Some(family) = words.first().and_then(|word| word.parse::<Family>().ok()) else {
             return wrong("does not begin with a family", EXAMPLE);
@@ -50,16 +50,16 @@ impl Extra {
         let (command, is_named) = names::asking(|| read(text, family, &words));
         let command = command?;
         if command.intent(None).risk > Risk::Read {
-            return wrong("does more than read", "whoever watches robots changes nothing; choose a command that reads");
+            return wrong("does more than read", "monitoring only reads; use a command that reads");
         }
         if command.driver().is_none() {
-            return wrong("asks no robot", EXAMPLE);
+            return wrong("does not read from a robot", EXAMPLE);
         }
         if command.uses_files() {
             return Err(takes_files(text));
         }
         if command.is_endless() {
-            return wrong("does not end by itself", "use the command that reads once: it is asked again and again");
+            return wrong("does not end by itself", "use the command that reads once; armctl repeats it at each poll");
         }
         Ok(Self { text: text.into(), family, command, is_named })
     }
@@ -104,11 +104,11 @@ fn read(text: &str, family: Family, words: &[String]) -> Read {
     }
     match parsed.and_then(|mut matches| face.read(&mut matches)) {
         Ok(Typed { wish: Wish::Command(command), .. }) => Ok(command),
-        Ok(_) => Err(wrong(text, "is no command", EXAMPLE)),
+        Ok(_) => Err(wrong(text, "is not a command", EXAMPLE)),
         Err(error) => {
             let told = error.render().to_string();
             let told = told.lines().next().unwrap_or_default().trim_start_matches("error: ");
-            Err(wrong(text, &format!("is not understood: {told}"), &format!("see `armctl {family} --help`")))
+            Err(wrong(text, &format!("is not valid: {told}"), &format!("see `armctl {family} --help`")))
         }
     }
 }
@@ -153,13 +153,13 @@ mod tests {
         for (text, why) in [
             ("", "does not begin with a family"),
             ("status", "does not begin with a family"),
-            ("yerc", "is no command"),
-            ("yerc 'var", "has a quote without an end"),
-            ("yerc frobnicate", "is not understood"),
+            ("yerc", "is not a command"),
+            ("yerc 'var", "has an unclosed quote"),
+            ("yerc frobnicate", "is not valid"),
             ("yerc var set B0=1", "does more than read"),
             ("yerc job start", "does more than read"),
             ("yerc io watch 10010", "does not end by itself"),
-            ("toyo ports", "asks no robot"),
+            ("toyo ports", "does not read from a robot"),
             ("yerc var get B0; yerc hold on", "is more than one command"),
             ("yerc status ; yerc hold on", "is more than one command"),
             ("yerc var dump x.json", "is about a file or folder"),

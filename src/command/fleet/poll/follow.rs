@@ -199,9 +199,9 @@ impl Follower {
             Some(Err(failure)) => return Err(failure.clone()),
         };
         if matches!(command.entry(&self.robot), Entry::Stops(_)) {
-            let message = format!("'{}' takes a command connection, whose end stops the robot", extra.text());
+            let message = format!("'{}' needs a command connection, and its end would stop the robot", extra.text());
             return Err(Failure::new(Kind::Rejected, message)
-                .hint(format!("`armctl session open -r {}` keeps one open, and is used then", self.robot.name)));
+                .hint(format!("open a session: `armctl session open -r {}`; later polls use it", self.robot.name)));
         }
         let report = link.watch.ask(command, &self.robot, &self.screen).await?;
         report.data()

@@ -23,11 +23,11 @@ impl Also {
             let also = Self::new(line)?;
             let is_kind = Kind::ALL.iter().any(|kind| kind.name() == also.level);
             if is_kind || also.level == "state" || all.iter().any(|other| other.level == also.level) {
-                return Err(Failure::usage(format!("--also '{line}': '{}' is told already", also.level))
-                    .hint(format!("give it a name of its own: --also 'NAME={}'", also.text())));
+                return Err(Failure::usage(format!("--also '{line}': another topic has the name '{}'", also.level))
+                    .hint(format!("add a different name: --also 'NAME={}'", also.text())));
             }
             if let Some(other) = all.iter().find(|other| other.extra == also.extra) {
-                return Err(Failure::usage(format!("--also '{line}' is asked already, as '{}'", other.level))
+                return Err(Failure::usage(format!("--also '{line}' is a duplicate of '{}'", other.level))
                     .hint("remove one of them"));
             }
             all.push(also);
@@ -48,7 +48,7 @@ impl Also {
             let words: Vec<&str> = text.split_whitespace().skip(1).collect();
             topic::level(&words.join("-").replace(['"', '\''], "")).map_err(|failure| {
                 Failure { message: format!("--also '{line}': {}", failure.message), ..failure }
-                    .hint(format!("give it a shorter name: --also 'NAME={text}'"))
+                    .hint(format!("add a shorter name: --also 'NAME={text}'"))
             })?
         };
         Ok(Self { level, extra: Rc::new(extra) })
@@ -96,9 +96,9 @@ mod tests {
             all(&["yerc var get B0..B9", "parts=toyo counter get 1"]).unwrap(),
             ["var-get-B0..B9 yerc.var.get", "parts toyo.counter.get"]
         );
-        assert!(all(&["a=yerc var get B0", "a=yerc var get B1"]).unwrap_err().contains("told already"));
-        assert!(all(&["status=yerc var get B0"]).unwrap_err().contains("told already"));
-        assert!(all(&["a=yerc var get B0", "b=yerc var get B0"]).unwrap_err().contains("asked already"));
+        assert!(all(&["a=yerc var get B0", "a=yerc var get B1"]).unwrap_err().contains("another topic has the name"));
+        assert!(all(&["status=yerc var get B0"]).unwrap_err().contains("another topic has the name"));
+        assert!(all(&["a=yerc var get B0", "b=yerc var get B0"]).unwrap_err().contains("is a duplicate"));
     }
 
     #[test]

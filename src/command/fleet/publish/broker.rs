@@ -56,7 +56,7 @@ impl FromStr for Url {
         let rest = rest.strip_suffix('/').unwrap_or(rest);
         if rest.contains('@') {
             return Err(format!(
-                "user and password do not belong into the URL, where others can read them: --user NAME, and \
+                "remove user and password from the URL, where others can read them: use --user NAME, and \
                  --password-file FILE or {PASSWORD}"
             ));
         }
@@ -71,7 +71,7 @@ impl FromStr for Url {
         }
         let port = match port {
             "" => usual,
-            port => port.parse().ok().filter(|port| *port != 0).ok_or("the port is a number, 1 to 65535")?,
+            port => port.parse().ok().filter(|port| *port != 0).ok_or("the port must be a number from 1 to 65535")?,
         };
         Ok(Self { host: host.to_owned(), port, is_secure })
     }
@@ -97,7 +97,7 @@ impl From<Protocol> for Version {
     }
 }
 
-/// As whom one comes to the broker.
+/// Login at the broker.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Login {
@@ -107,7 +107,7 @@ pub struct Login {
     /// File with the password (or ARMCTL_MQTT_PASSWORD)
     #[arg(long, value_name = "FILE", requires = "user", help_heading = "Broker")]
     password_file: Option<PathBuf>,
-    /// Certificate of the authority that signed the broker's (PEM), instead of those of this machine
+    /// Certificate of the authority that signed the broker's certificate (PEM); default: those of this computer
     #[arg(long, value_name = "FILE", help_heading = "Broker")]
     ca: Option<PathBuf>,
     /// Certificate of this client (PEM)
@@ -153,7 +153,7 @@ impl Broker {
         let has_tls_words = login.ca.is_some() || login.cert.is_some();
         if has_tls_words && !url.is_secure {
             return Err(Failure::usage("--ca, --cert and --key are for TLS")
-                .hint(format!("mqtts://{}:8883 is talked to over TLS", url.host)));
+                .hint(format!("for TLS, write mqtts://{}:8883", url.host)));
         }
         let tls = if url.is_secure {
             let trust = match &login.ca {
@@ -178,14 +178,15 @@ impl Broker {
                 && others_can_read(path)?
             {
                 let path = path.display();
-                warnings
-                    .push(format!("{path}: other users of this machine can read this {secret}; `chmod 600 {path}`"));
+                warnings.push(format!(
+                    "{path}: other users of this computer can read this {secret}; run `chmod 600 {path}`"
+                ));
             }
         }
         if password.0.is_some() && !url.is_secure && !login.is_insecure && !is_this_machine(&url.host) {
             warnings.push(format!(
-                "{url}: the password goes over the network without encryption; use mqtts://, or --insecure if that network \
-                 is trusted"
+                "{url}: armctl sends the password without encryption; use mqtts://, or --insecure on a trusted \
+                 network"
             ));
         }
         Ok(Self {
@@ -226,7 +227,7 @@ fn others_can_read(path: &Path) -> Result<bool, Failure> {
 
 /// File permissions are not checked on this system.
 #[cfg(not(unix))]
-#[expect(clippy::unnecessary_wraps, reason = "the other one reads the file's permissions")]
+#[expect(clippy::unnecessary_wraps, reason = "the Unix version reads the file's permissions")]
 fn others_can_read(_: &Path) -> Result<bool, Failure> {
     Ok(false)
 }
@@ -251,14 +252,14 @@ fn password(login: &Login) -> Result<Option<Vec<u8>>, Failure> {
             password.pop();
         }
         if password.is_empty() {
-            return Err(Failure::usage(format!("{}: there is no password in it", path.display()))
-                .hint("the file holds the password and nothing else"));
+            return Err(Failure::usage(format!("{}: the file contains no password", path.display()))
+                .hint("write only the password into the file"));
         }
         return Ok(Some(password));
     }
     match env::var_os(PASSWORD).filter(|password| !password.is_empty()) {
         None => Ok(None),
-        Some(_) if login.user.is_none() => Err(Failure::usage(format!("{PASSWORD} is set, and no user is named"))
+        Some(_) if login.user.is_none() => Err(Failure::usage(format!("{PASSWORD} is set, but no user"))
             .hint(format!("add --user NAME, or unset {PASSWORD}"))),
         Some(password) => Ok(Some(password.into_encoded_bytes())),
     }

@@ -66,15 +66,15 @@ use crate::output::log::Level;
 use crate::output::view::{Cell, Tone, View};
 use crate::settings::duration;
 
-/// Publish robots to an MQTT broker, as they change.
+/// Publish changes of robots to an MQTT broker.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without -r, --tag, --sim or -t, all robots of the inventory. --watch INTERVAL sets how often they are \
-                  looked at (1s). Topics are PREFIX/ROBOT/status and so on, kept by the broker, with the envelope of --json \
-                  as payload; PREFIX/NODE/state is online or offline. Nothing in here can move a robot or change \
-                  anything, whatever the broker sends. It goes on until Ctrl-C or SIGTERM, which is exit code 0, and \
-                  tries a broker that is not there again and again; with --count N it ends after N looks at each robot, or \
-                  with exit code 4 where there is no broker. docs/monitoring/mqtt.md tells the rest."
+    after_help = "Without -r, --tag, --sim or -t, armctl publishes all robots in the inventory. --watch INTERVAL \
+                  sets how often it polls them (1s). Topics are PREFIX/ROBOT/status and so on. They are retained, \
+                  with the envelope of --json as payload; PREFIX/NODE/state is online or offline. Messages from the \
+                  broker cannot move a robot or change anything. publish runs until Ctrl-C or SIGTERM (exit code 0), \
+                  and connects again if the broker is away. With --count N it ends after N polls of each robot, or \
+                  with exit code 4 if there is no broker. See docs/monitoring/mqtt.md."
 )]
 pub struct Publish {
     /// mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS
@@ -83,20 +83,20 @@ pub struct Publish {
     broker: String,
     #[command(flatten)]
     login: Login,
-    /// What is told of each robot
+    /// What to publish of each robot
     #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "status,alarms,position")]
     kinds: Vec<Kind>,
     /// A command line that reads, whose answer is told too, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
     /// (repeatable)
     #[arg(long, value_name = "LINE")]
     also: Vec<String>,
-    /// Tell at least so often what does not change
+    /// Longest time between messages of a topic, even without a change
     #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration::parse_some)]
     every: Duration,
     /// First levels of all topics
     #[arg(long, value_name = "TOPIC", default_value = "armctl", value_parser = topic::prefix)]
     prefix: String,
-    /// Name of this publisher at the broker, unless it is that of this machine
+    /// Name of this publisher at the broker; default: the name of this computer
     #[arg(long, value_name = "NAME")]
     node: Option<String>,
     #[command(flatten)]
@@ -105,32 +105,32 @@ pub struct Publish {
     buffer: BufferArguments,
 }
 
-/// Sparkplug B instead of topics of armctl's own.
+/// Sparkplug B instead of armctl's topics.
 #[derive(Debug, Args)]
 #[group(skip)]
 struct SparkplugArguments {
-    /// Be a Sparkplug B node, whose devices are the robots
+    /// Publish as a Sparkplug B node, with the robots as its devices
     #[arg(long = "sparkplug", requires = "group", conflicts_with = "prefix", help_heading = "Sparkplug")]
     is_wanted: bool,
-    /// Its group
+    /// Sparkplug group of this node
     #[arg(long, value_name = "GROUP", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
     group: Option<String>,
-    /// The primary host: what is found while that is offline is told later, as history
+    /// The primary host; while it is offline, armctl stores the data and sends it later as history
     #[arg(long, value_name = "ID", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
     host: Option<String>,
 }
 
-/// What waits while the broker is away.
+/// Buffer for messages while the broker is away.
 #[derive(Debug, Args)]
 #[group(skip)]
 struct BufferArguments {
-    /// Most memory for what waits
+    /// Memory limit of the buffer
     #[arg(long = "buffer-memory", value_name = "SIZE", default_value = "16M", value_parser = memory_size, help_heading = "While the broker is away")]
     memory: u64,
-    /// Most disk for what memory has no room for, 0 for none
+    /// Disk limit of the buffer, used when its memory is full; 0 for none
     #[arg(long = "buffer-disk", value_name = "SIZE", default_value = "256M", value_parser = disk_size, help_heading = "While the broker is away")]
     disk: u64,
-    /// Where on disk, unless in the state folder
+    /// Folder of the buffer on disk; default: the state folder
     #[arg(long = "buffer-dir", value_name = "PATH", help_heading = "While the broker is away")]
     path: Option<PathBuf>,
 }
@@ -157,7 +157,7 @@ fn size(text: &str) -> Result<u64, String> {
 
 fn memory_size(text: &str) -> Result<u64, String> {
     match size(text)? {
-        bytes if bytes < LEAST => Err("a buffer takes 64K at least".to_owned()),
+        bytes if bytes < LEAST => Err("the buffer needs at least 64K".to_owned()),
         bytes => Ok(bytes),
     }
 }
@@ -166,14 +166,14 @@ fn disk_size(text: &str) -> Result<u64, String> {
     if size(text)? == 0 { Ok(0) } else { memory_size(text) }
 }
 
-/// What is told of a robot.
+/// Published data of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
-    /// Its state, as `armctl status` has it
+    /// Its state, as in `armctl status`
     Status,
     /// Its alarms and errors
     Alarms,
-    /// Where it is
+    /// Its position
     Position,
 }
 
@@ -208,24 +208,24 @@ pub fn schemas() -> Vec<SchemaEntry> {
     ]
 }
 
-/// What was published, once it is over.
+/// Report of `publish` at its end.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Published {
     /// Where.
     broker: String,
     /// As whom.
     node: String,
-    /// Robots, as it began.
+    /// Number of robots at the start.
     robots: usize,
-    /// What has arrived: messages, or with Sparkplug the data of devices.
+    /// Messages that the broker acknowledged; with Sparkplug, the device data.
     published: u64,
-    /// What the broker did not want.
+    /// Messages that the broker refused.
     refused: u64,
-    /// What had no room while the broker was away.
+    /// Messages that were dropped because the buffer was full.
     dropped: u64,
-    /// What had not arrived at the end, and is kept nowhere.
+    /// Messages that were neither delivered nor stored at the end.
     undelivered: u64,
-    /// How many times the broker came back.
+    /// Number of reconnections to the broker.
     reconnects: u64,
 }
 
@@ -252,7 +252,7 @@ impl Publish {
         self.fits(run, interval)?;
         let also = Also::all(&self.also)?;
         let url: Url = self.broker.parse().map_err(|why: String| {
-            Failure::usage(format!("this is not the URL of a broker: {why}")).hint("such as mqtt://192.168.1.5")
+            Failure::usage(format!("this is not the URL of a broker: {why}")).hint("example: mqtt://192.168.1.5")
         })?;
         let broker = Broker::new(&url, &self.login)?;
         let node = topic::level(&self.node.clone().unwrap_or_else(this_machine))?;
@@ -291,7 +291,7 @@ impl Publish {
             tokio::select! {
                 ended = pump.run(found, stop) => ended,
                 () = &mut polled => Err(Failure::local("internal error: polling has ended")),
-                () = service.pulses(|| log.status()) => Err(Failure::local("nobody tells how it is any more")),
+                () = service.pulses(|| log.status()) => Err(Failure::local("internal error: no more status")),
             }
         };
         drop(events);
@@ -310,24 +310,30 @@ impl Publish {
         let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("publish {what}")).hint(hint));
         if run.filter.is_some() || run.repeat.until.is_some() {
             return wrong(
-                "prints no data but a report at its end",
+                "prints only a report at its end",
                 "`armctl status --until FILTER` waits for a condition, and takes --jq",
             );
         }
         if run.gate.dry_run {
-            return wrong("sends nothing to robots but reads", "see some of its reads: `armctl status --dry-run`");
+            return wrong(
+                "has no dry run: it sends only reads to robots",
+                "see some of its reads: `armctl status --dry-run`",
+            );
         }
         if run.trace.is_some() {
             return wrong("does not record its traffic", "use --trace with `armctl status --watch`");
         }
         if run.screen.format.is_rows() {
-            return wrong("prints no table", "leave the format out, or take --json");
+            return wrong("prints no table", "remove the format, or use --json");
         }
         if interval < LEAST_EVERY {
-            return wrong("polls every 50ms at most", "use --watch 50ms or more");
+            return wrong("polls at most every 50ms", "use --watch 50ms or more");
         }
         if run.repeat.count.is_some() && self.sparkplug.host.is_some() {
-            return wrong("--host waits for a host, however long that takes", "leave --count or --host out");
+            return wrong(
+                "cannot have --count with --host: it waits for the host without a limit",
+                "remove --count or --host",
+            );
         }
         Ok(())
     }
@@ -346,16 +352,16 @@ impl Publish {
             .map_or_else(|| self.prefix.replace('/', "%2F"), |group| format!("spB-{group}"));
         let usual = || Some(state()?.join("publish").join(format!("{way}-{node}")));
         let Some(folder) = path.clone().or_else(usual) else {
-            return Err(Failure::usage("there is no folder for what memory has no room for")
-                .hint("name one with --buffer-dir, or go without: --buffer-disk 0"));
+            return Err(Failure::usage("armctl finds no folder for the buffer on disk")
+                .hint("set one with --buffer-dir, or use no disk: --buffer-disk 0"));
         };
         let spool = Spool::open(&folder, *disk).map_err(|error| {
             if spool::is_taken(&error) {
                 return Failure::usage(format!("{}: another armctl publishes as '{node}'", folder.display()))
-                    .hint("each needs a name of its own: --node NAME, or a folder: --buffer-dir PATH");
+                    .hint("set a different name with --node, or a different folder with --buffer-dir");
             }
             Failure::io(folder.display(), &error)
-                .hint("choose another folder with --buffer-dir, or none: --buffer-disk 0")
+                .hint("set another folder with --buffer-dir, or use no disk: --buffer-disk 0")
         })?;
         Ok((Outbox::new(memory, Some(spool)), Some(folder)))
     }

@@ -29,16 +29,16 @@ use crate::settings::Robot;
 /// The alarms and errors of a robot.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Alarms {
-    /// Those that are present, the latest first.
+    /// The active ones, newest first.
     alarms: Vec<Alarm>,
 }
 
-/// Where a robot is.
+/// Position of a robot.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Position {
-    /// In base coordinates; null where it was not asked, or the controller has none.
+    /// In base coordinates; null if it was not read, or the controller has none.
     position: Option<PositionMm>,
-    /// Why it was not asked; null where it was.
+    /// Why it was not read; null if it was.
     not_asked: Option<&'static str>,
 }
 
@@ -111,7 +111,7 @@ impl Plain {
         let at = (line.state.position, line.not_asked);
         if self.kinds.contains(&Kind::Position) {
             // Otherwise each step of a motion would be published twice.
-            (line.state.position, line.not_asked) = (None, Some("it has a topic of its own"));
+            (line.state.position, line.not_asked) = (None, Some("published in a separate topic"));
         }
         let mut envelopes = Vec::new();
         for kind in &self.kinds {
@@ -181,7 +181,7 @@ impl Speech for Plain {
     fn lost(&mut self) {}
 
     fn received(&mut self, message: &Message, _now_ms: u64) -> Reaction {
-        let note = format!("the broker sent something that nobody asked for, which was ignored: {}", message.topic);
+        let note = format!("ignored an unexpected message from the broker: {}", message.topic);
         Reaction { note: Some((Level::Detail, note)), ..Reaction::default() }
     }
 

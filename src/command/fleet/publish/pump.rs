@@ -263,8 +263,10 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
         if let Some(error) = self.outbox.take_trouble() {
             let why = plain(&error);
-            self.listener
-                .say(Level::Error, &format!("the disk takes no messages ({why}): what memory cannot hold is dropped"));
+            self.listener.say(
+                Level::Error,
+                &format!("cannot write messages to disk ({why}): messages that do not fit into memory are dropped"),
+            );
         }
         // Without a connection, each drop would be reported. The sum is reported with the next connection.
         if matches!(self.line, Line::Open(_)) {
@@ -279,11 +281,11 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             let what = if dropped.for_room == 1 { "message was" } else { "messages were" };
             self.listener.say(
                 Level::Warning,
-                &format!("{} {what} dropped, the oldest first: the buffer had no room", dropped.for_room),
+                &format!("{} {what} dropped, the oldest first: the buffer was full", dropped.for_room),
             );
         }
         if dropped.damaged > 0 {
-            self.listener.say(Level::Error, "a part of the buffer on disk was damaged, and is lost");
+            self.listener.say(Level::Error, "a part of the buffer on disk was damaged and is lost");
         }
     }
 
@@ -326,7 +328,8 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
                 if !is_allowed {
                     self.listener.say(
                         Level::Warning,
-                        "the broker does not allow to subscribe: no host can ask for births, or be waited for",
+                        "the broker refuses the subscription: rebirth commands and the state of the primary host do \
+                         not arrive",
                     );
                 }
                 Ok(())
@@ -351,17 +354,17 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             (0, 0) => String::new(),
             // The first polls run while it connects, so some records always wait.
             (_, 0) if !again => String::new(),
-            (waiting, 0) => format!("; {waiting} {messages} waited for it"),
-            (0, bytes) => format!("; {} KiB on disk waited for it", bytes.div_ceil(1024)),
+            (waiting, 0) => format!("; {waiting} {messages} in the buffer"),
+            (0, bytes) => format!("; {} KiB in the buffer on disk", bytes.div_ceil(1024)),
             (waiting, bytes) => {
-                format!("; {waiting} {messages} and {} KiB on disk waited for it", bytes.div_ceil(1024))
+                format!("; {waiting} {messages} in the buffer, and {} KiB on disk", bytes.div_ceil(1024))
             }
         };
         match self.gone_since.take().filter(|_| again) {
             Some(since) => {
                 self.counts.reconnects += 1;
                 let secs = duration::display(Duration::from_secs(since.elapsed().as_secs()));
-                self.listener.say(Level::Notice, &format!("{} is back after {secs}{buffered}", self.url));
+                self.listener.say(Level::Notice, &format!("connected to {} again after {secs}{buffered}", self.url));
             }
             None => self.listener.say(Level::Notice, &format!("connected to {}{buffered}", self.url)),
         }
@@ -370,7 +373,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         if let (false, Line::Open(open)) = (topics.is_empty(), &mut self.line)
             && open.uplink.subscribe(&topics).is_err()
         {
-            self.listener.say(Level::Warning, "the broker cannot be told which messages are wanted");
+            self.listener.say(Level::Warning, "cannot send the subscription to the broker");
         }
         let messages = self.speech.connected(now_ms());
         self.send(None, &messages);
@@ -421,7 +424,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         let hint = failure.hint.filter(|_| is_setting).map(|hint| format!(" ({hint})")).unwrap_or_default();
         let level = if is_known { Level::Detail } else { Level::Warning };
         let again = format!("{}.{}s", pause.as_secs(), pause.subsec_millis() / 100);
-        self.listener.say(level, &format!("{}{hint}; trying again in {again}, and so on", failure.message));
+        self.listener.say(level, &format!("{}{hint}; next try in {again}, then repeatedly", failure.message));
         if !is_known {
             self.said = Some((failure.message, Instant::now()));
         }
@@ -435,7 +438,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             self.pauses.reset();
         }
         if let Some(code) = code {
-            self.refuse(&format!("the broker refuses a message (0x{code:02X}): check what this user may publish"));
+            self.refuse(&format!("the broker refused a message (0x{code:02X}): check the publish rights of this user"));
         }
         if let Some(ticket) = ticket {
             self.counts.published += u64::from(code.is_none());
@@ -554,15 +557,15 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         let (nowhere, trouble) = outbox.park();
         self.counts.undelivered = nowhere;
         if let Some(error) = trouble {
-            self.listener.say(Level::Error, &format!("the buffer could not be kept: {}", plain(&error)));
+            self.listener.say(Level::Error, &format!("cannot store the buffer: {}", plain(&error)));
         }
         let or_detail = |level| if has_failed { Level::Detail } else { level };
         if nowhere > 0 {
             let what = if nowhere == 1 { "message was" } else { "messages were" };
-            let text = format!("{nowhere} {what} not delivered: no disk has room for what waits");
+            let text = format!("{nowhere} {what} not delivered: the buffer on disk is full or off");
             self.listener.say(or_detail(Level::Warning), &text);
         } else if has_left {
-            self.listener.say(or_detail(Level::Notice), "what was not delivered is kept on disk, for the next start");
+            self.listener.say(or_detail(Level::Notice), "undelivered messages are stored on disk for the next start");
         }
         self.counts
     }

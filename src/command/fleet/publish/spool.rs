@@ -131,7 +131,7 @@ impl Spool {
             self.segments.push_back(Segment { number, bytes: 0, outstanding: 0, is_read: false });
         }
         let (Some(writer), Some(segment)) = (&mut self.writer, self.segments.back_mut()) else {
-            return Err(SpoolError::Io(io::Error::other("no file is open")));
+            return Err(SpoolError::Io(io::Error::other("no open file")));
         };
         match writer.write_all(&bytes) {
             Ok(()) => {

@@ -54,7 +54,7 @@ pub fn level(name: &str) -> Result<String, Failure> {
         let shown: String = name.chars().take(40).collect();
         let why = if level.is_empty() { "is empty" } else { "is too long for a topic" };
         return Err(Failure::usage(format!("the name '{shown}' {why}"))
-            .hint(format!("a name takes 1 to {LONGEST} bytes in a topic; give it another one in robots.toml")));
+            .hint(format!("a name has 1 to {LONGEST} bytes in a topic; change it in robots.toml")));
     }
     Ok(level)
 }
@@ -67,10 +67,10 @@ fn is_nothing(c: char) -> bool {
 /// Checks a topic prefix: levels separated by `/`, used unchanged.
 pub fn prefix(text: &str) -> Result<String, String> {
     if text.is_empty() || text.len() > LONGEST {
-        return Err(format!("a prefix takes 1 to {LONGEST} bytes"));
+        return Err(format!("a prefix has 1 to {LONGEST} bytes"));
     }
     if text.starts_with('$') {
-        return Err("topics that begin with $ are the broker's own".to_owned());
+        return Err("topics that begin with $ are reserved for the broker".to_owned());
     }
     if text.split('/').any(str::is_empty) {
         return Err("each level needs a name: armctl, plant/line1".to_owned());
@@ -84,7 +84,7 @@ pub fn prefix(text: &str) -> Result<String, String> {
 /// Checks a Sparkplug identifier: no `+`, `#` or `/`.
 pub fn identifier(text: &str) -> Result<String, String> {
     if text.is_empty() || text.len() > LONGEST {
-        return Err(format!("an identifier takes 1 to {LONGEST} bytes"));
+        return Err(format!("an identifier has 1 to {LONGEST} bytes"));
     }
     if text.chars().any(|c| matches!(c, '+' | '#' | '/') || c.is_control() || is_nothing(c)) {
         return Err("an identifier has no +, no #, no / and no control characters".to_owned());

@@ -6,35 +6,45 @@ use crate::failure::{Failure, Kind};
 
 /// Return codes of MQTT 3.1.1, section 3.2.2.3: meaning, hint, and whether it concerns a setting.
 const RETURN_CODES: [(u8, &str, &str, bool); 5] = [
-    (1, "it does not speak this version of MQTT", "try --protocol 5, or ask which versions it has", true),
-    (2, "it does not accept the name of this client", "give another name with --node", true),
-    (3, "it is not available at present", "look at the broker", false),
+    (
+        1,
+        "it does not support this version of MQTT",
+        "try --protocol 5, or look up the versions that the broker supports",
+        true,
+    ),
+    (2, "it does not accept the name of this client", "set another name with --node", true),
+    (3, "it is not available at the moment", "check the broker", false),
     (4, "wrong user name or password", "check --user and the password", true),
-    (5, "not authorized to connect", "check --user and the password, and what the broker lets this user do", true),
+    (5, "not authorized to connect", "check --user, the password, and the rights of this user at the broker", true),
 ];
 
 /// Reason codes of MQTT 5, section 3.2.2.2.
 const REASON_CODES: [(u8, &str, &str, bool); 20] = [
-    (0x80, "it gives no reason", "its log tells more", false),
-    (0x81, "it says that CONNECT is malformed", "try --protocol 3.1.1", true),
-    (0x82, "it says that CONNECT breaks the protocol", "try --protocol 3.1.1", true),
-    (0x83, "for a reason of its own", "its log tells more", false),
-    (0x84, "it does not speak this version of MQTT", "try --protocol 3.1.1", true),
-    (0x85, "it does not accept the name of this client", "give another name with --node", true),
+    (0x80, "it gives no reason", "see the log of the broker", false),
+    (0x81, "it reports a malformed CONNECT", "try --protocol 3.1.1", true),
+    (0x82, "it reports a protocol error in CONNECT", "try --protocol 3.1.1", true),
+    (0x83, "for a reason that MQTT does not define", "see the log of the broker", false),
+    (0x84, "it does not support this version of MQTT", "try --protocol 3.1.1", true),
+    (0x85, "it does not accept the name of this client", "set another name with --node", true),
     (0x86, "wrong user name or password", "check --user and the password", true),
-    (0x87, "not authorized to connect", "check --user and the password, and what the broker lets this user do", true),
-    (0x88, "it is not available at present", "look at the broker", false),
-    (0x89, "it is busy", "look at its load and its limits", false),
-    (0x8a, "this client is banned", "ask who runs the broker", true),
-    (0x8c, "it wants another way to log in", "a user with a password, or a client certificate", true),
-    (0x90, "it does not accept the topic of the last will", "choose another --prefix", true),
-    (0x95, "CONNECT is too large for it", "choose a shorter --prefix and --node", true),
-    (0x97, "a quota is used up", "look at its limits", false),
-    (0x99, "it does not accept the last will", "its log tells more", true),
-    (0x9a, "it keeps no retained messages, and this command needs them", "allow retained messages", true),
-    (0x9b, "it does not acknowledge messages (QoS 1)", "allow QoS 1", true),
-    (0x9c, "it sends clients to another broker", "name that one", true),
-    (0x9d, "it has moved", "name its new place", true),
+    (0x87, "not authorized to connect", "check --user, the password, and the rights of this user at the broker", true),
+    (0x88, "it is not available at the moment", "check the broker", false),
+    (0x89, "it is busy", "check its load and its limits", false),
+    (0x8a, "this client is banned", "ask the administrator of the broker", true),
+    (0x8c, "it needs another login method", "use a user with a password, or a client certificate", true),
+    (0x90, "it does not accept the topic of the last will", "set another --prefix", true),
+    (0x95, "CONNECT is too large for it", "set a shorter --prefix and --node", true),
+    (0x97, "a quota is used up", "check its limits", false),
+    (0x99, "it does not accept the last will", "see the log of the broker", true),
+    (
+        0x9a,
+        "it stores no retained messages, but this command needs them",
+        "allow retained messages at the broker",
+        true,
+    ),
+    (0x9b, "it does not acknowledge messages (QoS 1)", "allow QoS 1 at the broker", true),
+    (0x9c, "it redirects clients to another broker", "use the address of that broker", true),
+    (0x9d, "it has a new address", "use its new address", true),
 ];
 
 /// Failure for a refused CONNECT.
@@ -45,7 +55,7 @@ pub fn refusal(url: &Url, refusal: &Refusal) -> Failure {
         Version::V5 => &REASON_CODES,
     };
     let found = codes.iter().find(|(known, ..)| known == code);
-    let (_, why, advice, is_setting) = found.copied().unwrap_or((0, "with a code that has no meaning", "", false));
+    let (_, why, advice, is_setting) = found.copied().unwrap_or((0, "with an undefined code", "", false));
     let told = reason.as_ref().map(|reason| format!(" ({reason})")).unwrap_or_default();
     let elsewhere = server.as_ref().map(|server| format!(": {server}")).unwrap_or_default();
     let kind = if is_setting { Kind::Usage } else { Kind::NoAnswer };
@@ -61,13 +71,13 @@ pub fn loss(url: &Url, loss: &Loss) -> Failure {
     }
     let failure = Failure::new(Kind::NoAnswer, format!("{url}: {loss}"));
     let hint = match loss {
-        Loss::Connect(_) => "check host and port, and whether the broker runs",
-        Loss::Garbage(_) if !url.is_secure => "this may be no broker; for TLS, write mqtts://",
+        Loss::Connect(_) => "check host and port, and check that the broker runs",
+        Loss::Garbage(_) if !url.is_secure => "check that this is a broker; for TLS, write mqtts://",
         Loss::Closed | Loss::Unanswered if !url.is_secure => {
-            "its log tells why; a port for TLS is reached with mqtts://, an old broker with --protocol 3.1.1"
+            "see the log of the broker; for a TLS port, write mqtts://; for an old broker, add --protocol 3.1.1"
         }
-        loss if loss.is_takeover() => "each armctl that publishes needs a name of its own: --node",
-        _ => "its log tells more",
+        loss if loss.is_takeover() => "set a different name for each publisher with --node",
+        _ => "see the log of the broker",
     };
     failure.hint(hint)
 }
@@ -76,18 +86,18 @@ pub fn loss(url: &Url, loss: &Loss) -> Failure {
 pub fn distrust(url: &Url, error: &TlsError) -> Failure {
     let (hint, kind) = match error {
         TlsError::UnknownIssuer => {
-            ("--ca FILE names the certificate of the authority that signed the broker's", Kind::Usage)
+            ("set the certificate of the authority that signed the broker's certificate: --ca FILE", Kind::Usage)
         }
-        TlsError::WrongName => ("write the name that is in the certificate into the URL", Kind::Usage),
+        TlsError::WrongName => ("use the name in the certificate as the host of the URL", Kind::Usage),
         TlsError::Expired | TlsError::NotYetValid => {
-            ("give the broker a new certificate; or this machine's clock is wrong", Kind::Usage)
+            ("check the clock of this computer, or give the broker a new certificate", Kind::Usage)
         }
         TlsError::Revoked | TlsError::Certificate(_) => ("give the broker a valid certificate", Kind::Usage),
-        TlsError::NoTls => ("mqtt:// is without TLS; TLS is usually on port 8883", Kind::Usage),
-        TlsError::Rejected(_) => ("--cert FILE --key FILE: a certificate that the broker trusts", Kind::Usage),
-        TlsError::NothingInCommon(_) => ("the broker needs TLS 1.2 or 1.3", Kind::Usage),
+        TlsError::NoTls => ("use the TLS port of the broker, usually 8883, or mqtt:// without TLS", Kind::Usage),
+        TlsError::Rejected(_) => ("set a certificate that the broker trusts: --cert FILE --key FILE", Kind::Usage),
+        TlsError::NothingInCommon(_) => ("the broker must support TLS 1.2 or 1.3", Kind::Usage),
         TlsError::Setup(_) => ("PEM files begin with -----BEGIN; see --ca, --cert and --key", Kind::Usage),
-        TlsError::Other(_) => ("its log tells more", Kind::NoAnswer),
+        TlsError::Other(_) => ("see the log of the broker", Kind::NoAnswer),
     };
     Failure::new(kind, format!("{url}: {error}")).hint(hint)
 }
@@ -113,7 +123,7 @@ mod tests {
             Refusal { version: Version::V5, code: 0x9d, reason: Some("sorry".into()), server: Some("b:1".into()) };
         assert_eq!(
             refusal(&url(), &refused).message,
-            "mqtt://broker:1883 refuses this client: it has moved (sorry): b:1"
+            "mqtt://broker:1883 refuses this client: it has a new address (sorry): b:1"
         );
     }
 

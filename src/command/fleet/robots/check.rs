@@ -15,11 +15,11 @@ use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::{Robot, target};
 
-/// Looks at each layer between this machine and a robot that is ready, changes nothing, and says what to set. Exit code 8
-/// if a layer failed.
+/// Checks each layer of the connection between this computer and the robot, and says what to set. Changes nothing. Exit
+/// code 8 if a layer failed.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// A robot of the inventory, or a target URL; otherwise the robots of -r, -t and others
+    /// A robot in the inventory, or a target URL; default: the robots of -r, -t and others
     #[arg(value_name = "NAME|URL", add = ValueKind::RobotOrUrl)]
     pub name: Option<String>,
 }
@@ -39,7 +39,7 @@ impl Family for Checked {
     }
 
     async fn halt(_link: &mut Access) -> Result<String, Failure> {
-        Ok("nothing was sent that moves the robot".to_owned())
+        Ok("no motion command was sent".to_owned())
     }
 
     fn planned(_link: &mut Access) -> Plan {
@@ -91,7 +91,7 @@ impl Report for CheckReport {
         let (layer, found) = layers::first_failed(&self.layers)?;
         Some(
             Failure::new(Kind::ConditionNotMet, format!("{layer}: {found}"))
-                .hint(format!("see the settings of the controller: `armctl help {}-setup`", self.family)),
+                .hint(format!("for the settings of the controller, see `armctl help {}-setup`", self.family)),
         )
     }
 }

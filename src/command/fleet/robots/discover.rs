@@ -16,17 +16,17 @@ use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
 use crate::settings::duration;
 
-/// Asks who is there (ListIdentity), and lists serial ports without opening them.
+/// Searches for controllers (ListIdentity), and lists serial ports without opening them.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A broadcast stays in the network of its network card. --bind selects the card by its address, \
-                  --broadcast the network, such as 192.168.0.255. yerc controllers do not answer a broadcast: use \
-                  `armctl robots check udp://ADDRESS`."
+    after_help = "A broadcast reaches only the network of its network card. Use --bind to select the card by its \
+                  address, and --broadcast to select the network, such as 192.168.0.255. A yerc controller does not \
+                  answer a broadcast: use `armctl robots check udp://ADDRESS`."
 )]
 pub struct Discover {
     #[command(flatten)]
     searches: Box<Searches>,
-    /// Wait for answers
+    /// Time to wait for answers
     #[arg(long, value_name = "TIME", default_value = "2500ms", value_parser = wait)]
     wait: Duration,
 }
@@ -76,12 +76,12 @@ fn serial_ports(run: &Run) -> Vec<Port> {
     })
 }
 
-/// What was found.
+/// Found controllers and ports.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Discovered {
     /// Network boards that answered.
     boards: Vec<FoundDevice>,
-    /// Serial ports of this machine, where broadcasts were asked for.
+    /// Serial ports of this computer; only for a search by broadcast.
     serial_ports: Vec<Port>,
     #[serde(skip)]
     nothing: &'static str,
@@ -97,7 +97,7 @@ impl Discovered {
 }
 
 const NOTHING: &str = "no answer, and no serial port found. Connect this computer to the network of the robots, or \
-                       select a network with --broadcast 192.168.0.255";
+                       set a network with --broadcast 192.168.0.255";
 
 impl Report for Discovered {
     fn view(&self) -> View {

@@ -62,13 +62,13 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
     }
 }
 
-/// The file after an edit.
+/// Result of an edit.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Edited {
     file: String,
-    /// Whether it was replaced.
+    /// Whether the file was changed.
     changed: bool,
-    /// Robots that it has.
+    /// Number of robots in it.
     robots: usize,
 }
 
@@ -86,11 +86,11 @@ pub fn path(run: &Run) -> Result<(), RunError> {
     run.local("robots.path", &InventoryPath { file: path.display().to_string(), exists: path.exists() })
 }
 
-/// Where the inventory is.
+/// Location of the inventory.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct InventoryPath {
     file: String,
-    /// Whether it is there; `robots add` and `setup` make it.
+    /// Whether it exists; `robots add` and `setup` create it.
     exists: bool,
 }
 

@@ -27,7 +27,7 @@ pub struct Add {
     /// Its URL, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
     #[arg(add = ValueKind::Url)]
     url: Given,
-    /// Its family, if the URL does not show it
+    /// Its family, if armctl cannot infer it from the URL
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// Accept only reads and stops
@@ -36,7 +36,7 @@ pub struct Add {
     /// Open a session with the first command that needs a connection (yrcx)
     #[arg(long)]
     hold: bool,
-    /// A tag, to select it by (repeatable)
+    /// A tag for --tag (repeatable)
     #[arg(long = "with-tag", value_name = "TAG", add = ValueKind::Tag)]
     tags: Vec<String>,
     /// Make it the default robot
@@ -94,12 +94,12 @@ impl Add {
         check_new(&run.sources.inventory, &self.name)?;
         let target = self.url.of(self.family)?;
         let Some(family) = self.family.or(target.family()) else {
-            let failure = Failure::usage(format!("'{target}' does not show the family"));
+            let failure = Failure::usage(format!("armctl cannot infer the family from '{target}'"));
             return Err(failure.hint("add --family yerc or --family toyo").into());
         };
         target
             .check(family)
-            .map_err(|why| Failure::usage(why).hint("see the URLs of each family: `armctl help targets`"))?;
+            .map_err(|why| Failure::usage(why).hint("for the URLs of each family, see `armctl help targets`"))?;
         let Self { name, read_only, hold, tags, default: is_default, .. } = self;
         NewRobot { name, target, family, read_only, hold, tags, is_default }.add(run, "robots.add")
     }
@@ -121,10 +121,11 @@ impl Remove {
     }
 }
 
-/// Changes settings of a robot; `KEY=` with nothing behind it removes one.
+/// Changes settings of a robot; `KEY=` without a value removes a setting.
 #[derive(Debug, Args)]
 #[command(after_help = "Settings: target, family, model, read_only, hold, encoding, timeout, retries, \
-    pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B; names.NAME=ADDRESS, such as names.clamp=27010.")]
+                        pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B. Names: names.NAME=ADDRESS, such as \
+                        names.clamp=27010.")]
 pub struct Set {
     /// Its name
     #[arg(add = ValueKind::Robot)]
@@ -150,27 +151,27 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
     ("read_only", "on or off: accept only reads and stops", |text, _| Ok(switch(text)?.into())),
     ("hold", "on or off: open a session automatically (yrcx)", |text, _| Ok(switch(text)?.into())),
     ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),
-    ("timeout", "longest wait for an answer, for each try, such as 5s", |text, _| {
+    ("timeout", "longest wait for an answer, per try, such as 5s", |text, _| {
         let timeout = duration::parse_some(text).map_err(|why| wrong(why, "example: timeout=5s"))?;
         Ok(duration::display(timeout).into())
     }),
-    ("retries", "more tries of a read without an answer", |text, _| {
+    ("retries", "number of retries of a read without an answer", |text, _| {
         let retries = text.parse::<u32>();
-        let why = format!("'{text}' is not a number of tries");
+        let why = format!("'{text}' is not a valid number of retries");
         Ok(i64::from(retries.map_err(|_| wrong(why, "example: retries=3"))?).into())
     }),
-    ("pulses_per_degree", "of the axes S,L,U,R,B,T of R1 (yerc)", |text, _| {
+    ("pulses_per_degree", "pulses per degree of the axes S,L,U,R,B,T of R1 (yerc)", |text, _| {
         let values: Result<Vec<f64>, _> = text.split(',').map(|value| value.trim().parse::<f64>()).collect();
         let values = values.ok().filter(|values| values.iter().all(|value| value.is_finite() && *value > 0.0));
         let why = || {
             wrong(
-                format!("'{text}' is not numbers of pulses"),
+                format!("'{text}' is not a list of numbers"),
                 "example: pulses_per_degree=1360,1360,1360,1000,1000,500",
             )
         };
         Ok(Value::Array(values.ok_or_else(why)?.into_iter().collect()))
     }),
-    ("tags", "tags to select it by, such as line1,welding", |text, _| {
+    ("tags", "tags for --tag, such as line1,welding", |text, _| {
         Ok(Value::Array(text.split(',').map(str::trim).filter(|tag| !tag.is_empty()).collect()))
     }),
 ];
@@ -252,7 +253,7 @@ fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
         ("name", _) => failure.hint("rename it with `armctl robots rename OLD NEW`"),
         ("default", _) => failure.hint("set the default with `armctl robots default NAME`"),
         (_, Some(near)) => failure.hint(format!("did you mean '{near}'?")),
-        (_, None) => failure.hint(format!("there are {}", SETTINGS.map(|(known, ..)| known).join(", "))),
+        (_, None) => failure.hint(format!("known: {}", SETTINGS.map(|(known, ..)| known).join(", "))),
     })
 }
 
@@ -271,7 +272,7 @@ fn json(value: &Value) -> serde_json::Value {
     }
 }
 
-/// Settings of a robot that were changed.
+/// Changed settings of a robot.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WasSet {
     name: String,
@@ -283,9 +284,9 @@ pub struct WasSet {
 #[derive(Debug, Serialize, JsonSchema)]
 struct SettingChange {
     setting: String,
-    /// What the entry had; null if nothing.
+    /// Old value; null if none.
     old: Option<serde_json::Value>,
-    /// What it has; null if nothing.
+    /// New value; null if none.
     new: Option<serde_json::Value>,
 }
 
@@ -333,7 +334,7 @@ impl Rename {
     }
 }
 
-/// A robot with another name.
+/// A renamed robot.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Renamed {
     old: String,
@@ -369,10 +370,10 @@ impl Default {
     }
 }
 
-/// The robot that is taken when none is named.
+/// The robot that is used if none is selected.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WasChosen {
-    /// The one before; null if there was none.
+    /// The earlier default; null if none.
     old: Option<String>,
     new: String,
     target: String,
@@ -399,7 +400,7 @@ pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
         );
     }
     if inventory.robots.iter().any(|robot| robot.name == name) {
-        return Err(Failure::usage(format!("robot '{name}' exists already")).hint(format!(
+        return Err(Failure::usage(format!("robot '{name}' already exists")).hint(format!(
             "change it with `armctl robots set {name} KEY=VALUE`, or remove it with `armctl robots remove {name}`"
         )));
     }
@@ -417,7 +418,7 @@ pub fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a Entry, Fail
     })
 }
 
-/// A robot that came into the inventory or left it.
+/// A robot that was added or removed.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Changed {
     /// `added` or `removed`.

@@ -17,7 +17,7 @@ pub fn path(run: &Run) -> Result<&Path, Failure> {
         .inventory
         .path
         .as_deref()
-        .ok_or_else(|| Failure::new(Kind::Usage, "no home folder for robots.toml").hint("give a file with --config"))
+        .ok_or_else(|| Failure::new(Kind::Usage, "no home folder for robots.toml").hint("set a file with --config"))
 }
 
 /// Content of the file; empty if it does not exist.

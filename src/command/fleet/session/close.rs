@@ -24,15 +24,15 @@ use crate::transport::session::wire::Info;
 /// Arguments of `session close`.
 #[derive(Debug, Args)]
 pub struct Close {
-    /// Robots whose sessions shall end, by name or target URL; -r, -t and --all name them, too
+    /// Robots whose sessions to close, by name or target URL; -r, -t and --all select them too
     #[arg(add = ValueKind::Session)]
     names: Vec<String>,
-    /// Although a motion is under way, which a controller then breaks off
+    /// Close even while a motion runs; the controller then stops the motion
     #[arg(long)]
     force: bool,
 }
 
-/// Result of sessions.
+/// Result of `session close`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Closed {
     sessions: Vec<Session>,
@@ -45,7 +45,7 @@ struct Session {
     robot: String,
     family: String,
     target: String,
-    /// `closed`, `forgotten` (it had died) or `open` (it stays so).
+    /// `closed`, `forgotten` (its process had died) or `open` (it could not be closed).
     became: &'static str,
 }
 
@@ -60,12 +60,12 @@ async fn choose(run: &Run) -> Result<Option<String>, Failure> {
     }
     let options: Vec<String> = open.iter().map(|info| format!("{}  {}", info.robot, info.target)).collect();
     let screen = run.screen;
-    let question = "session to close (type to search, Enter takes, Esc leaves)";
+    let question = "session to close (type to search, Enter selects, Esc cancels)";
     catch_interrupts();
     let at = answered(screen, move || screen.ask_one_of(question, &options, false)).await?;
     let robot = open.into_iter().nth(at).map(|info| info.robot);
     if let Some(robot) = &robot {
-        screen.note(&format!("the same without a question: armctl session close {robot}"));
+        screen.note(&format!("the same command without the question: armctl session close {robot}"));
     }
     Ok(robot)
 }
@@ -82,8 +82,8 @@ impl Close {
         let chosen = if names.is_empty() && !selection.all { choose(run).await? } else { None };
         names.extend(chosen.as_deref());
         if names.is_empty() && !selection.all {
-            return Err(Failure::usage("no session is named")
-                .hint("name a robot, or close them --all; `armctl session list` shows them")
+            return Err(Failure::usage("no session selected")
+                .hint("name a robot, or close all with --all; `armctl session list` shows the sessions")
                 .into());
         }
         let mut meant = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
@@ -100,10 +100,10 @@ impl Close {
         for name in &names {
             if !found.iter().any(|(_, info)| is_named(info, name)) {
                 let known = found.iter().map(|(_, info)| info.robot.as_str());
-                let failure = Failure::usage(format!("there is no session of '{name}'"));
+                let failure = Failure::usage(format!("no session of '{name}' is open"));
                 return Err(match nearest(name, known) {
                     Some(near) => failure.hint(format!("did you mean '{near}'?")),
-                    None => failure.hint("`armctl session list` shows those there are"),
+                    None => failure.hint("`armctl session list` shows the open sessions"),
                 }
                 .into());
             }
@@ -140,17 +140,18 @@ fn is_named(info: &Info, name: &str) -> bool {
 
 fn still_open(label: &str, error: &AttachError) -> Failure {
     match error {
-        AttachError::Refused(why) => Failure::new(Kind::Rejected, format!("{label}: it stays open: {why}")).hint(
-            "wait for the end of that, or stop it; --force closes the session all the same, and a controller then \
-                   breaks the motion off",
-        ),
+        AttachError::Refused(why) => Failure::new(Kind::Rejected, format!("{label}: the session stays open: {why}"))
+            .hint(
+                "wait for the end of the motion, or stop it; with --force the session closes now, and the controller \
+                 stops the motion",
+            ),
         _ => refused(label, error),
     }
 }
 
 impl Report for Closed {
     fn view(&self) -> View {
-        let mut table = Table::new(&["robot", "family", "target", "result"], "no session was open");
+        let mut table = Table::new(&["robot", "family", "target", "result"], "no open session");
         for session in &self.sessions {
             table.row([
                 session.robot.as_str().into(),

@@ -75,7 +75,7 @@ impl SessionHost {
         let is_simulated = robot.target.value.is_simulated();
         let host = host.watched_by(move |moves| if is_simulated { Ok(()) } else { guarding.moves(moves) });
         let host = host.stopped_by(move |why| {
-            say(&format!("{why}: the robot is being stopped"));
+            say(&format!("{why}: armctl stops the robot"));
             guardian::stop_orphan(&orphaned, face.stop(), say.clone());
         });
         let mut entry = WatchedEntry::new(robot);
@@ -103,7 +103,7 @@ impl SessionHost {
     /// Ends the session: informs clients, closes the link, completes the recording.
     pub async fn end(self, why: &str, screen: &Screen) -> Result<(), Failure> {
         if let Err(trouble) = self.host.end(why).await {
-            screen.note(&format!("{}: the connection was not closed properly: {trouble}", self.label));
+            screen.note(&format!("{}: the connection was not closed correctly: {trouble}", self.label));
         }
         self.finish.map_or(Ok(()), |finish| finish())
     }
@@ -188,8 +188,10 @@ async fn hold(
             _ if !is_held => SessionHost::open(&robot, &access, &screen, tell).await.map(Some),
             Ok(Some(place)) if place.spot(&key).socket().exists() => Ok(None),
             // A line that bypasses the held link would reach another simulator, or open a second connection.
-            _ => Err(Failure::local(format!("{label}: somebody has removed the socket of the link that is held"))
-                .hint("leave, and begin again")),
+            _ => Err(Failure::local(format!(
+                "{label}: the socket of the open connection was removed by another process"
+            ))
+            .hint("end this prompt, and start it again")),
         }
     };
     let attempt = tokio::select! {
@@ -209,14 +211,14 @@ async fn hold(
     held.borrow_mut().insert(key.clone());
     let why = tokio::select! {
         _ = holding.serve() => {
-            say(&format!("{label}: another process had the session closed"));
+            say(&format!("{label}: another process closed the session"));
             "the session was closed"
         }
         _ = ended.wait_for(|ended| *ended) => {
             if holding.under_way() {
-                say(&format!("{label}: something is under way, which the controller breaks off now that the link ends"));
+                say(&format!("{label}: the connection ends during a motion; the controller stops the motion"));
             }
-            "the process that held it has ended"
+            "the process of the session has ended"
         }
     };
     held.borrow_mut().remove(&key);

@@ -51,23 +51,23 @@ struct Session {
     robot: String,
     family: String,
     target: String,
-    /// The process that holds the link, or held it.
+    /// Process of the session, also after its end.
     pid: u32,
-    /// `up`, `down` (it is being opened again), `silent` (the process does not answer) or `dead` (it was killed).
+    /// `up`, `down` (armctl reconnects), `silent` (the process does not answer) or `dead` (the process was killed).
     link: &'static str,
-    /// Why it is not up.
+    /// Reason if it is not `up`.
     why: Option<String>,
-    /// Since when it is held.
+    /// Time of its start.
     since: Option<String>,
-    /// How often the link was lost and opened again.
+    /// Number of reconnections.
     reopenings: u32,
-    /// Who uses it now.
+    /// Processes that use it now.
     clients: Vec<Client>,
-    /// Who moves the robot.
+    /// Process that moves the robot.
     motion: Option<Client>,
-    /// Whether the controller shows that something moves (yrcx).
+    /// Whether the controller reports a running motion (yrcx).
     under_way: bool,
-    /// Who left a remote command to itself, whatever became of it.
+    /// Process that did not wait for the end of its remote command.
     leftover: Option<Left>,
 }
 
@@ -80,12 +80,12 @@ struct Client {
     since: String,
 }
 
-/// A process that left a command to itself.
+/// A process that did not wait for the end of its command.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Left {
     #[serde(flatten)]
     client: Client,
-    /// Whether it died, instead of being told not to wait.
+    /// Whether it died; otherwise it ended without a wait, as requested.
     died: bool,
 }
 
@@ -93,7 +93,10 @@ impl Session {
     fn of(spot: &Spot, found: Result<Option<Status>, AttachError>) -> Self {
         let (link, why) = match found {
             Ok(Some(status)) => return Self::living(status),
-            Ok(None) => ("dead", "`armctl session close` forgets it, `armctl session open` opens it again".to_owned()),
+            Ok(None) => (
+                "dead",
+                "remove it with `armctl session close`, or open it again with `armctl session open`".to_owned(),
+            ),
             Err(error) => ("silent", error.to_string()),
         };
         let owner = spot.owner();
@@ -104,7 +107,7 @@ impl Session {
 
     fn living(status: Status) -> Self {
         let foreign = (status.version != VERSION)
-            .then(|| "another version of armctl holds it; close it, and open it again to use it".to_owned());
+            .then(|| "opened by another version of armctl; close it and open it again".to_owned());
         Self {
             robot: status.info.robot,
             family: status.info.family,
@@ -126,12 +129,12 @@ impl Session {
         let mut remarks = Vec::new();
         remarks.extend(self.why.clone());
         if self.reopenings > 0 {
-            remarks.push(format!("opened again {} times", self.reopenings));
+            remarks.push(format!("reconnected {} times", self.reopenings));
         }
         if let Some(client) = &self.motion {
-            remarks.push(format!("process {} moves it: {}", client.pid, client.command));
+            remarks.push(format!("process {} moves the robot: {}", client.pid, client.command));
         } else if self.under_way {
-            remarks.push("something is under way".to_owned());
+            remarks.push("a motion runs".to_owned());
         }
         if let Some(Left { client, died }) = &self.leftover {
             let how = if *died { "has died" } else { "did not wait" };
@@ -156,7 +159,7 @@ impl Report for Sessions {
     fn view(&self) -> View {
         let mut table = Table::new(
             &["robot", "family", "link", "process", "clients", "target", "remark"],
-            "no session is open; `armctl session open -r NAME` opens one",
+            "no open session; open one with `armctl session open -r NAME`",
         );
         for session in &self.sessions {
             let tone = if session.link == "up" { Tone::Good } else { Tone::Bad };

@@ -13,12 +13,12 @@ pub use list::Sessions;
 
 use crate::command::frame::run::{Run, RunError};
 
-/// What can be done with sessions.
+/// Commands for sessions.
 #[derive(Debug, Subcommand)]
 pub enum Session {
     /// Open a connection and keep it for later commands
     Open(open::Open),
-    /// List open sessions and who uses them
+    /// List open sessions and their clients
     List(list::List),
     /// Close a session
     Close(close::Close),

@@ -35,10 +35,10 @@ pub struct Open {
     /// Run in the background; return once the connection is open
     #[arg(long)]
     background: bool,
-    /// End once no command has used it for so long
+    /// Close the session after this time without a command
     #[arg(long, value_name = "TIME", value_parser = duration::parse_some)]
     idle: Option<Duration>,
-    /// The family, where the target does not tell
+    /// The family, if armctl cannot infer it from the target
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// This is the process that `--background` has started.
@@ -55,26 +55,29 @@ impl Open {
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let mut robots = run.sources.robots(self.family)?;
         let [robot] = &mut robots[..] else {
-            return Err(Failure::usage("a session is for one robot").hint("open one for each").into());
+            return Err(Failure::usage("a session is for one robot").hint("open a session for each robot").into());
         };
         if !run.gate.dry_run {
             identify(&run.sources, families::of(robot.family).driver(), robot, true)?;
         }
         if robot.read_only.value && families::of(robot.family).session_commands() && !robot.target.value.is_simulated()
         {
-            let message = format!("{} is read-only, and a session commands the controller", robot.label());
+            let message = format!("{} is read-only, but a session takes control of the controller", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
-                .hint("`yrcx status` and `yrcx io get` read without one, where the fieldbus lets more than one look")
+                .hint(
+                    "read without a session: `yrcx status`, `yrcx io get`, if the fieldbus allows more than one \
+                     client",
+                )
                 .into());
         }
         if run.gate.dry_run {
-            return Err(Failure::usage("there is nothing to see beforehand: a session sends no command by itself")
-                .hint("leave --dry-run away")
+            return Err(Failure::usage("session open has no dry run: it sends no command")
+                .hint("remove --dry-run")
                 .into());
         }
         if run.trace.is_some() && !families::of(robot.family).session_records() {
-            return Err(Failure::usage(format!("a session of {} records nothing", robot.family))
-                .hint("give --trace to the commands that go through it")
+            return Err(Failure::usage(format!("a session of {} has no recording", robot.family))
+                .hint("use --trace with the commands that use the session")
                 .into());
         }
         catch_interrupts();
@@ -86,7 +89,7 @@ impl Open {
         if !self.detached {
             let (host, opened) = Self::open(run, robot, false).await?;
             run.local("session.open", &opened)?;
-            run.screen.note("Ctrl-C ends it");
+            run.screen.note("Ctrl-C closes the session");
             return Ok(self.serve(run, host).await?);
         }
         leave_terminal().context("the terminal")?;
@@ -118,7 +121,7 @@ impl Open {
             Attempt::Taken => return Err(taken(robot, &spot).await),
             Attempt::NoPlace(failure) => return Err(failure),
         };
-        say("the link is open");
+        say("the connection is open");
         let opened = Opened::here(robot, background, log.as_deref());
         Ok((holding, opened))
     }
@@ -128,7 +131,7 @@ impl Open {
         let mut holding = holding.ending_after(self.idle);
         let why = match interruptible(holding.serve()).await {
             Ok(Why::Asked) => "the session was closed".to_owned(),
-            Ok(Why::Idle) => "the session has ended: nobody has used it for long".to_owned(),
+            Ok(Why::Idle) => "the session has ended: no command used it in the idle time".to_owned(),
             Err(asked) => format!("the session has ended: {}", asked.message),
         };
         holding.end(&why, &run.screen).await
@@ -142,8 +145,8 @@ async fn taken(robot: &Robot, spot: &Spot) -> Failure {
         (_, Some(owner)) => format!("process {}, which does not answer", owner.pid),
         (_, None) => "a process that does not answer".to_owned(),
     };
-    Failure::new(Kind::NoAnswer, format!("{}: a session is open already: {who}", robot.label()))
-        .hint(format!("commands go through it by themselves; `armctl session close {}` ends it", robot.name))
+    Failure::new(Kind::NoAnswer, format!("{}: a session is already open: {who}", robot.label()))
+        .hint(format!("commands use it automatically; close it with `armctl session close {}`", robot.name))
 }
 
 /// Log of a session: on the terminal, or in a file.

@@ -24,7 +24,7 @@ use crate::settings::{alarms, duration};
 pub enum Alarm {
     /// Show the present alarms of robots
     List(List),
-    /// Alarm history, the latest first
+    /// Alarm history, newest first
     History,
     /// Print alarms as they come and go
     Watch(Watch),
@@ -32,10 +32,10 @@ pub enum Alarm {
     Reset,
 }
 
-/// Prints the present alarms, and then each that comes or goes, until Ctrl-C, --for, or --count reports.
+/// Prints the active alarms, and then each change, until Ctrl-C, --for, or --count reports.
 #[derive(Debug, Args)]
 pub struct Watch {
-    /// How long to go on
+    /// Stop after this time
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
 }
@@ -70,11 +70,12 @@ pub fn schemas() -> [SchemaEntry; 4] {
     ]
 }
 
-/// The alarms that are present. What takes command of a controller is not asked: which alarm a YRCX has, without a
-/// session.
+/// The active alarms. Reads that take control of a controller are not sent: without a session, a YRCX
+/// reports no alarm code.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "`armctl explain FAMILY CODE` says more of a code; `armctl FAMILY alarm list` all that the controller tells."
+    after_help = "`armctl explain FAMILY CODE` explains a code. `armctl FAMILY alarm list` shows all details of the \
+                  controller."
 )]
 pub struct List {}
 
@@ -115,7 +116,7 @@ impl Command for List {
 pub struct Present {
     #[serde(flatten)]
     alarms: AllAlarms,
-    /// Whether other robots are shown beside.
+    /// Whether the report has other robots too.
     #[serde(skip)]
     several: bool,
 }

@@ -43,7 +43,7 @@ pub struct Watch {
     /// Names of signals, or addresses as `armctl FAMILY io watch` takes them
     #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',')]
     signals: Vec<String>,
-    /// How long to go on
+    /// Stop after this time
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
 }

@@ -81,17 +81,17 @@ pub fn order(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
 
 /// All keys in the order of the help.
 pub const KEYS: [Explained; 12] = [
-    Explained { key: "← →", short: "step", full: "move the chosen axis by one step, - or +" },
-    Explained { key: "↑ ↓", short: "axis", full: "choose the axis" },
+    Explained { key: "← →", short: "step", full: "move the selected axis by one step, - or +" },
+    Explained { key: "↑ ↓", short: "axis", full: "select the axis" },
     Explained { key: "Space", short: "STOP", full: "stop the robot, at any time" },
     Explained { key: "+ -", short: "size", full: "larger steps, smaller steps" },
     Explained { key: "< >", short: "speed", full: "slower, faster" },
-    Explained { key: "c", short: "system", full: "the next way in which axes move; also Tab" },
-    Explained { key: "T", short: "teach", full: "store the place of the robot in a point" },
-    Explained { key: "G", short: "go", full: "go to a point: one motion, which ends at the point" },
-    Explained { key: "r", short: "", full: "release the hold that a stop has left" },
+    Explained { key: "c", short: "system", full: "next coordinate system; also Tab" },
+    Explained { key: "T", short: "teach", full: "teach: store the current position as a point" },
+    Explained { key: "G", short: "go", full: "move to a point in one motion" },
+    Explained { key: "r", short: "", full: "release the hold after a stop" },
     Explained { key: "?", short: "help", full: "this list; also h" },
-    Explained { key: "q", short: "quit", full: "end, once nothing moves" },
+    Explained { key: "q", short: "quit", full: "end, after the motion" },
     Explained { key: "Ctrl-C", short: "", full: "stop, and end with exit code 130" },
 ];
 

@@ -25,13 +25,13 @@ use crate::settings::target::Family;
 /// Arguments of `teach`; `crate::app` runs it.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "One robot: -r NAME, -t URL, or --sim with the family. A key moves one axis by one step, and the next \
-                  one counts once that has ended: whatever happens to the terminal, the motion ends with the step. \
-                  That is no dead man's switch and no substitute for the enabling device of the pendant: see `armctl \
-                  help safety`. The keys are on the screen, `?` explains them; `q` ends."
+    after_help = "Select one robot: -r NAME, -t URL, or --sim with the family. A key moves one axis by one step. The \
+                  next key has an effect after the end of that step, so the motion ends even if the terminal is \
+                  lost. This is not a dead man's switch, and does not replace the enabling device of the pendant: \
+                  see `armctl help safety`. The screen shows the keys, `?` explains them, `q` ends."
 )]
 pub struct Teach {
-    /// The family, if the robot does not show it
+    /// The family, if armctl cannot infer it from the robot
     #[arg(value_name = "FAMILY")]
     pub family: Option<Family>,
     /// Largest step of a key, in mm, degrees, or the unit of the axes
@@ -44,7 +44,7 @@ pub struct Teach {
 
 fn positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("it is more than nothing".to_owned()) }
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("it must be above 0".to_owned()) }
 }
 
 impl Teach {
@@ -64,7 +64,7 @@ impl Teach {
 }
 
 /// Runs command lines of the panel.
-#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+#[expect(async_fn_in_trait, reason = "all code runs on one thread")]
 pub trait Types {
     /// Runs a command line of the family, and returns the data of its report.
     async fn run(&self, words: &[String]) -> Result<serde_json::Value, Failure>;

@@ -52,7 +52,7 @@ pub async fn show(
         let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
         let told = lines.run(&words).await?;
         let sizes = (0..model.system().axes.len()).map(|axis| size(&told, axis)).collect::<Option<Vec<f64>>>();
-        model.scale_by(sizes.ok_or_else(|| Failure::local("internal error: the small step of the axes is not told"))?);
+        model.scale_by(sizes.ok_or_else(|| Failure::local("internal error: no small step for the axes"))?);
     }
     let looks = Looks { whole: Some(RobotId::of(robot)), longest_pause: LONGEST_PAUSE, ..Looks::every(EVERY) };
     let mut poll = Poll::of(robot.clone(), screen.silenced());
@@ -68,7 +68,7 @@ pub async fn show(
         let mut shown = Show { terminal, palette, model, seen, is_real, lines, start: Instant::now(), leaving: None };
         tokio::select! {
             ended = shown.run(&mut updates, keys) => ended,
-            () = &mut polled => Err(Failure::local("nobody looks at the robot any more")),
+            () = &mut polled => Err(Failure::local("internal error: polling has ended")),
         }
     };
     drop(updates);
@@ -193,7 +193,7 @@ impl<'a, L: Types> Show<'a, L> {
             let moved = async {
                 let from = lines.run(&owned(panel.position)).await?;
                 let step = (system.step)(&Step { axis, by, speed, from: &from });
-                words = step.ok_or_else(|| Failure::local("the robot does not tell where this axis is"))?;
+                words = step.ok_or_else(|| Failure::local("the robot does not report the position of this axis"))?;
                 lines.run(&words).await.map(|_| ())
             };
             let outcome = moved.await;

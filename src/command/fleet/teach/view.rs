@@ -46,7 +46,11 @@ pub(super) fn render(buffer: &mut Buffer, area: Rect, model: &Model, robot: &Rob
     let shown: Vec<_> = KEYS.iter().filter(|key| !key.short.is_empty()).collect();
     painter.keys(foot, &shown);
     if model.has_help {
-        painter.help(area, "Each key moves one axis by one step; the next one counts when it has ended.", KEYS.iter());
+        painter.help(
+            area,
+            "Each key moves one axis by one step. The next key has an effect after the end of the step.",
+            KEYS.iter(),
+        );
     }
     if !palette.is_unicode {
         to_ascii(painter.buffer);
@@ -60,7 +64,7 @@ fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool)
     let tone = painter.palette.tone(if is_real { Tone::Bad } else { Tone::Good });
     painter.left(after(line_of(area, 0), 1), "teach", accent);
     painter.right(line_of(area, 0), &format!("{who} "), tone);
-    let step = model.step().map_or("none is allowed".to_owned(), |step| format!("{step} {}", model.unit()));
+    let step = model.step().map_or("not allowed".to_owned(), |step| format!("{step} {}", model.unit()));
     let speed = model.speed().map(|speed| format!("{speed} {}", model.system().speed_unit));
     let speed = speed.unwrap_or_else(|| "the controller's".to_owned());
     let state = if model.is_moving { (" MOVING ", tone.add_modifier(Modifier::REVERSED)) } else { ("", quiet) };
@@ -89,15 +93,15 @@ fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool)
 fn question(model: &Model, asked: &Asked) -> String {
     let point = model.panel.point;
     match asked {
-        Asked::Point(Use::Store, typed) => format!("Store the place of the robot in: {typed}_  (number, Enter; Esc)"),
-        Asked::Point(Use::Go, typed) => format!("Go to: {typed}_  (number, Enter; Esc)"),
+        Asked::Point(Use::Store, typed) => format!("Store the current position as: {typed}_  (number, Enter; Esc)"),
+        Asked::Point(Use::Go, typed) => format!("Move to: {typed}_  (number, Enter; Esc)"),
         Asked::Sure(Use::Store, number, old) => {
-            format!("y stores it in {}, Esc does not; there now: {old}", point(*number))
+            format!("y stores it as {}, Esc cancels; current content: {old}", point(*number))
         }
         Asked::Sure(Use::Go, number, place) => {
-            format!("y goes to {} in one motion, Esc does not; it is {place}", point(*number))
+            format!("y moves to {} in one motion, Esc cancels; the point is {place}", point(*number))
         }
-        Asked::Release => "y releases the hold, Esc does not; a motion that was stopped may go on".to_owned(),
+        Asked::Release => "y releases the hold, Esc cancels; a stopped motion may continue".to_owned(),
     }
 }
 

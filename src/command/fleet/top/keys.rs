@@ -103,7 +103,7 @@ pub const KEYS: [((bool, bool), Explained); 15] = [
     explained((false, true), "Esc", "list", "back to the list; also Backspace"),
     explained((false, true), "↑ ↓", "axis", "select the axis of the charts"),
     explained((false, true), "← →", "robot", "previous robot, next robot; also p n"),
-    explained((true, false), "/", "filter", "filter by a text in name, family, address or tag"),
+    explained((true, false), "/", "filter", "filter by text in name, family, address or tag"),
     explained((true, false), "Esc", "", "show all robots again"),
     explained((true, false), "s", "sort", "sort: inventory, alarms first, name, slowest first"),
     explained((true, true), "Space", "pause", "pause the display; polling continues"),

@@ -31,12 +31,12 @@ use crate::failure::{Failure, Kind};
 use crate::output::Format;
 use crate::output::fullscreen::{Event, Fullscreen, Keys};
 
-/// All robots, or one, live on the whole screen.
+/// Full-screen live monitor of one or all robots.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without -r, --tag, --sim or -t, top shows all robots of the inventory. --watch INTERVAL sets how often \
-                  it polls them (500ms). `?` explains the keys. top cannot move a robot or change anything: it sends only \
-                  reads, and to a YRCX only messages, unless a session holds the connection. `q` ends with exit code 0, \
+    after_help = "Without -r, --tag, --sim or -t, top shows all robots in the inventory. --watch INTERVAL sets how \
+                  often it polls them (500ms). `?` explains the keys. top cannot move a robot or change anything: it \
+                  sends only reads. To a YRCX without a session it sends only messages. `q` ends with exit code 0, \
                   Ctrl-C with 130."
 )]
 pub struct Top {}
@@ -96,8 +96,8 @@ fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
     }
     if run.repeat.count.is_some() || run.repeat.until.is_some() {
         return wrong(
-            "runs until `q` and waits for no condition",
-            "`armctl status --until FILTER` waits for one, --count N with --watch ends after so many",
+            "runs until `q`, and cannot wait for a condition",
+            "wait with `armctl status --until FILTER`, or end after N polls with --watch and --count N",
         );
     }
     if run.gate.dry_run {
@@ -107,7 +107,7 @@ fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
         return wrong("does not record its traffic", "use --trace with `armctl status --watch`");
     }
     if every < LEAST {
-        return wrong("polls every 50ms at most", "use --watch 50ms or more");
+        return wrong("polls at most every 50ms", "use --watch 50ms or more");
     }
     Ok(())
 }

@@ -35,7 +35,7 @@ const FILTER: usize = 40;
 
 /// State of the screen.
 #[derive(Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub struct Model {
     /// Current robots; a pause shows older data.
     robots: Vec<Seen>,
@@ -76,8 +76,8 @@ pub enum Sort {
 
 impl Sort {
     const ALL: [(Self, &'static str); 4] = [
-        (Self::Given, "as given"),
-        (Self::Trouble, "trouble first"),
+        (Self::Given, "inventory order"),
+        (Self::Trouble, "alarms first"),
         (Self::Name, "by name"),
         (Self::Answer, "slowest first"),
     ];
@@ -418,7 +418,7 @@ fn in_short(kind: Kind) -> &'static str {
     match kind {
         Kind::NoAnswer => "no answer",
         Kind::Refused => "refuses to report",
-        Kind::Malformed => "answers nonsense",
+        Kind::Malformed => "invalid answer",
         _ => "cannot be read",
     }
 }

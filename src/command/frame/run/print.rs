@@ -1,4 +1,4 @@
-//! What a run writes on stdout: views for people, envelopes for programs.
+//! Output of a run on stdout: views for people, envelopes for programs.
 
 use std::collections::HashMap;
 
@@ -16,26 +16,26 @@ use crate::output::view::{Table, View};
 use crate::output::{Format, escape, render};
 use crate::settings::Robot;
 
-/// Where a report stands among others.
+/// Position of a report among others.
 #[derive(Debug, Clone, Copy)]
 pub enum ReportPosition<'a> {
     /// The only one.
     Alone,
     /// The first of a watch.
     First,
-    /// A later one of a watch.
+    /// A later report of a watch.
     Next,
-    /// One of a watch whose reports are lines.
+    /// A report of a watch with one line per report.
     Line,
-    /// The same of a robot among others.
+    /// A line of a robot in a watch of several robots.
     LineOf(&'a Robot),
     /// One of several robots.
     Among { robot: &'a Robot, first: bool },
 }
 
 impl Run {
-    /// Writes the envelope of a line that has failed in its place among those of the others; `false` for people, who
-    /// read of it elsewhere.
+    /// Writes the envelope of a failed line in the order of the lines; `false` for people, who see the failure on
+    /// stderr.
     pub fn report_failure(&self, stopped: &RunError) -> Result<bool, Failure> {
         if self.is_for_people() {
             return Ok(false);
@@ -45,7 +45,7 @@ impl Run {
         Ok(true)
     }
 
-    /// Reports what a command without a robot has to say.
+    /// Prints the report of a command without a robot.
     pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), RunError> {
         let failure = report.failure();
         if self.is_for_people() {
@@ -105,12 +105,13 @@ impl Run {
         Ok(envelopes)
     }
 
-    /// Whether people see a table once, with room below it.
+    /// Whether the output is a single table for people, with a possible summary below.
     fn has_trailer(&self) -> bool {
         self.screen.format == Format::Table && !self.redraw.is_on() && !self.gate.dry_run
     }
 
-    /// Tables of the same columns become one, with the robot in front; other views stand below each other.
+    /// Merges tables with the same columns into one, with the robot in front; other views are printed one below the
+    /// other.
     fn show_many(&self, views: &[(&Robot, View)], place: ReportPosition<'_>) -> Result<(), Failure> {
         let tables = views.iter().map(|(robot, view)| Some((robot.name.as_str(), view.as_table()?)));
         match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
@@ -121,7 +122,7 @@ impl Run {
         }
     }
 
-    /// Whether reports are shown as views: tables, or CSV.
+    /// Whether reports are printed as views: tables, or CSV.
     pub fn is_for_people(&self) -> bool {
         self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv | Format::Value)
     }
@@ -146,13 +147,12 @@ impl Run {
         self.emit(if is_stream { timed(envelope) } else { envelope })
     }
 
-    /// The envelope with the time, in a format that is a stream.
+    /// Adds the time to an envelope in a stream format.
     fn of_stream(&self, envelope: Envelope) -> Envelope {
         if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope }
     }
 
-    /// Begins a round of a watch: what it shows replaces the round before, on a terminal that can; what is told one after
-    /// the other stays.
+    /// Starts a round of a watch. On a terminal it replaces the previous round; lines of a log stay.
     pub(super) fn round(&self, is_first: bool, stays: bool) -> ReportPosition<'static> {
         if !stays && self.screen.can_replace() && self.is_for_people() {
             self.redraw.begin();
@@ -176,7 +176,7 @@ impl Run {
         }
     }
 
-    /// Writes JSON, or what the filter makes of it: strings as they are, the rest as JSON, a line each.
+    /// Writes JSON, or the results of the filter, one per line: strings raw, the rest as JSON.
     fn write(&self, value: &impl Serialize) -> Result<(), Failure> {
         let value = match &self.line {
             Some(line) => line.pass(as_value(value)?),
@@ -198,7 +198,7 @@ impl Run {
         }
     }
 
-    /// Writes reports of one kind as CSV. Later rounds of a watch go below the header of the first.
+    /// Writes reports of one kind as CSV. Later rounds of a watch go below the first header.
     fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: ReportPosition<'_>) -> Result<(), Failure> {
         let Some((_, first)) = reports.first() else { return Ok(()) };
         let sheet = Sheet::of(&first.schema().to_value(), first.rows());
@@ -244,11 +244,11 @@ impl Run {
     }
 }
 
-/// The failures of robots, those that many have in common as one.
+/// Failures of robots, with common ones merged.
 fn alike(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
-    /// So many robots are told one by one.
+    /// Maximum number of robots that are listed individually.
     const FEW: usize = 5;
-    /// So many are named in what stands for all.
+    /// Maximum number of robot names in a merged failure.
     const NAMED: usize = 3;
 
     let why = |(robot, failure): &(&Robot, Failure)| {
@@ -277,7 +277,7 @@ fn alike(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
     told.collect()
 }
 
-/// A text with dots in place of what is this robot's alone: its name, host and port.
+/// Text with the name, host and port of the robot replaced by dots.
 fn general(text: &str, robot: &Robot) -> String {
     let url = robot.target.value.url();
     let parts = url.split(|one: char| !one.is_alphanumeric() && !"._-".contains(one));
@@ -285,7 +285,7 @@ fn general(text: &str, robot: &Robot) -> String {
     std::iter::once(robot.name.as_str()).chain(parts).fold(text.replace(url, "…"), |text, part| without(&text, part))
 }
 
-/// A text with dots in place of a word.
+/// Text with a word replaced by dots.
 fn without(text: &str, word: &str) -> String {
     let is_part = |one: Option<char>| one.is_some_and(|one| one.is_alphanumeric() || one == '_' || one == '-');
     let mut out = String::with_capacity(text.len());
@@ -302,7 +302,7 @@ fn without(text: &str, word: &str) -> String {
     out
 }
 
-/// A failure with the name of its robot; those of the link have it already.
+/// Failure with the robot's name, unless a link failure already has it.
 pub(super) fn named(robot: &Robot, failure: Failure) -> Failure {
     let label = robot.label();
     let is_named = failure.message.starts_with(&label);
@@ -310,7 +310,7 @@ pub(super) fn named(robot: &Robot, failure: Failure) -> Failure {
     Failure { message, ..failure }
 }
 
-/// What several robots reported, or why not.
+/// Envelopes of reports or failures of several robots.
 pub(super) fn enveloped_all(robots: &[Robot], id: &str, outcomes: &[Outcome]) -> Result<Vec<Envelope>, Failure> {
     let pairs = robots.iter().zip(outcomes);
     pairs.map(|(robot, outcome)| enveloped(robot, id, outcome.as_deref().map_err(Clone::clone))).collect()
@@ -330,7 +330,7 @@ pub fn timed(envelope: Envelope) -> Envelope {
     Envelope { time: Some(Timestamp::now()), ..envelope }
 }
 
-/// What is written, as a value.
+/// JSON value of the output.
 pub fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
     serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
 }

@@ -1,4 +1,4 @@
-//! A read, over and over.
+//! Repeated reads.
 
 use std::time::Duration;
 
@@ -14,28 +14,28 @@ use crate::output::Screen;
 /// `--watch`, `--count`, `--until`, `--for`.
 #[derive(Debug, Default)]
 pub struct Repeat {
-    /// Pause from start to start.
+    /// Interval from start to start.
     pub every: Option<Duration>,
-    /// Most runs.
+    /// Maximum number of runs.
     pub count: Option<u64>,
-    /// Stop when this holds.
+    /// Condition that ends the repetition.
     pub until: Option<Condition>,
-    /// What must hold of a single run.
+    /// Condition that a single run must meet.
     pub check: Option<Condition>,
-    /// Longest time to wait for the condition.
+    /// Maximum wait for the condition.
     pub within: Option<Duration>,
-    /// Only the last round is shown.
+    /// Whether only the last round is shown.
     pub is_quiet: bool,
 }
 
 impl Repeat {
-    /// Whether any of them was given.
+    /// Whether any of the options was given.
     pub fn is_wanted(&self) -> bool {
         self.every.is_some() || self.count.is_some() || self.until.is_some()
     }
 }
 
-/// The rounds of a watch, from start to start without drift.
+/// Rounds of a watch, at fixed intervals without drift.
 #[derive(Debug)]
 pub struct Rounds<'a> {
     repeat: &'a Repeat,
@@ -45,12 +45,12 @@ pub struct Rounds<'a> {
 }
 
 impl<'a> Rounds<'a> {
-    /// `every` is the pause where none is given.
+    /// `every` is the default interval.
     pub fn new(repeat: &'a Repeat, every: Duration) -> Self {
         Self { repeat, every: repeat.every.unwrap_or(every), began: Instant::now(), done: 0 }
     }
 
-    /// When --for runs out.
+    /// Deadline of `--for`.
     pub fn deadline(&self) -> Option<Instant> {
         self.repeat.within.map(|within| self.began + within)
     }
@@ -59,7 +59,7 @@ impl<'a> Rounds<'a> {
         self.done == 0
     }
 
-    /// Whether the condition holds. One that can never hold is told at the first look.
+    /// Whether the condition is true. A condition that can never be true is reported in the first round.
     pub fn is_met(&self, value: &impl Serialize, screen: &Screen) -> Result<bool, Failure> {
         let Some(until) = &self.repeat.until else { return Ok(false) };
         let value = as_value(value)?;
@@ -74,21 +74,21 @@ impl<'a> Rounds<'a> {
         Ok(false)
     }
 
-    /// Whether there is no round after this one.
+    /// Whether this is the last round.
     pub fn is_last(&self) -> bool {
         let done = self.done.saturating_add(1);
         self.repeat.count.is_some_and(|count| u64::from(done) >= count)
             || self.repeat.within.is_some_and(|within| self.every.saturating_mul(done) > within)
     }
 
-    /// Waits for the next round; `false` when there is none.
+    /// Waits for the next round; `false` if there is none.
     pub async fn next(&mut self) -> Result<bool, Failure> {
         let is_over = self.is_last();
         self.done = self.done.saturating_add(1);
         let next = self.began + self.every.saturating_mul(self.done);
         if !is_over {
             let rest = async {
-                // Even where there is no time to rest, signals are heard.
+                // Signals must be handled even without a pause.
                 tokio::task::yield_now().await;
                 tokio::time::sleep_until(next).await;
             };
@@ -97,7 +97,7 @@ impl<'a> Rounds<'a> {
         Ok(!is_over)
     }
 
-    /// What it means that the rounds are over.
+    /// Result after the last round.
     pub fn end(&self) -> Result<(), Failure> {
         let Some(until) = &self.repeat.until else { return Ok(()) };
         Err(Failure::new(Kind::ConditionNotMet, format!("the condition '{until}' was not met"))

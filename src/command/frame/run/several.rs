@@ -1,4 +1,4 @@
-//! A command for several robots: at a time, over a connection each.
+//! A command for several robots: in parallel, one connection each.
 
 use std::time::{Duration, Instant};
 
@@ -11,11 +11,11 @@ use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
 use crate::settings::Robot;
 
-/// How often a watch tries to reach a robot that was not there.
+/// Time between attempts of a watch to reach a robot that did not answer.
 const RECONNECT_EVERY: Duration = Duration::from_secs(2);
 
 impl Run {
-    /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
+    /// Runs on several robots in parallel, one connection each, and reports in the order of the robots.
     pub(super) async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         if command.is_endless() && !self.gate.dry_run {
             return self.watch_each(command, robots).await;
@@ -53,7 +53,7 @@ impl Run {
                 reconnect_at = Instant::now() + RECONNECT_EVERY;
             }
             let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
-                // What could not be reached may be there by now.
+                // A robot that did not answer may be reachable now.
                 if matches!(link, Err(failure) if failure.kind == Kind::NoAnswer && reconnects) {
                     *link = self.connect(command, robot).await;
                 }
@@ -84,7 +84,7 @@ impl Run {
         }
     }
 
-    /// What the outcomes of several robots come to.
+    /// Common result of several robots.
     fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
         let failures: Vec<Failure> = outcomes
             .iter()
@@ -93,7 +93,7 @@ impl Run {
         self.failed(&failures, outcomes.len())
     }
 
-    /// What these failures, told already, come to among so many robots.
+    /// Common result of failures that were already reported.
     fn failed(&self, failures: &[Failure], robots: usize) -> Result<(), RunError> {
         let Some(first) = failures.first() else { return Ok(()) };
         let failure = if failures.len() == robots && failures.iter().all(|failure| failure.kind == first.kind) {
@@ -104,7 +104,7 @@ impl Run {
         Err(RunError { failure, envelope: None, told: !self.is_for_people() })
     }
 
-    /// Watches several robots side by side, each over its own connection, until all watches have ended.
+    /// Watches several robots in parallel, each on its own connection, until all watches have ended.
     async fn watch_each(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         let watches = robots.iter().map(|robot| async move {
             let watched = self.watch(command, robot, Some(ReportPosition::LineOf(robot))).await;

@@ -1,4 +1,4 @@
-//! Failures of a watch: an error now and then, however often a robot is looked at.
+//! Failures of a watch, with limited repetition.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::output::log::Level;
 use crate::settings::Robot;
 
-/// The silences of a robot that is watched.
+/// Missing answers of a watched robot.
 pub(super) struct Silences<'a> {
     run: &'a Run,
     robot: &'a Robot,
@@ -22,13 +22,13 @@ impl<'a> Silences<'a> {
         Self { run, robot, repeats: Repeats::default(), last: None }
     }
 
-    /// Says why it did not answer, unless that was just said.
+    /// Reports a missing answer, unless it was just reported.
     pub fn say(&mut self, failure: &Failure) {
         let failures = self.admit(failure);
         self.print(failures);
     }
 
-    /// The failures to say now: this one, unless it was just said, and counts that are due.
+    /// Failures to report now: this one, unless it was just reported, and the counts that are due.
     pub fn admit(&mut self, failure: &Failure) -> Vec<Failure> {
         let line = Line::new(Level::Warning, &failure.message, &[("robot", &self.robot.name)]);
         self.last = Some(failure.clone());
@@ -36,7 +36,7 @@ impl<'a> Silences<'a> {
         self.failures(lines)
     }
 
-    /// It answers, or nobody watches any more: says how often it did not.
+    /// Reports the number of missing answers when the robot answers again or the watch ends.
     pub fn end(&mut self) {
         let lines = self.repeats.due(Instant::now(), true);
         let failures = self.failures(lines);
@@ -57,14 +57,14 @@ impl<'a> Silences<'a> {
     }
 }
 
-/// A failure with the name of its robot, where several are watched.
+/// Failure, with the name of its robot if several are watched.
 fn named_among(run: &Run, robot: &Robot, failure: Failure) -> Failure {
     if run.sources.selection.is_plural() { named(robot, failure) } else { failure }
 }
 
-/// What a watch of several robots said in the rounds so far.
+/// Output of a watch of several robots in the rounds so far.
 pub(super) struct Said<'a> {
-    /// The failures of each robot, in their order.
+    /// Failures of each robot, in the order of the robots.
     silences: Vec<Silences<'a>>,
     summary: Option<String>,
 }
@@ -75,7 +75,7 @@ impl<'a> Said<'a> {
         Self { silences: robots.iter().map(|robot| Silences::new(run, robot)).collect(), summary: None }
     }
 
-    /// What is to be said now of a robot that failed, or did not.
+    /// Failures to report now for a robot that failed, or did not.
     pub fn of(&mut self, index: usize, failure: Option<&Failure>) -> Vec<Failure> {
         match (self.silences.get_mut(index), failure) {
             (Some(silences), Some(failure)) => silences.admit(failure),
@@ -87,7 +87,7 @@ impl<'a> Said<'a> {
         }
     }
 
-    /// The line below a table, where it is another one than in the round before.
+    /// Line below a table, if it has changed since the last round.
     pub fn summary(&mut self, summary: String) -> Option<&str> {
         if self.summary.as_ref() == Some(&summary) {
             return None;

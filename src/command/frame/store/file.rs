@@ -69,7 +69,7 @@ impl<S: Store> Command for Dump<S> {
                     rows.push([vec![name], table.texts(&wire)].concat());
                 }
                 Ok(None) if old.is_some() => {
-                    rows.push([vec![name], vec![String::new(); table.fields().len()]].concat())
+                    rows.push([vec![name], vec![String::new(); table.fields().len()]].concat());
                 }
                 Ok(_) => {}
                 Err(failure) => errors.push(ItemError::new(asked(S::WORDS.nouns[0], &name), failure)),
@@ -85,18 +85,15 @@ fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failure> 
     let (mut findings, mut keys) = (Findings::default(), Vec::new());
     let expected = "the first column is name";
     if let Some(sheet) = Sheet::read(bytes, expected, &mut findings) {
-        match sheet.column("name") {
-            Some(at) => {
-                for row in sheet.rows() {
-                    match read_keys::<S>(row.text(at)) {
-                        Ok(row) => keys.extend(row),
-                        Err(why) => findings.error(row.place(at), why, None),
-                    }
-                }
-            }
-            None => {
-                let message = "column name is missing".to_owned();
-                findings.error(sheet.end_of_head(), message, Some(expected.to_owned()));
+        let Some(at) = sheet.column("name") else {
+            let message = format!("column name is missing ({expected})");
+            return Err(Failure::usage(format!("{}: {message}", text_files::shown(path)))
+                .hint("nothing was read; --force replaces the file"));
+        };
+        for row in sheet.rows() {
+            match read_keys::<S>(row.text(at)) {
+                Ok(row) => keys.extend(row),
+                Err(why) => findings.error(row.place(at), why, None),
             }
         }
     }

@@ -180,7 +180,7 @@ fn a_controller_that_does_not_stop_is_told() {
         Bench::with_faults(READY, |block, _| if block == STOP { Fault::Answered("@OK") } else { Fault::None });
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.kind, Kind::ConditionNotMet);
-    assert!(failure.message.contains("may still move: the controller moves on although it said @OK"));
+    assert!(failure.message.contains("may still move: the controller answered @OK, but the robot still moves"));
     assert!(failure.hint.unwrap().starts_with("press the emergency stop"));
     ends_with_a_stop(&heard);
 }

@@ -78,7 +78,7 @@ fn every_mistake_of_a_file_is_told_and_nothing_sent() {
     assert_eq!(failure.kind.exit(), 2);
     let lines: Vec<&str> = failure.message.lines().collect();
     assert_eq!(lines.len(), 2);
-    assert!(lines[0].ends_with(":2:1: 4 cells under 5 columns"), "{}", lines[0]);
+    assert!(lines[0].ends_with(":2:1: 4 cells for 5 columns"), "{}", lines[0]);
 }
 
 fn five_points() -> tempfile::NamedTempFile {

@@ -236,21 +236,22 @@ mod tests {
         let verdict = verdict(&[("a.txt", "SPD V=11\nEMD\n"), ("b.txt", "x: JMP TAG=x\n")], false);
         assert_eq!(
             render::text(&verdict.view(), 80, false),
-            "\
-error: speed: 11 is out of range (a number, 1 to 10)
+            "error: speed: 11 is out of range (a number, 1 to 10)
  --> a.txt:1:7
   |
 1 | SPD V=11
-  |       ^
+  |       \
+             ^
 
-error: there is no instruction 'EMD'
+error: unknown instruction 'EMD'
  --> a.txt:2:1
   |
 2 | EMD
   | ^
   = did you mean END?
 
-a.txt: 2 errors
+a.txt: 2 \
+             errors
 b.txt: 2 steps, 1 label
 "
         );

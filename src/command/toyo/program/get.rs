@@ -320,8 +320,8 @@ mod tests {
         assert_eq!((&steps[1]["ok"], &steps[1]["step"]), (&false.into(), &2.into()), "{got}");
         assert_eq!((&steps[1]["error"]["code"], &steps[2]["instruction"]), (&"NG".into(), &"END".into()), "{got}");
         let text = format!(
-            "# NOT WHOLE: 1 of 2000 steps were not read\nSPD V=05\n?  # step 2 was not read: {why}\nEND\n\
-             # 1997 NOP up to the end of the program are left out\n"
+            "# INCOMPLETE: 1 of 2000 steps were not read\nSPD V=05\n?  # step 2 was not read: {why}\nEND\n# 1997 NOP \
+             at the end of the program are omitted\n"
         );
         assert_eq!(got["text"], text);
         // Nothing takes it for a program.
@@ -347,7 +347,7 @@ mod tests {
         let (got, _) = with_step_2(Fault::Lost).run(&["program", "get", "--to", "9"]).unwrap();
         assert_eq!(
             got["text"],
-            "# NOT WHOLE: 8 of 9 steps were not read\nSPD V=05\n?  # steps 2 to 9 were not read: no answer\n"
+            "# INCOMPLETE: 8 of 9 steps were not read\nSPD V=05\n?  # steps 2 to 9 were not read: no answer\n"
         );
         assert_eq!(got["steps"].as_array().unwrap().len(), 9);
         let failure = with_step_2(Fault::Answered("@NG")).run(&["program", "get", "--from", "2", "--to", "2"]);

@@ -55,8 +55,8 @@ fn a_program_is_stored_and_read_back() {
     assert_eq!((&stored["cells_written"], &stored["cells_unchanged"]), (&4.into(), &1996.into()));
     assert_eq!(
         desk.text(&[]),
-        "SPD V=05\nMOVP a PT=001 CN=00 S V=00 POST\nOUT STN=0 PN01=.......1\nEND\n\
-         # 1996 NOP up to the end of the program are left out\n"
+        "SPD V=05\nMOVP a PT=001 CN=00 S V=00 POST\nOUT STN=0 PN01=.......1\nEND\n# 1996 NOP at the end of the \
+         program are omitted\n"
     );
     assert_eq!(desk.bench.data(&["status"])["mode"], "automatic", "the mode is as it was found");
     let again = desk.put(SAMPLE, &[]).unwrap();
@@ -100,7 +100,7 @@ fn a_part_takes_tags_that_are_free() {
     );
     let failure = desk.put("TAG TAG=2\n", &["--at", "2"]).unwrap_err();
     assert_eq!(failure.kind, Kind::Usage);
-    assert!(failure.message.contains("tag 002 is there already, in a step around these"), "{}", failure.message);
+    assert!(failure.message.contains("tag 002 already exists in a step before or after these"), "{}", failure.message);
     assert!(desk.put("JMP TAG=7\n", &["--at", "2"]).is_err(), "there is no such tag around it");
     assert!(desk.put("JMP TAG=2\n", &["--at", "2"]).is_ok());
 }

@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(failed.kind, Kind::Usage);
         assert_eq!(
             failed.message,
-            "pick.txt:1:1: there is no instruction 'EMD' (did you mean END?)\npick.txt:2:9: there is no label 'no'"
+            "pick.txt:1:1: unknown instruction 'EMD' (did you mean END?)\npick.txt:2:9: unknown label 'no'"
         );
     }
 
@@ -129,12 +129,12 @@ mod tests {
         assert_eq!(
             shown,
             [
-                "error: 'X' is too much",
+                "error: unexpected text 'X'",
                 " --> a.txt:2:14",
                 "  |",
                 "2 |  JMP TAG=ラベル X",
                 "  |                 ^",
-                "  = it is written JMP TAG=<tag>",
+                "  = write JMP TAG=<tag>",
                 "",
             ]
         );

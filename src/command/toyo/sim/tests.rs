@@ -161,10 +161,10 @@ fn faulty_files_are_wrong_arguments() {
         ("state.toml", "axes = 9\n"),
     ]);
     for (words, told) in [
-        (&["./a.txt"][..], "a.txt:1:1: there is no instruction 'EMD'"),
+        (&["./a.txt"][..], "a.txt:1:1: unknown instruction 'EMD'"),
         (&["./good.txt", "--points", "./points.csv"], "points.csv:1:10: column y_mm is missing"),
         (&["./good.txt", "--params", "./params.toml"], "params.toml:2:5: speed: 0.0 is out of range"),
-        (&["./good.txt", "--state", "./state.toml"], "state.toml: line 1: a controller has 1 to 4 axes"),
+        (&["./good.txt", "--state", "./state.toml"], "state.toml: line 1: axes must be from 1 to 4"),
     ] {
         let failure = desk.failure(words);
         assert_eq!(failure.kind, Kind::Usage);

@@ -1,4 +1,4 @@
-//! What the reports of alarms hold, and how it is shown.
+//! Alarm reports and their display.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,54 +13,54 @@ use crate::settings::Robot;
 use crate::settings::alarms::Origin;
 use crate::settings::target::Family;
 
-/// Whether the controller has texts of sub-codes.
+/// Sub-code texts of the controller.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WithTexts {
-    /// Whether sub-code texts were asked for and the controller has them.
+    /// Whether sub-code texts were requested and the controller has them.
     pub with_texts: bool,
 }
 
 impl Standing for WithTexts {}
 
-/// What the protocol tells of an alarm besides.
+/// Family-specific fields of an alarm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Own {
-    /// How to read the sub-code.
+    /// Type of the sub-code.
     #[serde(rename = "type")]
     kind: u32,
-    /// The type in words.
+    /// Name of the type.
     type_name: &'static str,
     sub_code: SubCode,
-    /// Where it comes from, such as `[SV#1]`; null without texts.
+    /// Source, such as `[SV#1]`; null without texts.
     board: Option<String>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct SubCode {
-    /// As received, 0 where there is none.
+    /// Raw value; 0 if there is no sub-code.
     raw: u32,
-    /// In the form of the pendant; bytes in hexadecimal if `trust` is `raw`; empty where there is none.
+    /// Sub-code as the pendant shows it; hexadecimal bytes if `trust` is `raw`; empty if there is no sub-code.
     rendered: String,
-    /// How far to trust `rendered`: `printed` in the manuals, `inferred`, or `raw`.
+    /// Reliability of `rendered`: `printed` in the manuals, `inferred`, or `raw`.
     trust: &'static str,
-    /// What the pendant shows, by the controller itself; null without texts.
+    /// Text on the pendant, as the controller reports it; null without texts.
     text: Option<String>,
-    /// A 1 for each character of the text that the pendant shows reversed; null without texts.
+    /// A 1 for each character that the pendant shows reversed; null without texts.
     reversed: Option<String>,
-    /// `rendered` with the raw value wherever it is not certain.
+    /// `rendered`, with the raw value if it is uncertain.
     #[serde(skip)]
     shown: String,
 }
 
 impl SubCode {
-    /// What the pendant shows, or the best that is known of it; nothing where there is none.
+    /// Text on the pendant, or the best known form; none if there is no sub-code.
     pub(super) fn describe(&self) -> Option<&str> {
         let text = self.text.as_deref().filter(|text| !text.trim().is_empty());
         Some(text.unwrap_or(&self.shown)).filter(|told| !told.is_empty())
     }
 }
 
-/// An alarm as received.
+/// Alarm entry from an answer.
 pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> AlarmEntry<Own> {
     let rendered = alarm.sub_code(model);
     let texts = alarm.texts.as_ref();
@@ -87,7 +87,7 @@ pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) ->
     AlarmEntry { alarm, own }
 }
 
-/// The same with what `alarms.toml` says of it.
+/// Adds the text of `alarms.toml`.
 pub(super) async fn explained(
     entry: AlarmEntry<Own>,
     robot: &Robot,
@@ -100,7 +100,7 @@ pub(super) async fn explained(
     Ok(AlarmEntry { alarm: entry.alarm.with(find(model)?), ..entry })
 }
 
-/// The same for one line: its sub-code is part of the text.
+/// Short form for one line: the sub-code is part of the text.
 pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
     let parts = [alarm.text.as_deref(), own.sub_code.describe()].into_iter().flatten();
     let text = parts.collect::<Vec<_>>().join(" ");
@@ -108,7 +108,7 @@ pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
 }
 
 impl Besides for Own {
-    // The type is in JSON alone: here it would leave no room for the text.
+    // The type is only in JSON, because a column for it would leave no space for the text.
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         let board = self.board.as_deref().map(str::trim).filter(|board| !board.is_empty());
         vec![("sub-code", self.sub_code.describe().map(ToOwned::to_owned)), ("board", board.map(ToOwned::to_owned))]

@@ -12,16 +12,16 @@ use crate::controller::yerc::wire::RequestFrame;
 use crate::transport::capture::{Carrier, Message};
 use crate::transport::tap::Direction;
 
-/// Requests that are remembered until they are answered: of more peers than a plant has.
+/// Maximum number of pending requests: more peers than in any plant.
 const MOST_ASKED: usize = 1 << 16;
 
-/// Datagrams that begin like a frame.
+/// Datagrams that start like a frame.
 #[derive(Debug, Default)]
 pub struct FrameDecoder {
     decoded: DecodedCapture<FieldNote>,
-    /// Who made requests.
+    /// Addresses that sent requests.
     clients: HashSet<SocketAddr>,
-    /// The last request of each id, with the number of its packet.
+    /// Last request of each id, with its packet number.
     asked: HashMap<(SocketAddr, SocketAddr, u8), (u64, Request)>,
 }
 
@@ -35,7 +35,7 @@ impl CaptureDecoder for FrameDecoder {
             return;
         }
         self.decoded.packets += 1;
-        // In the middle of a file transfer, frames of both sides look alike.
+        // During a file transfer, frames of both sides look alike.
         let sender = match Sender::guess(bytes) {
             _ if self.clients.contains(&from) => Sender::Client,
             _ if self.clients.contains(&to) => Sender::Controller,
@@ -52,7 +52,7 @@ impl CaptureDecoder for FrameDecoder {
             && !frame.ack
         {
             if self.asked.len() >= MOST_ASKED {
-                // Not of a plant; what follows is decoded without the requests before.
+                // No plant has that many. Later frames are decoded without their requests.
                 self.asked.clear();
                 self.clients.clear();
             }

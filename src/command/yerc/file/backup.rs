@@ -1,4 +1,4 @@
-//! `yerc backup`: every file of the controller in a folder, with a manifest.
+//! `yerc backup`: all files of the controller in a folder, with a manifest.
 
 use std::path::PathBuf;
 
@@ -27,13 +27,13 @@ pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<backu
         let question = Controller::question()?.request();
         link.plan_next(&question)?;
         transfer::plan_all(link, transfer::LISTS, FileType::ALL.iter().map(|kind| files::list(*kind)))?;
-        link.then("fetches every file that the lists name (service 0x16), and acknowledges each of its blocks");
+        link.then("downloads every listed file (service 0x16) and acknowledges each block");
         return Ok(backup::BackedUp::new(&task.folder, task.scope, false, Items::new(Vec::new())));
     }
     cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task))).await
 }
 
-/// A file of the controller, and its name here.
+/// File on the controller and its local name.
 struct Listed {
     kind: FileType,
     name: Vec<u8>,
@@ -48,7 +48,7 @@ async fn save(
     let only = Only::of_scope(&task.scope);
     let controller = Controller::ask(link).await?;
     let (mut work, mut refused) = (Vec::new(), Vec::new());
-    // The file service may be busy with what somebody else broke off.
+    // The file service may still be busy with an aborted transfer of another client.
     let looking = screen.spinner("looking for files");
     for kind in FileType::ALL {
         match transfer::list(link, kind).await {
@@ -81,7 +81,7 @@ async fn save(
         let holds = type_word(FileType::from_name(name).unwrap_or(*kind)).to_owned();
         let entry = Entry { name: shown, name_hex: Some(hex(name)), holds, ..Entry::default() };
         let fetched = async {
-            // A name that a controller lists and that must not be used is the controller's fault, not the operator's.
+            // A listed name that is not allowed is an error of the controller, not of the operator.
             let malformed = |failure| Failure { kind: Kind::Malformed, ..failure };
             let local = local.clone().map_err(malformed)?;
             let file = name::exact(name.clone()).map_err(malformed)?;
@@ -103,7 +103,7 @@ async fn save(
     Ok(made)
 }
 
-/// Fetches a file to a place; the name of the copy is left to the caller.
+/// Downloads a file; the caller renames the copy.
 async fn fetch(
     link: &mut Link,
     screen: &Screen,

@@ -1,8 +1,9 @@
 //! `yerc file cmos` (FS and DX 3.4.5): the batch backup.
 //!
-//! One and the same request makes the backup and fetches it, and no manual says how a controller tells the two apart. So
-//! the first answer decides: without data the backup has been made, and the request goes out once more; with data it is
-//! the file already. The request is never repeated by itself, for a second one might start a second backup.
+//! The same request creates the backup and downloads it, and the manuals do not say how a controller distinguishes
+//! the two. So the first answer decides. Without data, the backup has been created, and the request is sent once
+//! more. With data, it is already the file. The request is never repeated automatically, because that could create a
+//! second backup.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -25,19 +26,19 @@ use crate::output::progress::Progress;
 use crate::output::view::View;
 use crate::settings::duration;
 
-/// Makes and fetches the batch backup.
+/// Creates and downloads the batch backup.
 #[derive(Debug, Args)]
 pub struct Cmos {
     /// Local file for the backup
     #[arg(required_unless_present = "start_only")]
     file: Option<PathBuf>,
-    /// Fetch the backup that the controller has made before
+    /// Download the existing backup of the controller
     #[arg(long, conflicts_with = "start_only")]
     download_only: bool,
-    /// Have it made and leave it on the controller
+    /// Create the backup and leave it on the controller
     #[arg(long)]
     start_only: bool,
-    /// Longest wait for the first answer
+    /// Maximum wait for the first answer
     #[arg(long, value_name = "TIME", value_parser = duration::parse_some, default_value = "15m")]
     wait: Duration,
     /// Replace the local file if it exists
@@ -56,17 +57,17 @@ impl Command for Cmos {
         let Some(file) = self.file.as_deref().filter(|_| !self.start_only) else {
             return self.start(link, screen).await;
         };
-        let name = file
-            .file_name()
-            .ok_or_else(|| Failure::usage(format!("{} names no file", file.display())).hint("as in cmos.bin"))?;
+        let name = file.file_name().ok_or_else(|| {
+            Failure::usage(format!("{} is not a file name", file.display())).hint("use a file name, as in cmos.bin")
+        })?;
         let folder = own_folder(&folder_of(file), &robot.name, several);
         let path = if several { folder.join(name) } else { file.to_owned() };
         let target = Target::new(path, self.force)?;
         if link.is_dry() {
             link.plan_download(&files::batch_backup(), Reason::default())?;
             if !self.download_only {
-                let reason = Reason::about("once the backup has been made");
-                let reason = reason.depending_on("whether the controller made its backup first or sent it at once");
+                let reason = Reason::about("after the backup has been created");
+                let reason = reason.depending_on("whether the controller creates the backup first or sends it at once");
                 link.plan_download(&files::batch_backup(), reason)?;
             }
             return Ok(BatchBackup { path: None, bytes: None });
@@ -81,10 +82,10 @@ impl Command for Cmos {
 impl Cmos {
     async fn start(&self, link: &mut Link, screen: &Screen) -> Result<BatchBackup, Failure> {
         let _waiting = Waiting::new(screen, MAKING);
-        // The transfer ends at its first block, so that the controller keeps the backup it has.
+        // The transfer ends at its first block, so that the controller keeps its existing backup.
         let had_one = |_: &[u8]| {
-            Err(Failure::new(Kind::Malformed, "the controller has a backup already and made no new one")
-                .hint("fetch that one with --download-only"))
+            Err(Failure::new(Kind::Malformed, "the controller already has a backup and created no new one")
+                .hint("download it with --download-only"))
         };
         self.ask(link, had_one).await?;
         Ok(BatchBackup { path: None, bytes: None })
@@ -104,8 +105,10 @@ impl Cmos {
                 return Ok(BatchBackup { path: Some(target.path().display().to_string()), bytes: Some(bytes) });
             }
         }
-        Err(Failure::new(Kind::Malformed, "the controller made a backup instead of sending the one it had")
-            .hint("fetch it with --download-only; if that makes one again, take it from the pendant and report it"))
+        Err(Failure::new(Kind::Malformed, "the controller created a backup instead of sending the existing one").hint(
+            "download it with --download-only; if that also creates a backup, save it on the pendant and report the \
+             problem",
+        ))
     }
 
     async fn ask(
@@ -114,18 +117,18 @@ impl Cmos {
         take: impl FnMut(&[u8]) -> Result<(), Failure>,
     ) -> Result<Option<u64>, Failure> {
         transfer::fetch_backup(link, self.wait, take).await.map_err(|failure| match failure.kind {
-            Kind::OutcomeUnknown => failure.hint(
-                "the controller may still be at work: wait, then fetch it with --download-only; --wait is longer",
-            ),
+            Kind::OutcomeUnknown => {
+                failure.hint("the controller may still be busy: wait, then use --download-only, or set a longer --wait")
+            }
             _ => failure,
         })
     }
 }
 
-const MAKING: &str = "the controller makes its backup, which takes about ten minutes";
+const MAKING: &str = "the controller creates its backup (about ten minutes)";
 const FETCHING: &str = "waiting for the backup";
 
-/// Shows that the controller takes its time, then what comes.
+/// Progress display: first the wait for the controller, then the bytes received.
 struct Waiting<'a> {
     screen: &'a Screen,
     progress: Progress,
@@ -152,15 +155,15 @@ impl<'a> Waiting<'a> {
 pub struct BatchBackup {
     /// The local file; null if the backup was left on the controller.
     path: Option<String>,
-    /// Its size.
+    /// Size of the file; null if the backup was left on the controller.
     bytes: Option<u64>,
 }
 
 impl Report for BatchBackup {
     fn view(&self) -> View {
         match (&self.path, self.bytes) {
-            (Some(path), Some(bytes)) => View::text(format!("the batch backup is in {path}, {bytes} bytes")),
-            _ => View::text("the controller has made its batch backup; --download-only fetches it"),
+            (Some(path), Some(bytes)) => View::text(format!("batch backup saved in {path}, {bytes} bytes")),
+            _ => View::text("batch backup created on the controller; --download-only downloads it"),
         }
     }
 }

@@ -1,38 +1,37 @@
-//! A transfer against a local file, block by block and without holding either.
+//! Comparison of a transfer with a local file, block by block, with neither file in memory.
 
 use super::content::Pieces;
 use crate::command::backup::dated::WithoutDate;
 use crate::failure::Failure;
 
-/// How two files compare.
+/// Result of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Comparison {
-    /// Size of the controller's.
+    /// Size of the controller's file.
     pub controller_bytes: u64,
-    /// Size of the local one.
+    /// Size of the local file.
     pub local_bytes: u64,
-    /// Where the first difference is, counted from 0; the shorter size if one is the beginning of the other.
+    /// Offset of the first difference; the shorter size if one file is the start of the other.
     pub first_difference: Option<u64>,
-    /// Whether the dates differ that were left out.
+    /// Whether the ignored dates differ.
     pub dates_differ: bool,
 }
 
-/// A comparison under way.
+/// Comparison in progress.
 #[derive(Debug)]
 pub struct Comparer<'a> {
     pieces: Pieces<'a>,
-    /// Local bytes that have been read and not compared yet, from `at` on.
+    /// Local bytes that are not compared yet, starting at `at`.
     ahead: Vec<u8>,
     at: usize,
     so_far: Comparison,
     local_ended: bool,
-    /// What is left out of either side.
+    /// Date filters of both sides.
     without: Option<[WithoutDate; 2]>,
 }
 
 impl<'a> Comparer<'a> {
-    /// Compares with a local file from its beginning; on request without the lines that controllers rewrite, which then
-    /// are no differences.
+    /// Starts a comparison with a local file. On request, it ignores the lines that controllers rewrite.
     pub fn new(pieces: Pieces<'a>, ignore_header: bool) -> Self {
         let so_far = Comparison { controller_bytes: 0, local_bytes: 0, first_difference: None, dates_differ: false };
         Self {
@@ -45,7 +44,7 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// Takes the next bytes of the controller's file.
+    /// Compares the next bytes of the controller's file.
     pub fn take(&mut self, block: &[u8]) -> Result<(), Failure> {
         match &mut self.without {
             Some([theirs, _]) => {
@@ -75,7 +74,7 @@ impl<'a> Comparer<'a> {
         Ok(())
     }
 
-    /// The result, after the last block.
+    /// Result after the last block.
     pub fn finish(mut self) -> Result<Comparison, Failure> {
         let rest = self.without.as_mut().map_or(&[][..], |[theirs, _]| theirs.rest());
         self.compare(rest)?;
@@ -114,7 +113,7 @@ impl<'a> Comparer<'a> {
                 break;
             }
         }
-        // What a filter held back comes before the end.
+        // Bytes that the filter held back are compared before the end.
         self.local_ended = self.ahead.is_empty();
         self.so_far.local_bytes = self.so_far.local_bytes.saturating_add(self.ahead.len() as u64);
         Ok(())

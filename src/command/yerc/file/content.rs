@@ -1,5 +1,5 @@
-//! The content of local files on its way to a controller: read in pieces, checked if it is a job, line endings made
-//! right on request.
+//! Content of a local file for an upload: read in pieces, checked if it is a job, with optional conversion of line
+//! endings.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read as _, Seek as _};
@@ -10,7 +10,7 @@ use anyhow::Context as _;
 use crate::failure::Failure;
 use crate::files;
 
-/// A few blocks at a time.
+/// Size of a piece: a few blocks.
 const PIECE: usize = 1 << 13;
 
 /// A local file to send.
@@ -18,39 +18,39 @@ const PIECE: usize = 1 << 13;
 pub struct Content {
     file: File,
     path: PathBuf,
-    /// Bytes as they will be sent.
+    /// Number of bytes to send.
     len: u64,
     fixes: bool,
     job_name: Option<Vec<u8>>,
 }
 
-/// What [`Content::check_job`] does about a job that the controller would not take.
+/// Rules of [`Content::check_job`] for an invalid job.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct JobRules {
-    /// Send CR LF where a line ends in a bare LF.
+    /// Send CR LF for a line that ends in a bare LF.
     pub fix_line_endings: bool,
-    /// Send it although it does not look like a job.
+    /// Send a file that does not look like a job.
     pub force: bool,
 }
 
 impl Content {
-    /// Opens a file that can be sent: one that has content.
+    /// Opens a file to send. It must not be empty.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let content = Self::open_any(path)?;
         if content.len == 0 {
             return Err(Failure::usage(format!("{} is empty", path.display()))
-                .hint("the protocol has no transfer without content"));
+                .hint("the protocol cannot transfer an empty file"));
         }
         Ok(content)
     }
 
-    /// Opens a file that is only looked at.
+    /// Opens a file to read.
     pub fn open_any(path: &Path) -> Result<Self, Failure> {
         let place = || path.display().to_string();
         let file = match files::open(path) {
             Err(error) if matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported) => {
                 return Err(
-                    Failure::usage(format!("{} is not a file", path.display())).hint("name the files one by one")
+                    Failure::usage(format!("{} is not a file", path.display())).hint("list the files individually")
                 );
             }
             opened => opened.with_context(place)?,
@@ -59,27 +59,27 @@ impl Content {
         Ok(Self { file, path: path.to_owned(), len, fixes: false, job_name: None })
     }
 
-    /// Where it is.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Bytes as they will be sent.
+    /// Number of bytes to send.
     pub fn size(&self) -> u64 {
         self.len
     }
 
-    /// What a checked job calls itself in its line `//NAME`.
+    /// Name in the line `//NAME` of a checked job.
     pub fn job_name(&self) -> Option<&[u8]> {
         self.job_name.as_deref()
     }
 
-    /// Whether line endings are changed on the way.
+    /// Whether line endings are converted.
     pub fn fixes_line_endings(&self) -> bool {
         self.fixes
     }
 
-    /// Checks a job before anything is sent.
+    /// Checks a job before it is sent.
     pub fn check_job(&mut self, rules: JobRules) -> Result<(), Failure> {
         let mut scan = JobScan::default();
         let mut pieces = self.pieces()?;
@@ -93,13 +93,15 @@ impl Content {
         scan.finish();
         let path = self.path.display();
         if let Some(line) = scan.first_bare.filter(|_| !rules.fix_line_endings) {
-            let message = format!("{path}: line {line} ends in a bare LF, {} in all; jobs need CR LF", scan.bare);
-            return Err(Failure::usage(message)
-                .hint(format!("--fix-line-endings sends CR LF there, and leaves {path} as it is")));
+            let message =
+                format!("{path}: line {line} ends in a bare LF ({} lines in total); jobs need CR LF", scan.bare);
+            return Err(
+                Failure::usage(message).hint(format!("add --fix-line-endings to send CR LF; {path} stays unchanged"))
+            );
         }
         if let Some(missing) = scan.missing().filter(|_| !rules.force) {
             return Err(Failure::usage(format!("{path} does not look like a job: {missing}"))
-                .hint("the controller would refuse it or raise an alarm; --force sends it all the same"));
+                .hint("the controller would refuse it or raise an alarm; --force sends it anyway"));
         }
         self.job_name = scan.name;
         self.fixes = scan.bare > 0;
@@ -107,14 +109,14 @@ impl Content {
         Ok(())
     }
 
-    /// Its bytes from the beginning.
+    /// Pieces of the file, starting at its beginning.
     pub fn pieces(&mut self) -> Result<Pieces<'_>, Failure> {
         self.file.rewind().with_context(|| self.path.display().to_string())?;
         Ok(Pieces { file: &self.file, path: &self.path, fixer: self.fixes.then(Fixer::default) })
     }
 }
 
-/// The bytes of a [`Content`], piece by piece.
+/// Reader for a [`Content`] in pieces.
 #[derive(Debug)]
 pub struct Pieces<'a> {
     file: &'a File,
@@ -123,7 +125,7 @@ pub struct Pieces<'a> {
 }
 
 impl Pieces<'_> {
-    /// The next bytes; none at the end.
+    /// Next piece; empty at the end.
     pub fn next_piece(&mut self) -> Result<Vec<u8>, Failure> {
         let mut piece = Vec::with_capacity(PIECE);
         let read = self.file.take(PIECE as u64).read_to_end(&mut piece);
@@ -135,7 +137,7 @@ impl Pieces<'_> {
     }
 }
 
-/// Puts a CR before every LF that has none.
+/// Inserts a CR before every bare LF.
 #[derive(Debug, Default)]
 struct Fixer {
     previous: u8,
@@ -155,11 +157,11 @@ impl Fixer {
     }
 }
 
-/// Bytes of a line that are looked at: the longest is that of a name.
+/// Bytes of a line that the scan keeps: the longest such line has a name.
 const HEAD: usize = 48;
 
-/// What makes a job a job (JBI): `/JOB` first, `NOP` and `END` among its lines, CR LF at their ends. CR and LF are
-/// never a part of a wider character in any encoding of a pendant.
+/// Requirements of a job file (JBI): `/JOB` in the first line, lines `NOP` and `END`, CR LF line endings. In all
+/// encodings of a pendant, CR and LF are never part of a wider character.
 #[derive(Debug, Default)]
 struct JobScan {
     head: Vec<u8>,
@@ -216,9 +218,9 @@ impl JobScan {
 
     fn missing(&self) -> Option<&'static str> {
         match (self.has_header, self.has_nop, self.has_end) {
-            (false, ..) => Some("its first line is not /JOB"),
-            (_, false, _) => Some("it has no line NOP"),
-            (.., false) => Some("it has no line END"),
+            (false, ..) => Some("the first line is not /JOB"),
+            (_, false, _) => Some("the line NOP is missing"),
+            (.., false) => Some("the line END is missing"),
             _ => None,
         }
     }
@@ -274,8 +276,8 @@ mod tests {
         let job = b"/JOB\r\nNOP\n\r\nEND\n";
         let failure = check(job, JobRules { force: true, ..JobRules::default() }).unwrap_err();
         assert_eq!(failure.kind.exit(), 2);
-        assert!(failure.message.ends_with("line 2 ends in a bare LF, 2 in all; jobs need CR LF"), "{failure}");
-        assert!(failure.hint.unwrap().starts_with("--fix-line-endings"));
+        assert!(failure.message.ends_with("line 2 ends in a bare LF (2 lines in total); jobs need CR LF"), "{failure}");
+        assert!(failure.hint.unwrap().starts_with("add --fix-line-endings"));
         assert_eq!(check(job, FIX).unwrap(), b"/JOB\r\nNOP\r\n\r\nEND\r\n");
     }
 
@@ -317,7 +319,7 @@ mod tests {
             let mut scan = JobScan::default();
             scan.take(&bytes);
             prop_assert_eq!(fixed.len() as u64, bytes.len() as u64 + scan.bare);
-            // Without its CRs before LFs, each is the same text.
+            // Without the CRs before LFs, both texts are equal.
             let plain = |text: &[u8]| text.iter().enumerate()
                 .filter(|(at, byte)| !(**byte == b'\r' && text.get(at + 1) == Some(&b'\n')))
                 .map(|(_, byte)| *byte).collect::<Vec<_>>();

@@ -19,7 +19,7 @@ use crate::gate::{Change, Confirmation};
 /// Deletes files on the controller.
 #[derive(Debug, Args)]
 pub struct Delete {
-    /// Names in full, such as TESTJOB.JBI
+    /// Full file names, such as TESTJOB.JBI
     #[arg(required = true, value_name = "NAME", add = complete::FILE)]
     names: Vec<String>,
 }
@@ -43,7 +43,7 @@ impl Command for Delete {
         authority.confirm(&change(link.encoding, lists.as_ref(), &files)).await?;
         let Some(lists) = lists else {
             for file in &files {
-                let reason = Reason::about("if the list has it").depending_on("whether the list has the file");
+                let reason = Reason::about("if the file is listed").depending_on("whether the file is listed");
                 link.plan_if(&file.delete(), reason);
             }
             return Ok(Results::new(results, SHAPE));
@@ -61,7 +61,7 @@ impl Command for Delete {
     }
 }
 
-/// What is deleted, and what is not there to be.
+/// Confirmation with the files to delete and the missing files.
 fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Change {
     let tell = |file: &FileName| lists.map_or(There::No, |lists| lists.tell(file));
     let name = |file: &FileName| encoding.decode(file.as_bytes());
@@ -70,7 +70,7 @@ fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Chan
     for file in files {
         match tell(file) {
             There::Yes => items.push(name(file)),
-            There::Untold => items.push(format!("{}; whether it is there was not told", name(file))),
+            There::Untold => items.push(format!("{} (not known whether it exists)", name(file))),
             There::No => missing.push(name(file)),
         }
     }

@@ -1,5 +1,5 @@
-//! A local file to the controller, with all that may be wanted around it: reading it back, and replacing a job that is
-//! already there without ever leaving it nowhere.
+//! Upload of a local file with its options: verification, and replacement of an existing job such that one copy
+//! always exists.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,27 +19,27 @@ use crate::failure::{Failure, Kind};
 use crate::gate::Change;
 use crate::output::Screen;
 
-/// A file to send.
+/// File to upload.
 #[derive(Debug)]
 pub struct Delivery {
-    /// Its name on the controller.
+    /// Name on the controller.
     pub file: FileName,
-    /// Its content.
+    /// Content.
     pub content: Content,
 }
 
-/// What is wanted beyond sending.
+/// Upload options.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Manner {
-    /// Read it back and compare.
+    /// Read the file back and compare it.
     pub verify: bool,
-    /// Compare without the line that controllers rewrite.
+    /// Ignore the line that controllers rewrite in the comparison.
     pub ignore_header: bool,
-    /// Delete a job of that name that the controller does not overwrite by itself.
+    /// Delete an existing job that the controller refuses to overwrite.
     pub replace: bool,
 }
 
-/// Asks for a yes if files are overwritten: those that the controller lists, or does not list a type of.
+/// Asks for confirmation if files are overwritten: listed files, and files of a type without a list.
 pub async fn confirm<'a>(
     authority: &Authority<'_>,
     encoding: Encoding,
@@ -51,12 +51,12 @@ pub async fn confirm<'a>(
     for Delivery { file, content } in deliveries {
         let untold = match lists.map_or(There::No, |lists| lists.tell(file)) {
             There::Yes => "",
-            There::Untold => "; whether it is there was not told",
+            There::Untold => " (not known whether it exists)",
             There::No => continue,
         };
         let (name, path) = (encoding.decode(file.as_bytes()), content.path().display());
         has_machine_data |= matches!(file.file_type(), Some(FileType::Prm | FileType::Sys));
-        replaced.push(format!("{name}, by the {} bytes of {path}{untold}", content.size()));
+        replaced.push(format!("{name}, with the {} bytes of {path}{untold}", content.size()));
     }
     if replaced.is_empty() {
         return authority.confirm(&Change::nothing()).await;
@@ -69,16 +69,15 @@ pub async fn confirm<'a>(
     authority.confirm(&change).await
 }
 
-/// Notes in a dry run what [`deliver`] would send.
+/// Notes in a dry run the requests of [`deliver`].
 pub fn plan(link: &mut Link, delivery: &mut Delivery, manner: Manner, reason: Reason<'_>) -> Result<(), Failure> {
     let Delivery { file, content } = delivery;
     transfer::plan_send(link, file, content, reason)?;
     if manner.replace && file.file_type() == Some(FileType::Jbi) {
-        let if_refused =
-            |about| Reason::about(about).depending_on("whether the controller overwrites the job by itself");
-        link.plan_download(&file.save(), if_refused("if it does not overwrite the job: a copy of the old one"))?;
-        link.plan_if(&file.delete(), if_refused("if it does not overwrite the job: deletes the old one"));
-        transfer::plan_send(link, file, content, if_refused("if it does not overwrite the job: sends the new one"))?;
+        let if_refused = |about| Reason::about(about).depending_on("whether the controller overwrites the job");
+        link.plan_download(&file.save(), if_refused("if it does not overwrite the job: copies the old job"))?;
+        link.plan_if(&file.delete(), if_refused("if it does not overwrite the job: deletes the old job"));
+        transfer::plan_send(link, file, content, if_refused("if it does not overwrite the job: sends the new job"))?;
     }
     if manner.verify {
         link.plan_download(&file.save(), Reason { about: Some("reads it back"), ..reason })?;
@@ -86,7 +85,7 @@ pub fn plan(link: &mut Link, delivery: &mut Delivery, manner: Manner, reason: Re
     Ok(())
 }
 
-/// Sends a file and notes in `result` what was done.
+/// Uploads a file and records the steps in `result`.
 pub async fn deliver(
     link: &mut Link,
     screen: &Screen,
@@ -98,8 +97,8 @@ pub async fn deliver(
         Err(failure) if transfer::is_job_exists(&failure) => {
             if !manner.replace {
                 return Err(failure.hint(
-                    "--replace deletes that job and sends this one, and puts the old one back if that fails; `yerc file \
-                     diff` shows how they differ",
+                    "add --replace to delete that job and send this one; if that fails, the old job is restored. `yerc \
+                     file diff` shows the differences",
                 ));
             }
             let bytes = replace(link, screen, delivery).await?;
@@ -120,7 +119,7 @@ pub async fn deliver(
 }
 
 impl Delivery {
-    /// What a job calls itself and what it is sent as, where the two are not the same.
+    /// Name in the job and name of the upload, if they differ.
     pub fn other_name(&self, encoding: Encoding) -> Option<(String, String)> {
         let file = self.file.as_bytes();
         let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
@@ -129,12 +128,10 @@ impl Delivery {
     }
 }
 
-/// A job that calls itself otherwise than its file is a likely cause of a refusal.
+/// Adds a hint if the name in the job differs from its file name, a likely cause of a refusal.
 fn with_own_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure {
     match delivery.other_name(link.encoding) {
-        Some((own, stem)) => {
-            failure.hint(format!("the job says //NAME {own} but is sent as {stem}: make the two the same"))
-        }
+        Some((own, stem)) => failure.hint(format!("the job has //NAME {own} but is sent as {stem}: use the same name")),
         None => failure,
     }
 }
@@ -145,7 +142,7 @@ async fn send(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Resu
     transfer::send(link, &delivery.file, &mut delivery.content, &mut progress).await
 }
 
-/// Reads the file back and compares it byte for byte.
+/// Reads the file back and compares all bytes.
 async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignore_header: bool) -> Result<(), Failure> {
     let name = link.encoding.decode(delivery.file.as_bytes());
     let mut progress = screen.bytes_progress(&format!("{name} (reading back)"), Some(delivery.content.size()));
@@ -162,19 +159,19 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
         Comparison { controller_bytes, local_bytes, first_difference: Some(at), .. } => Err(Failure::new(
             Kind::Malformed,
             format!(
-                "the controller gives back other bytes than were sent: {controller_bytes} against {local_bytes}, the \
-                 first difference at byte {at}"
+                "the controller returned other bytes than were sent: {controller_bytes} bytes instead of \
+                 {local_bytes}, first difference at byte {at}"
             ),
         )
         .hint(format!(
-            "`yerc file diff {name} {path} --exact` shows them; --ignore-header leaves out the line \
-             ///DATE, which a controller may rewrite"
+            "`yerc file diff {name} {path} --exact` shows the differences; --ignore-header ignores the line ///DATE, \
+             which a controller may rewrite"
         ))),
     }
 }
 
-/// Sends a file in the place of the job that is there. A copy of that job lies on the disk from before it is deleted
-/// until the new one is there.
+/// Replaces an existing job. A local copy of it exists from before its deletion until the new job is on the
+/// controller.
 async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<u64, Failure> {
     let mut old = OldCopy::fetch(link, screen, delivery).await?;
     old.is_needed = true;
@@ -196,16 +193,16 @@ async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> R
     match send(link, screen, &mut back).await {
         Ok(_) => {
             old.is_needed = false;
-            Err(Failure { message: format!("{} The old job was put back", failure.message), ..failure })
+            Err(Failure { message: format!("{} The old job was restored", failure.message), ..failure })
         }
         Err(second) => {
-            let message = format!("{} The old job could not be put back: {}", failure.message, second.message);
+            let message = format!("{} The old job could not be restored: {}", failure.message, second.message);
             Err(old.told(Failure { message, ..failure }))
         }
     }
 }
 
-/// The copy of a job that is about to be deleted. It is removed again unless it is all that is left of the job.
+/// Local copy of a job to be deleted. It is removed at the end, unless it is the only copy.
 #[derive(Debug)]
 struct OldCopy {
     path: PathBuf,
@@ -217,7 +214,7 @@ struct OldCopy {
 impl OldCopy {
     async fn fetch(link: &mut Link, screen: &Screen, delivery: &Delivery) -> Result<Self, Failure> {
         let name = link.encoding.decode(delivery.file.as_bytes());
-        let mut progress = screen.bytes_progress(&format!("{name} (copy of the old one)"), None);
+        let mut progress = screen.bytes_progress(&format!("{name} (copy of the old job)"), None);
         let local = local_name(link.encoding, delivery.file.as_bytes());
         let target = Self::place(&folder_of(delivery.content.path()), &local)?;
         let path = target.path().to_owned();
@@ -231,24 +228,25 @@ impl OldCopy {
         Ok(Self { path, screen: *screen, is_needed: false, is_told: false })
     }
 
-    /// The first name that is free: `A.JBI.replaced`, `A.JBI.replaced-2`.
+    /// First free name: `A.JBI.replaced`, `A.JBI.replaced-2`.
     fn place(folder: &Path, local: &str) -> Result<Target, Failure> {
         let free = |path: &PathBuf| path.symlink_metadata().is_err();
         let numbered = (2..1000).map(|number| folder.join(format!("{local}.replaced-{number}")));
         let path = std::iter::once(folder.join(format!("{local}.replaced"))).chain(numbered).find(free);
         let path = path.ok_or_else(|| {
-            Failure::local(format!("{}: too many copies of replaced jobs", folder.display())).hint("move them away")
+            Failure::local(format!("{}: too many copies of replaced jobs", folder.display()))
+                .hint("delete or move these copies")
         })?;
         Target::new(path, false)
     }
 
-    /// A failure that says where the copy is.
+    /// Failure with the location of the copy.
     fn told(&mut self, failure: Failure) -> Failure {
         if !self.is_needed {
             return failure;
         }
         self.is_told = true;
-        Failure { message: format!("{}. The old job is kept in {}", failure.message, self.path.display()), ..failure }
+        Failure { message: format!("{}. The old job is saved in {}", failure.message, self.path.display()), ..failure }
     }
 }
 
@@ -256,7 +254,7 @@ impl Drop for OldCopy {
     fn drop(&mut self) {
         if self.is_needed {
             if !self.is_told {
-                self.screen.note(&format!("the old job is kept in {}", self.path.display()));
+                self.screen.note(&format!("the old job is saved in {}", self.path.display()));
             }
         } else if let Err(error) = fs::remove_file(&self.path) {
             self.screen.note(&format!("{} is left: {error}", self.path.display()));

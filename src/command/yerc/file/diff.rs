@@ -1,4 +1,4 @@
-//! `yerc file diff`: what sending the local file would change.
+//! `yerc file diff`: changes that an upload of the local file would make.
 
 use std::path::PathBuf;
 
@@ -21,19 +21,19 @@ use crate::controller::yerc::files::FileType;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 
-/// Compares a file on the controller with a local one.
+/// Compares a file on the controller with a local file.
 #[derive(Debug, Args)]
 pub struct Diff {
     /// Name on the controller
     #[arg(add = complete::FILE)]
     name: String,
-    /// Local file; without it, the one of that name in this folder
+    /// Local file; default: the file with the same name in this folder
     #[arg(value_name = "FILE")]
     local: Option<PathBuf>,
-    /// Compare the line ///DATE of a job too, which controllers rewrite
+    /// Also compare the line ///DATE of a job, which controllers rewrite
     #[arg(long)]
     exact: bool,
-    /// The usual way, since jobs are compared without their date
+    /// No effect: jobs are always compared without their date
     #[arg(long, hide = true, conflicts_with = "exact")]
     ignore_header: bool,
 }
@@ -61,7 +61,7 @@ impl Command for Diff {
         let mut comparer = Comparer::new(source.pieces()?, without_date);
         transfer::fetch(link, &file, |block| {
             progress.advance(block.len() as u64);
-            // One byte more than can be shown tells that there is more.
+            // One byte more than the limit shows that the file is longer.
             let room = (MOST_TEXT + 1).saturating_sub(theirs.len());
             theirs.extend_from_slice(block.get(..room).unwrap_or(block));
             comparer.take(block)
@@ -91,34 +91,34 @@ impl Command for Diff {
     }
 }
 
-/// How a file on the controller and a local one differ.
+/// Difference between a file on the controller and a local file.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Difference {
     #[serde(flatten)]
     name: Shown,
-    /// The local file.
+    /// Local file.
     path: String,
-    /// Byte for byte, but for what is ignored.
+    /// Whether the files are equal, apart from ignored lines.
     equal: bool,
-    /// Lines that differ and do not count: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
+    /// Differing lines that are ignored: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
     ignored: Vec<&'static str>,
     controller_bytes: u64,
     local_bytes: u64,
-    /// Where the first difference is, counted from 0.
+    /// Offset of the first difference.
     first_difference_offset: Option<u64>,
-    /// Whether only ends of lines differ; null if a file is no text.
+    /// Whether only line endings differ; null if a file is not text.
     only_line_endings: Option<bool>,
-    /// Changes from the controller's file to the local one; null if a file is no text or too large.
+    /// Changes from the controller's file to the local file; null if a file is not text or too large.
     hunks: Option<Vec<Hunk>>,
 }
 
-/// A stretch of changes.
+/// A hunk of changes.
 #[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
 struct Hunk {
-    /// First line in the controller's file, from 1; 0 if there is none.
+    /// First line in the controller's file, starting with 1; 0 if there is none.
     controller_start: usize,
     controller_lines: usize,
-    /// First line in the local file, from 1; 0 if there is none.
+    /// First line in the local file, starting with 1; 0 if there is none.
     local_start: usize,
     local_lines: usize,
     lines: Vec<DiffLine>,
@@ -175,14 +175,16 @@ impl Difference {
         match (self.first_difference_offset, self.only_line_endings) {
             (None, _) if !self.ignored.is_empty() => {
                 format!(
-                    "{name} on the controller and {path} are the same but for the line {DATE_LINE}, which is ignored"
+                    "{name} on the controller and {path} are the same, except for the line {DATE_LINE}, which is \
+                     ignored"
                 )
             }
             (None, _) => format!("{name} on the controller and {path} are the same, {local_bytes} bytes"),
-            (Some(_), Some(true)) => format!("{name} on the controller and {path} differ in line endings only"),
+            (Some(_), Some(true)) => format!("{name} on the controller and {path} differ only in line endings"),
             (Some(at), None) => {
                 format!(
-                    "{name} on the controller ({controller_bytes} bytes) and {path} ({local_bytes} bytes) differ from byte {at} on"
+                    "{name} on the controller ({controller_bytes} bytes) and {path} ({local_bytes} bytes) differ, \
+                     starting at byte {at}"
                 )
             }
             (Some(_), Some(false)) => format!("{name} on the controller and {path} differ"),
@@ -198,7 +200,7 @@ impl Report for Difference {
                 let old = format!("{} (controller)", self.name.name);
                 let mut lines = text_diff::unified(&old, &self.path, &hunks);
                 if !self.ignored.is_empty() {
-                    lines.push(format!("the line {DATE_LINE} differs too and is ignored").into());
+                    lines.push(format!("the line {DATE_LINE} also differs and is ignored").into());
                 }
                 View::default().and(Section::Lines(lines))
             }
@@ -276,7 +278,8 @@ mod tests {
         assert_eq!(found.hunks.as_ref().map(Vec::len), Some(1));
         assert_eq!(
             render::text(&found.view(), 80, false),
-            "only line endings differ: on the controller 2 with CR LF where a.jbi has 1 with LF, 1 with no line ending\n"
+            "only line endings differ: on the controller 2 with CR LF where a.jbi has 1 with LF, 1 with no line \
+             ending\n"
         );
     }
 
@@ -284,14 +287,14 @@ mod tests {
     fn bytes_that_are_no_text_differ_from_an_offset_on() {
         assert_eq!(
             text(b"a\0bc", b"a\0bd!"),
-            "A.JBI on the controller (4 bytes) and a.jbi (5 bytes) differ from byte 3 on\n"
+            "A.JBI on the controller (4 bytes) and a.jbi (5 bytes) differ, starting at byte 3\n"
         );
         assert!(difference(b"a\0bc", b"a\0bd!").hunks.is_none());
     }
 
     #[test]
     fn bytes_that_look_alike_in_text_still_differ() {
-        // Both decode to the same character, but a controller may tell them apart.
+        // Both decode to the same character, but a controller may treat them as different.
         let found = difference(b"\x81\xca\r\n", b"\xee\xf9\r\n");
         assert_eq!(found.hunks.map(|hunks| hunks[0].lines.len()), Some(2));
     }

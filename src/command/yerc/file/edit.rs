@@ -1,4 +1,4 @@
-//! `yerc job edit`: a job from the controller, through the editor of the user, and back.
+//! `yerc job edit`: edit a job of the controller in the user's editor.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -29,14 +29,14 @@ use crate::output::view::{Section, View};
 /// Edits a job of the controller.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The job is read, opened in $VISUAL or $EDITOR, checked (/JOB, //NAME, NOP, END), compared, and after a yes \
-                  written and read back. A job that runs, or that was changed meanwhile, is not overwritten. Whatever goes \
-                  wrong, what you wrote stays in a file, and the message says where.\n\nIn the editor it is UTF-8 with line \
-                  feeds; the controller gets its own encoding and CR LF again. A job with bytes that are no text is edited as \
-                  it is."
+    after_help = "armctl reads the job, opens it in $VISUAL or $EDITOR, checks it (/JOB, //NAME, NOP, END) and shows \
+                  the changes. After your confirmation, it writes the job and reads it back. A running job, or a job \
+                  that has changed on the controller, is not overwritten. After any failure, your text stays in a file \
+                  that the message names.\n\nIn the editor, the job is UTF-8 with line feeds. The controller gets its \
+                  own encoding and CR LF. A job with bytes that are not text is edited unchanged."
 )]
 pub struct Edit {
-    /// Name of the job, with or without .JBI
+    /// Job name, with or without .JBI
     #[arg(add = complete::JOB)]
     name: String,
 }
@@ -48,13 +48,13 @@ impl Command for Edit {
     type Report = EditedJob;
     const ID: &'static str = "yerc.job.edit";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite a job by what was edited";
+    const INTENT: &'static str = "overwrite a job with the edited text";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, mut context: Context<'_, Yerc>) -> Result<EditedJob, Failure> {
         let encoding = context.link.encoding;
         if context.several {
-            return Err(Failure::usage("one job of one robot is edited").hint("name the robot with -r"));
+            return Err(Failure::usage("job edit works on one job of one robot").hint("select the robot with -r"));
         }
         let is_whole = self.name.len() >= ENDING.len()
             && self.name.is_char_boundary(self.name.len() - ENDING.len())
@@ -74,7 +74,7 @@ impl Command for Edit {
                 Ok(report)
             }
             Err(failure) => Err(edited.kept(failure, |path| {
-                format!("what you wrote is in {path}: `yerc file put {path} --as {local} --replace --verify` sends it")
+                format!("your text is in {path}; `yerc file put {path} --as {local} --replace --verify` sends it")
             })),
         }
     }
@@ -94,16 +94,16 @@ impl Edit {
             return Ok(EditedJob { name: shown, changed: false, bytes: old.len() as u64, hunks: Vec::new() });
         }
         let new = form.closed(&edited.text()?)?;
-        // From here on the file is what the controller would get.
+        // From here on, the file has the bytes for the controller.
         edited.replace(&new)?;
         let mut delivery = Delivery { file: file.clone(), content: Content::open(edited.path())? };
         delivery.content.check_job(JobRules::default())?;
         if let Some((own, sent)) = delivery.other_name(link.encoding) {
-            return Err(Failure::usage(format!("the job says //NAME {own}, and is called {sent}"))
-                .hint("a job is renamed on the pendant; send it as a new one with `yerc file put`"));
+            return Err(Failure::usage(format!("the job has //NAME {own}, but its name is {sent}"))
+                .hint("rename a job on the pendant, or send it as a new job with `yerc file put`"));
         }
         if delivery.content.job_name().is_none() {
-            return Err(Failure::usage("the job has no line //NAME").hint("the controller would refuse it"));
+            return Err(Failure::usage("the line //NAME is missing").hint("the controller would refuse it"));
         }
         let difference = TextDifference::of(link.encoding, old, &new);
         let hunks = difference.map(|found| found.hunks).unwrap_or_default();
@@ -116,9 +116,9 @@ impl Edit {
         if before != after {
             return Err(Failure::new(
                 Kind::Rejected,
-                format!("{} was changed on the controller meanwhile", shown.name),
+                format!("{} has changed on the controller since it was read", shown.name),
             )
-            .hint("edit it again, and put both together"));
+            .hint("edit the job again and merge both changes"));
         }
         let count = |change: LineChange| {
             let lines = hunks.iter().flat_map(|hunk| &hunk.lines);
@@ -134,17 +134,17 @@ impl Edit {
     }
 }
 
-/// How a job stands in the editor.
+/// Form of a job in the editor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TextForm {
-    /// As the bytes that it is.
+    /// Unchanged bytes.
     Bytes,
-    /// As UTF-8 with line feeds.
+    /// UTF-8 with line feeds.
     Text(Encoding),
 }
 
 impl TextForm {
-    /// Text where all of it leads back to the bytes.
+    /// Text, if the conversion is reversible.
     fn of(encoding: Encoding, bytes: &[u8]) -> Self {
         let text = Self::Text(encoding);
         if text.closed(&text.opened(bytes)).is_ok_and(|back| back == bytes) { text } else { Self::Bytes }
@@ -159,9 +159,8 @@ impl TextForm {
 
     fn closed(self, edited: &[u8]) -> Result<Vec<u8>, Failure> {
         let Self::Text(encoding) = self else { return Ok(edited.to_vec()) };
-        let text = std::str::from_utf8(edited).map_err(|_| {
-            Failure::usage("the edited job is not UTF-8").hint("have the editor save it as UTF-8, as it was opened")
-        })?;
+        let text = std::str::from_utf8(edited)
+            .map_err(|_| Failure::usage("the edited job is not UTF-8").hint("save the job as UTF-8 in the editor"))?;
         let mut bytes = Vec::with_capacity(text.len());
         for (index, line) in text.split_inclusive('\n').enumerate() {
             let (line, ending) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\r\n"));
@@ -185,7 +184,9 @@ async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<
         progress.advance(block.len() as u64);
         bytes.extend_from_slice(block);
         if bytes.len() > MOST_TEXT {
-            return Err(Failure::usage("the job is too large to be edited here").hint("`yerc file get` fetches it"));
+            return Err(
+                Failure::usage("the job is too large for this command").hint("download it with `yerc file get`")
+            );
         }
         Ok(())
     });
@@ -193,7 +194,7 @@ async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<
     Ok(bytes)
 }
 
-/// A job that runs is not overwritten.
+/// A running job is not overwritten.
 async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     if !link.ask(&ReadStatus).await?.running() {
         return Ok(());
@@ -209,30 +210,30 @@ async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
         .any(|job| Some(job.name.as_bytes()) == file.as_bytes().get(..stem));
     if runs {
         return Err(Failure::new(Kind::Rejected, format!("{} is running", link.encoding.decode(file.as_bytes())))
-            .hint("stop it first, or hold the robot with `yerc hold on`"));
+            .hint("stop the job first, or hold the robot with `yerc hold on`"));
     }
     Ok(())
 }
 
 fn plan(link: &mut Link, file: &FileName) -> Result<EditedJob, Failure> {
-    link.plan_download(&file.save(), Reason::about("the job, which the editor then has"))?;
-    let if_changed = |about| Reason::about(about).depending_on("whether it was changed in the editor");
+    link.plan_download(&file.save(), Reason::about("the job, for the editor"))?;
+    let if_changed = |about| Reason::about(about).depending_on("whether the job was changed in the editor");
     link.plan_if(&ReadStatus.request(), if_changed("whether a job runs"));
-    link.plan_download(&file.save(), if_changed("whether it was changed on the controller meanwhile"))?;
-    link.plan_if(&file.load(), if_changed("begins to send what was edited"));
-    link.then("sends the job block by block, and reads it back");
+    link.plan_download(&file.save(), if_changed("whether the job has changed on the controller"))?;
+    link.plan_if(&file.load(), if_changed("starts to send the edited job"));
+    link.then("sends the job block by block and reads it back");
     Err(unknown())
 }
 
-/// A job after an edit.
+/// Result of an edit.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct EditedJob {
     #[serde(flatten)]
     name: Shown,
-    /// Whether it was written and read back.
+    /// Whether the job was written and read back.
     changed: bool,
     bytes: u64,
-    /// What was changed.
+    /// Changes.
     hunks: Vec<Hunk>,
 }
 

@@ -22,13 +22,13 @@ use crate::output::csv::RowsOf;
 use crate::output::view::View;
 use crate::output::{Screen, escape};
 
-/// Fetches files from the controller.
+/// Downloads files from the controller.
 #[derive(Debug, Args)]
 pub struct Get {
     /// Names, such as TESTJOB.JBI, or patterns, such as '*.JBI'; '*' for all
     #[arg(required = true, value_name = "NAME", add = complete::FILE)]
     names: Vec<String>,
-    /// Folder to put them in; - writes one file to stdout
+    /// Target folder; - writes one file to stdout
     #[arg(long, value_name = "DIR", default_value = ".")]
     dir: PathBuf,
     /// Replace local files that exist
@@ -52,7 +52,7 @@ impl Command for Get {
         // Paths without a leading `./` are easier to read.
         let dir = if self.dir == Path::new(".") { Path::new("") } else { &self.dir };
         let folder = own_folder(dir, &robot.name, several);
-        // What needs no list is checked before the first byte.
+        // All checks that need no list come before the first request.
         let typed: Vec<String> = self.names.iter().filter(|name| !is_pattern(name)).cloned().collect();
         let typed = name::all_typed(link.encoding, &typed)?;
         if !to_stdout {
@@ -96,17 +96,17 @@ impl Command for Get {
 impl Get {
     fn check_stdout(&self, screen: Screen, several: bool) -> Result<(), Failure> {
         if self.names.len() > 1 || self.names.iter().any(|name| is_pattern(name)) || several {
-            return Err(Failure::usage("--dir - writes one file of one robot").hint("name a folder for several"));
+            return Err(Failure::usage("--dir - writes one file of one robot").hint("use a folder for several files"));
         }
         if screen.is_json() {
-            return Err(Failure::usage("--dir - writes the bytes of the file, which are no JSON")
-                .hint("leave out --json, --jq and -o, or name a folder"));
+            return Err(Failure::usage("--dir - writes the bytes of the file, not JSON")
+                .hint("remove --json, --jq and -o, or use a folder"));
         }
         Ok(())
     }
 }
 
-/// What was fetched; nothing where stdout has the file itself.
+/// Downloaded files; none if stdout has the file itself.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Fetched {
     #[serde(flatten)]
@@ -127,7 +127,7 @@ impl Report for Fetched {
     }
 }
 
-/// Where each file shall be, all checked before the first is fetched.
+/// Target path of each file, all checked before the first download.
 fn targets(encoding: Encoding, files: &[FileName], folder: &Path, force: bool) -> Result<Vec<Target>, Failure> {
     let mut names = LocalNames::new(encoding);
     let target = |file: &FileName| Target::new(folder.join(names.assign(file.as_bytes())?), force);
@@ -150,12 +150,12 @@ async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<(), 
     let mut out = Printer::new(screen, link.encoding);
     let name = link.encoding.decode(file.as_bytes());
     let came = transfer::fetch(link, file, |block| out.take(block)).await;
-    // What came is written even if the rest did not: the exit code tells.
+    // Received bytes are written even after a failure; the exit code reports the failure.
     out.flush()?;
     came.map(|_| ()).map_err(|failure| transfer::about(&name, failure))
 }
 
-/// A file on stdout: its bytes, or on a terminal its text, which then cannot steer the terminal.
+/// Writer of a file to stdout: bytes, or on a terminal escaped text that cannot control the terminal.
 struct Printer<'a> {
     screen: &'a Screen,
     encoding: Encoding,
@@ -163,7 +163,7 @@ struct Printer<'a> {
     pending: Vec<u8>,
 }
 
-/// Bytes gathered before they are written.
+/// Number of bytes collected before a write.
 const BATCH: usize = 1 << 16;
 
 impl<'a> Printer<'a> {
@@ -177,7 +177,7 @@ impl<'a> Printer<'a> {
             return Ok(());
         }
         let rest = match self.pending.iter().rposition(|byte| *byte == b'\n') {
-            // A line feed is never a part of a wider character, so text is cut there.
+            // A line feed is never part of a wider character, so text is cut there.
             Some(end) if self.is_text => self.pending.split_off(end + 1),
             _ => Vec::new(),
         };

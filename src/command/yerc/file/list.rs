@@ -19,10 +19,10 @@ use crate::output::view::{Cell, Table, View};
 /// Lists the files on the controller.
 #[derive(Debug, Args)]
 pub struct List {
-    /// Which types, such as jbi,dat
+    /// File types, such as jbi,dat
     #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true, default_value = "jbi")]
     types: Vec<TypeArg>,
-    /// A filter as it is sent instead: '', '*.*' or '*.JBI' and the like
+    /// Raw filter to send instead, such as '', '*.*' or '*.JBI'
     #[arg(long, value_name = "FILTER", conflicts_with = "types", value_parser = filter)]
     filter: Option<String>,
 }
@@ -51,7 +51,7 @@ impl Command for List {
             return Ok(Listing::default());
         }
         let mut listing = Listing { asked: filters.len(), ..Listing::default() };
-        // The file service may be busy with what somebody else broke off.
+        // The file service may still be busy with an aborted transfer of another client.
         let _looking = screen.spinner("looking for files");
         for ((filter, kind), request) in filters.iter().zip(&requests) {
             match transfer::list_by(link, request).await {
@@ -59,7 +59,7 @@ impl Command for List {
                     name: Shown::new(link.encoding, name),
                     file_type: word_of(name).or(kind.map(type_word)),
                 })),
-                // A controller may show jobs to everybody and parameters to nobody.
+                // A controller may list jobs but refuse to list parameters.
                 Err(failure) if backup::goes_on(&failure) && listing.asked > 1 => {
                     let error = ItemError::new(filter.as_str(), failure);
                     listing.refused.push(RefusedList { file_type: kind.map(type_word), error });
@@ -71,7 +71,7 @@ impl Command for List {
     }
 }
 
-/// A filter in messages.
+/// Text of a filter.
 fn shown(filter: &str) -> String {
     if filter.is_empty() { "the empty filter".to_owned() } else { filter.to_owned() }
 }
@@ -79,7 +79,7 @@ fn shown(filter: &str) -> String {
 /// Files on the controller.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Listing {
-    /// In the order of the controller, type by type.
+    /// In the order of the controller, one type after the other.
     files: Vec<Listed>,
     /// Types that could not be listed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -88,7 +88,7 @@ pub struct Listing {
     asked: usize,
 }
 
-/// One file.
+/// A file.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Listed {
     #[serde(flatten)]
@@ -98,7 +98,7 @@ struct Listed {
     file_type: Option<&'static str>,
 }
 
-/// One type that could not be listed.
+/// A type that could not be listed.
 #[derive(Debug, Serialize, JsonSchema)]
 struct RefusedList {
     #[serde(rename = "type")]

@@ -1,4 +1,5 @@
-//! Which of some files the controller has, by its lists: so what is overwritten or deleted is known before it is.
+//! Existence of files on the controller, from its lists: overwritten or deleted files are known before the
+//! confirmation.
 
 use super::transfer;
 use crate::command::backup::goes_on;
@@ -7,23 +8,23 @@ use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::{self, FileName, FileType};
 use crate::failure::Failure;
 
-/// What a list says about a file.
+/// Existence of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum There {
-    /// It is there.
+    /// The file exists.
     Yes,
-    /// It is not.
+    /// The file does not exist.
     No,
-    /// Nothing: there is no list of its type, or the controller refused it.
+    /// Unknown: there is no list of its type, or the controller refused it.
     Untold,
 }
 
-/// The lists of some types.
+/// Lists of some types.
 #[derive(Debug, Default)]
 pub struct Lists(Vec<(FileType, Option<Vec<Vec<u8>>>)>);
 
 impl Lists {
-    /// Asks for the lists that tell about these files; `None` in a dry run, which notes the requests.
+    /// Reads the lists for these files; `None` in a dry run, which notes the requests.
     pub async fn ask<'a>(
         link: &mut Link,
         asked: impl IntoIterator<Item = &'a FileName>,
@@ -52,7 +53,7 @@ impl Lists {
         Ok(Some(lists))
     }
 
-    /// Whether a file is there. A name in other letters counts: a controller may mean the same file.
+    /// Whether a file exists. A name in other case counts as well: a controller may treat it as the same file.
     pub fn tell(&self, file: &FileName) -> There {
         let list = self.0.iter().find(|(kind, _)| Some(*kind) == file.file_type());
         match list {

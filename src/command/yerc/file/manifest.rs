@@ -1,4 +1,4 @@
-//! What the list of a backup says of a Yaskawa controller.
+//! Manifest entries of a Yaskawa backup.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,24 +14,24 @@ use crate::controller::yerc::query::{ReadSystemInfo, SystemPart};
 use crate::failure::{Failure, Kind};
 use crate::settings::target::Family;
 
-/// The list of a backup.
+/// Manifest of a backup.
 pub type Manifest = manifest::Manifest<Controller>;
 
-/// What kind of controller it is.
+/// Controller that a backup comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Controller {
     /// `fs100`, `dx100`, `dx200` or `yrc1000`.
     pub model: String,
-    /// Version of the system software; null if the controller refused to tell.
+    /// Version of the system software; null if the controller refused to report it.
     pub software: Option<String>,
-    /// Model of the first robot; null as above.
+    /// Model of the first robot; null if the controller refused to report it.
     pub robot_model: Option<String>,
-    /// Encoding in which names are shown.
+    /// Encoding of the displayed names.
     pub encoding: String,
 }
 
 impl Controller {
-    /// Asks the controller.
+    /// Reads it from the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let question = Self::question()?;
         let info = match link.ask(&question).await {
@@ -49,7 +49,8 @@ impl Controller {
         })
     }
 
-    /// The model that the software is of, or else that was written down: once whatever was no FS100 was called a DX200.
+    /// Model by the software version, or else the stored model: old versions of armctl called every model except
+    /// FS100 a DX200.
     pub fn taken_of(&self) -> &str {
         let told = self.software.as_ref().and_then(|software| Model::from_software(software.as_bytes()));
         match told {
@@ -58,9 +59,9 @@ impl Controller {
         }
     }
 
-    /// What [`ask`](Self::ask) sends.
+    /// Request of [`ask`](Self::ask).
     pub fn question() -> Result<ReadSystemInfo, Failure> {
-        // The same to every model; what it tells is the model, too.
+        // The request is the same for every model, and its answer also identifies the model.
         ReadSystemInfo::new(Model::Dx200, SystemPart::Group(Group::R1))
             .map_err(|error| Failure::local(error.to_string()))
     }
@@ -74,7 +75,7 @@ impl About for Controller {
     }
 }
 
-/// The file on the controller that an entry is about.
+/// File on the controller for an entry.
 pub fn controller_file(entry: &Entry) -> Result<FileName, Failure> {
     exact(entry.name_hex.as_deref().and_then(unhex).unwrap_or_default())
 }

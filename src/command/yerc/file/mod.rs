@@ -30,7 +30,7 @@ pub(super) use transfer::{LISTS, fetch, list, plan_all, taken as download_failed
 use crate::command::commands;
 
 commands! {
-    /// What can be done with files.
+    /// Commands for files.
     pub enum File {
         /// List the files on the controller
         List(list::List),
@@ -40,7 +40,7 @@ commands! {
         Put(put::Put),
         /// Delete files on the controller
         Delete(delete::Delete),
-        /// Compare a file on the controller with a local one
+        /// Compare a file on the controller with a local file
         Diff(diff::Diff),
         /// Create the batch backup CMOSBK.BIN on the controller and download it
         Cmos(cmos::Cmos),

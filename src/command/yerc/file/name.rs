@@ -1,4 +1,4 @@
-//! Names and types of files as the operator types them and as reports show them.
+//! File names and types in arguments and in reports.
 
 use clap::ValueEnum;
 use schemars::JsonSchema;
@@ -8,25 +8,25 @@ use crate::controller::text::{Encoding, unhex};
 use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::Failure;
 
-/// A file's name in a report.
+/// File name in a report.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Shown {
     /// Name on the controller.
     pub name: String,
-    /// Its bytes, where the name in text does not lead back to them; as an argument, write `hex:` before them.
+    /// Bytes of the name, if the text does not convert back to them; as an argument, use them with the prefix `hex:`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name_hex: Option<String>,
 }
 
 impl Shown {
-    /// The name that bytes of a controller stand for.
+    /// Name from the bytes of a controller.
     pub fn new(encoding: Encoding, name: &[u8]) -> Self {
         let name = encoding.name(name);
         Self { name: name.text, name_hex: name.hex }
     }
 }
 
-/// Types of files on the command line.
+/// File types on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum TypeArg {
     /// Jobs
@@ -58,19 +58,19 @@ impl TypeArg {
         })
     }
 
-    /// The types that are meant, each once, in the order of the manual.
+    /// Selected types without duplicates, in the order of the manual.
     pub fn chosen(args: &[Self]) -> Vec<FileType> {
         let has = |kind| args.iter().any(|arg| arg.file_type().is_none_or(|chosen| chosen == kind));
         FileType::ALL.into_iter().filter(|kind| has(*kind)).collect()
     }
 }
 
-/// The type of a file in reports; null where its extension is not one of the manuals.
+/// Type of a file in reports; null if its extension is not in the manuals.
 pub fn word_of(name: &[u8]) -> Option<&'static str> {
     FileType::from_name(name).map(type_word)
 }
 
-/// A type in reports and manifests: `jbi`.
+/// Type in reports and manifests: `jbi`.
 pub fn type_word(kind: FileType) -> &'static str {
     match kind {
         FileType::Jbi => "jbi",
@@ -82,12 +82,12 @@ pub fn type_word(kind: FileType) -> &'static str {
     }
 }
 
-/// The file that an argument names: text in the robot's encoding, or `hex:` and its bytes.
+/// Parses a file argument: text in the robot's encoding, or `hex:` and bytes.
 pub fn typed(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
     let bytes = if let Some(digits) = text.strip_prefix("hex:") {
         unhex(digits).ok_or_else(|| {
-            Failure::usage(format!("'{text}' has no whole number of hexadecimal bytes"))
-                .hint("as in hex:5445535430312e4a4249, the name_hex of `yerc file list --json`")
+            Failure::usage(format!("'{text}' has an incomplete hexadecimal byte"))
+                .hint("use hex: with the name_hex of `yerc file list --json`, as in hex:5445535430312e4a4249")
         })?
     } else {
         encoding.encode_name(text).map_err(|error| {
@@ -97,35 +97,35 @@ pub fn typed(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
     exact(bytes)
 }
 
-/// The name under which a file is sent.
+/// Checks a name for an upload.
 pub fn to_send(file: FileName) -> Result<FileName, Failure> {
     match file.check_load() {
         Ok(()) => Ok(file),
-        Err(error) => Err(Failure::usage(error.to_string()).hint("jobs are named as in TESTJOB.JBI")),
+        Err(error) => Err(Failure::usage(error.to_string()).hint("use a job name such as TESTJOB.JBI")),
     }
 }
 
-/// Several of them, each once.
+/// Parses several file arguments and rejects duplicates.
 pub fn all_typed(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>, Failure> {
     let mut files = Vec::with_capacity(texts.len());
     for text in texts {
         let file = typed(encoding, text)?;
         if files.contains(&file) {
-            return Err(Failure::usage(format!("{text} is named twice")).hint("name every file once"));
+            return Err(Failure::usage(format!("{text} is named twice")).hint("list every file once"));
         }
         files.push(file);
     }
     Ok(files)
 }
 
-/// The file of exactly this name. A controller might take `*` or `?` for any name, and delete more than was meant.
+/// Checks that a name has no wildcards. A controller might match `*` or `?` with any name and delete too many files.
 pub fn exact(bytes: Vec<u8>) -> Result<FileName, Failure> {
     if bytes.iter().any(|byte| matches!(byte, b'*' | b'?')) {
-        return Err(Failure::usage(format!("the file name '{}' has a * or ? in it", bytes.escape_ascii()))
-            .hint("name every file in full; `yerc file list` shows them, and `yerc file get` takes patterns"));
+        return Err(Failure::usage(format!("the file name '{}' contains * or ?", bytes.escape_ascii()))
+            .hint("use full file names (see `yerc file list`); only `yerc file get` accepts patterns"));
     }
     FileName::new(bytes).map_err(|error| {
-        Failure::usage(error.to_string()).hint("jobs are named as in TESTJOB.JBI; `yerc file list` shows what there is")
+        Failure::usage(error.to_string()).hint("use a job name such as TESTJOB.JBI; `yerc file list` shows the files")
     })
 }
 

@@ -1,5 +1,5 @@
-//! Patterns of names, such as `*.JBI`: which lists of the controller tell what fits them, and what does. A pattern is never
-//! sent: a controller might take it in a way of its own.
+//! Patterns of file names, such as `*.JBI`: required lists of the controller, and matching names. A pattern is never
+//! sent, because a controller might interpret it differently.
 
 use super::name::{self, Shown};
 use super::transfer;
@@ -9,28 +9,28 @@ use crate::controller::yerc::files::{self, FileName, FileType};
 use crate::failure::{Failure, Kind};
 use crate::settings::inventory::fits;
 
-/// A file that is asked for, or why there is none.
+/// A requested file, or the reason why there is none.
 #[derive(Debug)]
 pub struct Wanted {
-    /// Its name, or the pattern or list that came to nothing.
+    /// Name, or the pattern or list without a result.
     pub name: Shown,
-    /// Its name to be sent.
+    /// Name to send.
     pub file: Result<FileName, Failure>,
 }
 
-/// Whether an argument is a pattern; `hex:` leads to a name.
+/// Whether an argument is a pattern; `hex:` is always a name.
 pub fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?']) && !text.starts_with("hex:")
 }
 
-/// The types of which a pattern may fit a file.
+/// File types that a pattern can match.
 fn types(pattern: &str) -> Vec<FileType> {
     let ending = pattern.rsplit_once('.').map_or("*", |(_, ending)| ending);
     FileType::ALL.into_iter().filter(|kind| fits(&ending.to_uppercase(), kind.extension())).collect()
 }
 
-/// Finds the files of some arguments: names as they are, and what fits the patterns, each once. `None` in a dry run, which
-/// notes the requests.
+/// Finds the files of arguments: names unchanged, and matches of patterns, without duplicates. `None` in a dry run,
+/// which notes the requests.
 pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<Wanted>>, Failure> {
     let (patterns, names): (Vec<&String>, Vec<&String>) = asked.iter().partition(|text| is_pattern(text));
     let names: Vec<String> = names.into_iter().cloned().collect();
@@ -40,14 +40,14 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<Wanted
         FileType::ALL.into_iter().filter(|kind| wanted.contains(kind)).collect()
     };
     if let Some(pattern) = patterns.iter().find(|pattern| types(pattern).is_empty()) {
-        return Err(Failure::usage(format!("no file of a controller fits '{pattern}'"))
-            .hint("files end in JBI, DAT, CND, PRM, SYS or LST"));
+        return Err(Failure::usage(format!("no controller file can match '{pattern}'"))
+            .hint("file names end in JBI, DAT, CND, PRM, SYS or LST"));
     }
     if link.is_dry() {
         transfer::plan_all(link, transfer::LISTS, kinds.into_iter().map(files::list))?;
-        transfer::plan_all(link, "fetches the file", files.iter().map(FileName::save))?;
+        transfer::plan_all(link, "downloads the file", files.iter().map(FileName::save))?;
         if !patterns.is_empty() {
-            link.then("fetches every file that the lists name and a pattern fits, and acknowledges each of its blocks");
+            link.then("downloads every listed file that matches a pattern and acknowledges each block");
         }
         return Ok(None);
     }
@@ -76,17 +76,17 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<Wanted
             }
             let is_new = !found.iter().any(|other| other.name == name);
             if fits_one && is_new {
-                // A name that a controller lists and that must not be used is the controller's fault, not the operator's.
+                // A listed name that is not allowed is an error of the controller, not of the operator.
                 let file = name::exact(bytes).map_err(|failure| Failure { kind: Kind::Malformed, ..failure });
                 found.push(Wanted { name, file });
             }
         }
     }
     for (pattern, fitted) in patterns.into_iter().zip(fitted) {
-        // Behind a refused list, nobody knows what fits.
+        // After a refused list, the matching files are unknown.
         if !fitted && !types(pattern).iter().any(|kind| refused.iter().any(|list| list.name.name == kind.filter())) {
-            let nothing = Failure::new(Kind::Refused, "the controller lists no file that fits")
-                .hint("`yerc file list --type all` shows the names; upper and lower case count");
+            let nothing = Failure::new(Kind::Refused, "no file on the controller matches")
+                .hint("`yerc file list --type all` shows the names; names are case-sensitive");
             found.push(Wanted { name: Shown { name: pattern.clone(), name_hex: None }, file: Err(nothing) });
         }
     }

@@ -19,29 +19,29 @@ use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 
-/// Sends files to the controller.
+/// Uploads files to the controller.
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub struct Put {
     /// Local files
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Name on the controller, instead of the local one
+    /// Name on the controller [default: the local name]
     #[arg(long = "as", value_name = "NAME")]
     name: Option<String>,
-    /// Send CR LF where a line of a job ends in a bare LF
+    /// Send CR LF for job lines that end in a bare LF
     #[arg(long)]
     fix_line_endings: bool,
-    /// Read every file back and compare
+    /// Read every file back and compare it
     #[arg(long)]
     verify: bool,
-    /// Compare without the line ///DATE, which controllers rewrite
+    /// Ignore the line ///DATE, which controllers rewrite
     #[arg(long, requires = "verify")]
     ignore_header: bool,
-    /// Replace a job that the controller does not overwrite by itself
+    /// Delete and send a job that the controller does not overwrite
     #[arg(long)]
     replace: bool,
-    /// Send a job although /JOB, NOP or END is missing
+    /// Send a job even if /JOB, NOP or END is missing
     #[arg(long)]
     force: bool,
 }
@@ -65,7 +65,7 @@ impl Command for Put {
             let mut result = FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path()));
             if let Some((own, sent)) = delivery.other_name(link.encoding) {
                 screen.note(&format!(
-                    "warning: {} says //NAME {own} but is sent as {sent}: a controller may refuse it, or store it as \
+                    "warning: {} has //NAME {own} but is sent as {sent}: a controller may refuse it, or store it as \
                      {own}",
                     content.path().display()
                 ));
@@ -83,7 +83,7 @@ impl Command for Put {
             return Ok(Results::new(results, SHAPE));
         };
         for (delivery, result) in deliveries.iter_mut().zip(&mut results) {
-            // What nobody knew of is not deleted.
+            // An unlisted file was not confirmed, so it is not deleted.
             let replace = manner.replace && lists.tell(&delivery.file) != There::No;
             let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, result).await;
             if !result.settle(outcome) {
@@ -95,10 +95,10 @@ impl Command for Put {
 }
 
 impl Put {
-    /// Every file, checked before the first one is sent.
+    /// All files, checked before the first upload.
     fn deliveries(&self, encoding: Encoding) -> Result<Vec<Delivery>, Failure> {
         if self.name.is_some() && self.files.len() > 1 {
-            return Err(Failure::usage("--as names one file, but there are several").hint("send them one by one"));
+            return Err(Failure::usage("--as needs exactly one file").hint("send the files one by one"));
         }
         let rules = JobRules { fix_line_endings: self.fix_line_endings, force: self.force };
         let mut deliveries: Vec<Delivery> = Vec::with_capacity(self.files.len());
@@ -109,8 +109,11 @@ impl Put {
             };
             let file = name::to_send(file)?;
             if deliveries.iter().any(|other| other.file == file) {
-                return Err(Failure::usage(format!("{}: another file has the same name", path.display()))
-                    .hint("--as gives one of them another name; send it on its own"));
+                return Err(Failure::usage(format!(
+                    "{}: another file has the same name on the controller",
+                    path.display()
+                ))
+                .hint("send one of them separately with another name (--as)"));
             }
             let mut content = Content::open(path)?;
             if file.file_type() == Some(FileType::Jbi) {
@@ -122,13 +125,13 @@ impl Put {
     }
 }
 
-/// The file on the controller that a local one is for.
+/// Controller file name for a local file.
 fn named_after(encoding: Encoding, path: &Path) -> Result<FileName, Failure> {
     let wrong = |why: String| {
-        Failure::usage(format!("{}: {why}", path.display())).hint("--as gives the name on the controller")
+        Failure::usage(format!("{}: {why}", path.display())).hint("set the name on the controller with --as")
     };
     let local = path.file_name().and_then(|name| name.to_str());
-    let local = local.ok_or_else(|| wrong("its name cannot be sent".to_owned()))?;
+    let local = local.ok_or_else(|| wrong("the file name cannot be sent".to_owned()))?;
     let bytes = controller_name(encoding, local).map_err(|error| wrong(error.to_string()))?;
     name::exact(bytes).map_err(|failure| wrong(failure.message))
 }

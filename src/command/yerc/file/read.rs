@@ -1,4 +1,4 @@
-//! Reads small files of the controller for a command that wants what is in them.
+//! Reads small files of the controller for commands that need their content.
 
 use super::lists::{Lists, There};
 use super::transfer;
@@ -8,18 +8,18 @@ use crate::controller::yerc::files::FileName;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// What came of a file.
+/// Result of reading a file.
 #[derive(Debug)]
 pub enum FileReading {
-    /// Its bytes.
+    /// Content.
     Read(Vec<u8>),
-    /// The controller has none of this name.
+    /// The controller has no such file.
     Missing,
-    /// It was not read.
+    /// The file was not read.
     Failed(Failure),
 }
 
-/// Reads files of at most `most` bytes, each with its own outcome, in their order; `None` in a dry run, which notes the
+/// Reads files of at most `most` bytes, each with its own result, in order; `None` in a dry run, which notes the
 /// requests.
 pub async fn read_files(
     link: &mut Link,
@@ -50,7 +50,7 @@ pub async fn read_files(
             bytes.extend_from_slice(block);
             if bytes.len() as u64 > most {
                 return Err(Failure::new(Kind::Malformed, format!("{name} has more than {most} bytes"))
-                    .hint("no controller has such a file of this size; record it with --trace and report it"));
+                    .hint("no known controller has such a large file; record it with --trace and report it"));
             }
             Ok(())
         });

@@ -1,4 +1,4 @@
-//! `yerc restore`: the files of a backup back to the controller.
+//! `yerc restore`: upload of the files of a backup.
 
 use std::path::PathBuf;
 
@@ -25,15 +25,15 @@ use crate::failure::{Failure, Kind};
 use crate::gate::Change;
 use crate::output::Screen;
 
-/// Which files of a backup go back.
+/// Files of a backup to upload.
 #[derive(Debug)]
 pub struct Restore {
     folder: PathBuf,
     /// Types of the files.
     types: Vec<FileType>,
-    /// Files whose names fit.
+    /// Patterns of file names.
     patterns: Only,
-    /// Send the backup of one model to another.
+    /// Send a backup to another model.
     force: bool,
 }
 
@@ -42,13 +42,13 @@ const MANNER: Manner = Manner { verify: false, ignore_header: false, replace: tr
 
 const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
 
-/// What goes first: jobs need the data and conditions they name, and after parameters a controller may want a restart.
+/// Order of sending: jobs need their data and conditions first, and after parameters a controller may need a restart.
 const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
-/// What goes if nobody says which types. Parameters and system data change the controller itself.
+/// Types that are sent by default. Parameters and system data change the controller itself.
 const USUAL: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
 
 impl Restore {
-    /// Of what is asked for in any family.
+    /// Options from those of the `restore` command of all families.
     pub fn of(restoring: &Restoring) -> Self {
         let Restoring { folder, only: patterns, machine, force } = restoring.clone();
         let mut types = USUAL.to_vec();
@@ -71,7 +71,7 @@ impl Restore {
         if taken_of != model.name() && !link.is_dry() && !self.force {
             let message = format!("the backup is of a {taken_of}, {} is a {model}", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
-                .hint("check the model (?model=…); --force sends the files all the same"));
+                .hint("check the model (?model=…); --force sends the files anyway"));
         }
         let chosen = self.chosen(&manifest)?;
         let mut deliveries = Vec::with_capacity(chosen.len());
@@ -89,7 +89,7 @@ impl Restore {
             results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
         }
         if link.is_dry() {
-            self.plan_items(link, &manifest, &deliveries);
+            Self::plan_items(link, &manifest, &deliveries);
         }
         let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
         let Some(lists) = lists else {
@@ -99,13 +99,13 @@ impl Restore {
         if !compare(link, screen, &lists, &mut deliveries, &mut results).await? {
             return Results::new(results, SHAPE).report();
         }
-        // What is the same stays, and what could not be compared is not sent.
+        // Equal files are skipped, and files that could not be compared are not sent.
         let mut open: Vec<(Delivery, &mut FileResult)> =
             deliveries.into_iter().zip(&mut results).filter(|(_, result)| result.state == State::NotTried).collect();
         deliver::confirm(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery)).await?;
         let mut sent = screen.parts_progress("files sent", open.len());
         for (delivery, result) in &mut open {
-            // What nobody knew of is not deleted.
+            // An unlisted file was not confirmed, so it is not deleted.
             let replace = lists.tell(&delivery.file) != There::No;
             let outcome = deliver(link, screen, delivery, Manner { replace, ..MANNER }, result).await;
             if !result.settle(outcome) {
@@ -119,8 +119,8 @@ impl Restore {
 }
 
 impl Restore {
-    /// What a dry run says of each file of the backup.
-    fn plan_items(&self, link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
+    /// Notes each file of the backup in a dry run.
+    fn plan_items(link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
         let on = "whether the controller's file differs";
         for entry in &manifest.files {
             let Some(copy) = &entry.copy else { continue };
@@ -130,12 +130,12 @@ impl Restore {
             link.plan_item(match (is_sent, is_usual) {
                 (true, _) => would_write(&entry.name, ("bytes", copy.bytes), on),
                 (false, true) => would_leave(&entry.name, NOT_CHOSEN),
-                (false, false) => would_leave(&entry.name, "parameters or system data: written with --machine"),
+                (false, false) => would_leave(&entry.name, "parameters or system data; written only with --machine"),
             });
         }
     }
 
-    /// The files to send, in the order of sending.
+    /// Files to send, in the order of sending.
     fn chosen<'a>(&self, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
         let copied = || manifest.files.iter().filter(|entry| entry.copy.is_some());
         self.patterns.check(&copied().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
@@ -147,8 +147,8 @@ impl Restore {
             }
         }
         if chosen.is_empty() {
-            let message = "what there is to restore are lists, parameters or system data, which change the controller";
-            return Err(Failure::usage(message).hint("add --machine if that is meant"));
+            let message = "the backup has only lists, parameters or system data, which change the controller";
+            return Err(Failure::usage(message).hint("add --machine to send them"));
         }
         let place = |file: &FileName| ORDER.iter().position(|kind| Some(*kind) == file.file_type());
         chosen.sort_by_key(|(file, _)| place(file));
@@ -156,7 +156,7 @@ impl Restore {
     }
 }
 
-/// Finds the files that are the same on the controller already; `false` if the work cannot go on.
+/// Finds the files that are equal on the controller; `false` if the work cannot continue.
 async fn compare(
     link: &mut Link,
     screen: &Screen,
@@ -181,11 +181,11 @@ async fn compare(
     Ok(true)
 }
 
-/// What a dry run shows behind the lists.
+/// Notes in a dry run the requests after the lists.
 async fn plan(link: &mut Link, deliveries: &mut [Delivery], authority: &Authority<'_>) -> Result<(), Failure> {
     authority.confirm(&Change::nothing()).await?;
     for Delivery { file, .. } in &*deliveries {
-        let reason = Reason::about("if the list has it: compares").depending_on("whether the list has the file");
+        let reason = Reason::about("if the file is listed: compares").depending_on("whether the file is listed");
         link.plan_download(&file.save(), reason)?;
     }
     let reason = Reason::about("if it differs").depending_on("whether the file differs");

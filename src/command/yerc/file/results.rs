@@ -1,7 +1,7 @@
-//! Result of each of several files.
+//! Results of several files.
 //!
-//! One file that fails is a failed command. Of several, each has its result, and the others go on after a refusal; the
-//! exit code is 9 where some were done, and otherwise that of the gravest failure.
+//! A single file that fails is a failed command. With several files, each has its own result, and a refusal does not
+//! stop the others. The exit code is 9 if some files succeeded, otherwise that of the most severe failure.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,38 +15,37 @@ use crate::command::frame::items::brief;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 
-/// One file.
+/// Result of one file.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct FileResult {
-    /// Its name on the controller.
+    /// Name on the controller.
     #[serde(flatten)]
     pub name: Shown,
-    /// How far it got.
+    /// State of the transfer.
     pub state: State,
-    /// The local file.
+    /// Local file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
-    /// Size of the whole.
+    /// Size of the whole file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bytes: Option<u64>,
-    /// What was done beyond the plain transfer: `replaced`, `verified`, `line_endings_fixed`, `name_differs`,
-    /// `empty`.
+    /// Additional steps: `replaced`, `verified`, `line_endings_fixed`, `name_differs`, `empty`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// Why it failed.
+    /// Reason for the failure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<Failure>,
 }
 
 impl FileResult {
-    /// A file that nothing was done with yet.
+    /// Result of a file that is still to be processed.
     pub fn pending(name: Shown, path: Option<&std::path::Path>) -> Self {
         let path = path.map(|path| path.display().to_string());
         Self { name, state: State::NotTried, path, bytes: None, notes: Vec::new(), error: None }
     }
 
-    /// Done, in so many bytes, or failed. Says whether the next file can be tried: after a "no" to this one it can, on a
-    /// broken line or a full disk it cannot.
+    /// Records the size or the failure. Returns whether the next file can be tried: yes after a refusal of this file,
+    /// no after a lost connection or a full disk.
     pub fn settle(&mut self, outcome: Result<Option<u64>, Failure>) -> bool {
         match outcome {
             Ok(bytes) => {
@@ -64,25 +63,25 @@ impl FileResult {
     }
 }
 
-/// Every file of a command.
+/// Results of all files of a command.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Results {
-    /// Each in the order of working.
+    /// In the order of processing.
     pub files: Vec<FileResult>,
-    /// Files that are done, now or before.
+    /// Number of completed files, including those of an earlier run.
     pub done: usize,
-    /// Files that failed.
+    /// Number of failed files.
     pub failed: usize,
-    /// Files that were not tried.
+    /// Number of files that were not tried.
     pub not_tried: usize,
     #[serde(skip)]
     shape: Shape,
 }
 
-/// How results are shown.
+/// Display options of results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shape {
-    /// What was done with a file, such as `deleted`.
+    /// Verb for a completed file, such as `deleted`.
     pub done: &'static str,
     /// Whether there are local files.
     pub has_paths: bool,
@@ -91,7 +90,7 @@ pub struct Shape {
 }
 
 impl Results {
-    /// Counts.
+    /// Counts the results.
     pub fn new(files: Vec<FileResult>, shape: Shape) -> Self {
         let count = |states: &[State]| files.iter().filter(|file| states.contains(&file.state)).count();
         let (done, failed) = (count(&[State::Done, State::Kept]), count(&[State::Failed]));
@@ -99,7 +98,7 @@ impl Results {
         Self { files, done, failed, not_tried, shape }
     }
 
-    /// The report; of a single file that failed, the failure.
+    /// Report, or the failure of a single file.
     pub fn report(mut self) -> Result<Self, Failure> {
         match &mut self.files[..] {
             [only] => match only.error.take() {
@@ -110,7 +109,7 @@ impl Results {
         }
     }
 
-    /// The table alone.
+    /// Table without totals.
     pub fn table(&self) -> Table {
         let Shape { done, has_paths, has_bytes } = self.shape;
         let mut table = Table::new(&[], "no files");
@@ -161,14 +160,14 @@ impl Report for Results {
 
     fn failure(&self) -> Option<Failure> {
         let failures = self.files.iter().filter_map(|file| Some((&file.name.name, file.error.as_ref()?)));
-        // Of equally grave ones, the first.
+        // The first one of equal severity.
         let (name, gravest) = failures.rev().max_by_key(|(_, failure)| gravity(failure.kind))?;
         let total = self.files.len();
         let failed = match self.not_tried {
             0 => format!("{} of {total} files failed", self.failed),
             left => format!("{} of {total} files failed, {left} not tried", self.failed),
         };
-        // Some done, some not.
+        // Some files succeeded and some failed.
         let kind = if self.done > 0 { Kind::Mixed } else { gravest.kind };
         Some(Failure { kind, message: format!("{failed}: {name}: {}", gravest.message), ..gravest.clone() })
     }

@@ -1,4 +1,4 @@
-//! Files and lists over the link: how each way a transfer can end reads to the operator.
+//! File and list transfers over the link, with a message for every way in which a transfer can end.
 
 use std::time::Duration;
 
@@ -15,24 +15,24 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::progress::Progress;
 
-/// Largest file taken from a controller; theirs have some megabytes.
+/// Maximum size of a file from a controller; real files have a few megabytes.
 const MAX_FILE: u64 = 1 << 30;
-/// Largest list: some hundred thousand names.
+/// Maximum size of a list: some hundred thousand names.
 const MAX_LIST: u64 = 4 << 20;
 
-/// No file of the type asked for (DX 3.1).
+/// No file of the requested type (DX 3.1).
 const NOTHING_LISTED: u32 = 0xE2A7;
-/// No such file, or one without content (DX 3.1).
+/// The file does not exist or is empty (DX 3.1).
 const NO_FILE_OR_EMPTY: u32 = 0xE29C;
-/// A job of this name exists.
+/// A job with this name exists.
 const JOB_EXISTS: &str = "0x4030";
 
-/// The names of one type, in the order of the controller.
+/// File names of one type, in the order of the controller.
 pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failure> {
     list_by(link, &files::list(kind)).await
 }
 
-/// The names that a request for a list brings.
+/// File names in the answer to a list request.
 pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>, Failure> {
     let mut data = Vec::new();
     let end = link
@@ -56,7 +56,7 @@ pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>,
     }
 }
 
-/// Fetches a file; every block goes to `take`.
+/// Downloads a file; every block is passed to `take`.
 pub async fn fetch(
     link: &mut Link,
     file: &FileName,
@@ -65,7 +65,7 @@ pub async fn fetch(
     taken(service::SAVE, &link.download(&file.save(), MAX_FILE, None, take).await?)
 }
 
-/// As [`fetch`] for a file that was just listed: one that has no content then is empty, not missing.
+/// Like [`fetch`], for a file that was just listed: without content it is empty, not missing.
 pub async fn fetch_listed(
     link: &mut Link,
     file: &FileName,
@@ -77,7 +77,7 @@ pub async fn fetch_listed(
     }
 }
 
-/// Whether the controller has a file with this content already. One that it does not give is another one.
+/// Whether the controller has a file with this content. A file that it does not send counts as different.
 pub async fn is_same(
     link: &mut Link,
     screen: &Screen,
@@ -99,7 +99,7 @@ pub async fn is_same(
     }
 }
 
-/// The batch backup: `None` if the controller has made it, its size if it came.
+/// Batch backup: `None` if the controller has created it, its size if it was received.
 pub async fn fetch_backup(
     link: &mut Link,
     wait: Duration,
@@ -114,17 +114,17 @@ pub async fn fetch_backup(
 /// Deletes a file.
 pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     let reply = link.raw(&file.delete()).await.map_err(|failure| match failure.kind {
-        Kind::OutcomeUnknown => failure.hint("`yerc file list` tells whether it is still there"),
+        Kind::OutcomeUnknown => failure.hint("`yerc file list` shows whether the file still exists"),
         _ => failure,
     })?;
     match reply.status {
-        // "Done" with an added status beside it tells of a file that is not there (DX 3.1).
+        // Success with an added status means that the file does not exist (DX 3.1).
         status if status.is_ok() && status.added == 0 => Ok(()),
         status => Err(Refusal::of_file(service::DELETE, status).into()),
     }
 }
 
-/// Sends a file.
+/// Uploads a file.
 pub async fn send(
     link: &mut Link,
     file: &FileName,
@@ -148,52 +148,52 @@ pub async fn send(
     }
 }
 
-/// Whether the controller lists a file of this name.
+/// Whether the controller lists a file with this name.
 async fn is_listed(link: &mut Link, file: &FileName) -> bool {
     let Some(kind) = file.file_type() else { return false };
     list(link, kind).await.is_ok_and(|names| names.iter().any(|name| name.eq_ignore_ascii_case(file.as_bytes())))
 }
 
-/// What a dry run would send for [`send`].
+/// Notes in a dry run the requests of [`send`].
 pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason: Reason<'_>) -> Result<(), Failure> {
     let mut pieces = content.pieces()?;
     link.plan_upload(&file.load(), reason, || pieces.next_piece())?;
     let Some(kind) = file.file_type() else { return Ok(()) };
-    let unnumbered = Reason::about("whether it is there, if the last acknowledgement bears no block number");
-    let mark = "whether the last acknowledgement bears a block number";
+    let unnumbered = Reason::about("whether the file exists, if the last acknowledgement has no block number");
+    let mark = "whether the last acknowledgement has a block number";
     let depends_on = reason.depends_on.map_or_else(|| mark.to_owned(), |before| format!("{before}, and {mark}"));
     Ok(link.plan_download(&files::list(kind), unnumbered.depending_on(&depends_on))?)
 }
 
-/// Notes in a dry run what would be sent, one transfer from the controller after the other.
+/// Notes in a dry run several downloads, one after the other.
 pub fn plan_all(link: &mut Link, about: &str, requests: impl IntoIterator<Item = Request>) -> Result<(), Failure> {
     Ok(requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::about(about)))?)
 }
 
-/// What lists are for, in dry runs.
-pub const LISTS: &str = "which files are there";
+/// Purpose of list requests in dry runs.
+pub const LISTS: &str = "existing files";
 
-/// Whether a controller refused a file because it has a job of that name.
+/// Whether the controller refused a file because a job with that name exists.
 pub fn is_job_exists(failure: &Failure) -> bool {
     failure.kind == Kind::Refused && failure.code.as_deref() == Some(JOB_EXISTS)
 }
 
-/// A file that the controller does not list.
+/// Failure for a file that the controller does not list.
 pub fn not_listed() -> Failure {
-    Failure::new(Kind::Refused, "the controller lists no such file")
-        .hint("`yerc file list` shows the names; upper and lower case count")
+    Failure::new(Kind::Refused, "the file does not exist on the controller")
+        .hint("`yerc file list` shows the names; names are case-sensitive")
 }
 
-/// A failure that begins with the file it is about.
+/// Failure that starts with the name of the file.
 pub fn about(name: &str, failure: Failure) -> Failure {
-    // Failures of a local file of the same name have it already.
+    // Failures of a local file with the same name already include it.
     if failure.message.strip_prefix(name).is_some_and(|rest| rest.starts_with([':', ' '])) {
         return failure;
     }
     Failure { message: format!("{name}: {}", failure.message), ..failure }
 }
 
-/// The bytes that came, or how the transfer failed.
+/// Received size, or the failure of the transfer.
 pub fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
     match *end {
         DownloadEnd::Complete { bytes, .. } => Ok(bytes),
@@ -201,21 +201,21 @@ pub fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
             Err(Refusal::of_file(service, status).into())
         }
         DownloadEnd::Refused { status, bytes } => {
-            Err(about(&format!("broken off after {bytes} bytes"), Refusal::of_file(service, status).into()))
+            Err(about(&format!("aborted after {bytes} bytes"), Refusal::of_file(service, status).into()))
         }
-        DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller says done, but sent nothing")
-            .hint("`yerc file list` tells whether the file is there; it may be empty")),
+        DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller reported success but sent nothing")
+            .hint("`yerc file list` shows whether the file exists; it may be empty")),
         DownloadEnd::Violated { violation, bytes } => {
-            Err(Failure::new(Kind::Malformed, format!("the transfer went wrong after {bytes} bytes: {violation}"))
-                .hint("nothing was kept of it; repeat it, and record it with --trace if it comes again"))
+            Err(Failure::new(Kind::Malformed, format!("the transfer failed after {bytes} bytes: {violation}"))
+                .hint("no data was saved; repeat the command, and record it with --trace if the problem persists"))
         }
         DownloadEnd::TooLarge { limit, .. } => {
             Err(Failure::new(Kind::Malformed, format!("the controller sends more than {limit} bytes"))
-                .hint("no controller has files of this size; record it with --trace and report it"))
+                .hint("no known controller has such large files; record it with --trace and report it"))
         }
         DownloadEnd::NoAnswer { bytes, counters } => {
-            Err(Failure::new(Kind::NoAnswer, format!("silence after {bytes} bytes ({counters})"))
-                .hint("repeat it: nothing was kept; --timeout waits longer"))
+            Err(Failure::new(Kind::NoAnswer, format!("no answer after {bytes} bytes ({counters})"))
+                .hint("repeat the command (no data was saved), or set a longer --timeout"))
         }
     }
 }
@@ -223,24 +223,22 @@ pub fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
 fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Failure> {
     let unknown = |message: String| {
         Err(Failure::new(Kind::OutcomeUnknown, message)
-            .hint(format!("`yerc file diff {name} {path}` tells what the controller has now")))
+            .hint(format!("`yerc file diff {name} {path}` shows what the controller has now")))
     };
     match *end {
         UploadEnd::Complete { bytes, .. } => Ok(bytes),
         UploadEnd::Unnumbered { .. } => unknown(format!(
-            "all was sent, but the last acknowledgement bears no block number, and no list shows {name}"
+            "all data was sent, but the last acknowledgement has no block number and {name} is not listed"
         )),
-        UploadEnd::Empty => {
-            Err(Failure::usage("an empty file cannot be sent").hint("check that it is the file that was meant"))
-        }
+        UploadEnd::Empty => Err(Failure::usage("an empty file cannot be sent").hint("check that it is the right file")),
         UploadEnd::TooLong { .. } => {
-            Err(Failure::usage("the file is too long for a transfer").hint("check that it is the file that was meant"))
+            Err(Failure::usage("the file is too long for a transfer").hint("check that it is the right file"))
         }
         UploadEnd::Refused { status, sent, repeated: true, .. } if sent >= total => {
             let Failure { message, .. } = Refusal::of_file(service::LOAD, status).into();
-            unknown(format!("the last block was sent again and then refused: {message} The file may be there"))
+            unknown(format!("the last block was sent again and then refused: {message} The file may exist"))
         }
-        // At first, or as a whole at the end.
+        // Refused at the start, or the whole file at the end.
         UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => {
             Err(Refusal::of_file(service::LOAD, status).into())
         }
@@ -250,14 +248,15 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
         UploadEnd::OutcomeUnknown { sent: 0, counters, .. } => {
             let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
             unknown(format!(
-                "the request was sent once, and no answer came{seen}: no data was sent, but the controller may wait for it"
+                "the request was sent once without an answer{seen}: no data was sent, but the controller may wait for \
+                 it"
             ))
         }
         UploadEnd::OutcomeUnknown { sent, .. } if sent >= total => {
-            unknown("all was sent, but the last acknowledgement did not come: the file may be there".to_owned())
+            unknown("all data was sent, but the last acknowledgement is missing: the file may exist".to_owned())
         }
         UploadEnd::OutcomeUnknown { taken, .. } => {
-            unknown(format!("no acknowledgement after {taken} of {total} bytes: a part may be there"))
+            unknown(format!("no acknowledgement after {taken} of {total} bytes: part of the file may exist"))
         }
     }
 }
@@ -277,7 +276,7 @@ mod tests {
         assert_eq!(end(9, true).kind, Kind::OutcomeUnknown);
         assert_eq!(
             end(9, true).hint.as_deref(),
-            Some("`yerc file diff A.JBI a.jbi` tells what the controller has now")
+            Some("`yerc file diff A.JBI a.jbi` shows what the controller has now")
         );
         assert_eq!(end(9, false).kind, Kind::Refused);
         assert_eq!(end(0, true).kind, Kind::Refused);

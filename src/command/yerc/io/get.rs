@@ -17,18 +17,19 @@ use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::{parse_numbers, plan_io_reads};
 use crate::failure::Failure;
 
-/// Signals to read.
+/// Reads signals.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight of group \
-                        2001. Numbers that end in 8 or 9 do not exist; a range passes over them. Names are those of `armctl names list`."
+    after_help = "Signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight signals of \
+                  group 2001. Numbers that end in 8 or 9 do not exist; a range skips them. For names, see `armctl \
+                  names list`."
 )]
 pub struct Get {
-    /// Such as 20010, #20010 or 20010..20027, or a name
+    /// Signals, such as 20010, #20010 or 20010..20027, or a name
     #[arg(required_unless_present = "groups", value_name = "NUMBER", value_delimiter = ',', value_parser = signal::Signals::parse,
         add = complete::SIGNAL)]
     signals: Vec<signal::Signals>,
-    /// Whole groups of eight, such as 2001 or 2001..2010 (repeatable)
+    /// Groups of eight signals, such as 2001 or 2001..2010 (repeatable)
     #[arg(long = "group", value_name = "GROUP", value_delimiter = ',', value_parser = Groups::parse)]
     groups: Vec<Groups>,
 }

@@ -13,9 +13,9 @@ use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::plan_io_reads;
 use crate::failure::Failure;
 
-/// Reads the signals of all classes that the model has.
+/// Reads the signals of all classes of the model.
 #[derive(Debug, Args)]
-#[command(after_help = "A group that the controller does not have is left out.")]
+#[command(after_help = "Groups that the controller does not have are omitted.")]
 pub struct List {
     #[command(flatten)]
     filter: Filter,

@@ -17,7 +17,7 @@ use crate::controller::yerc::signal::Signal;
 use crate::failure::Failure;
 
 commands! {
-    /// What can be done with signals.
+    /// Commands for signals.
     pub enum Io {
         /// Read signals: 20010, #20010..#20017, or --group 2001
         Get(get::Get),
@@ -30,7 +30,7 @@ commands! {
     }
 }
 
-/// A signal as reports name it.
+/// Signal in reports.
 fn item(model: Model, signal: Signal, names: &Names) -> Result<IoItem, Failure> {
     let class = signal::class(model, signal.group())?.meaning;
     let name = signal.to_string();
@@ -38,7 +38,7 @@ fn item(model: Model, signal: Signal, names: &Names) -> Result<IoItem, Failure> 
     Ok(IoItem { address: name.clone(), name, label, kind: kind(class), meaning: Some(class.to_owned()) })
 }
 
-/// A group of eight signals; the first of them is the lowest bit.
+/// Group of eight signals; the first signal is the lowest bit.
 fn group_item(model: Model, group: u16) -> Result<IoItem, Failure> {
     let class = signal::class(model, group)?.meaning;
     let (first, last) = (signal::name(group, 0), signal::name(group, 7));
@@ -46,7 +46,7 @@ fn group_item(model: Model, group: u16) -> Result<IoItem, Failure> {
     Ok(IoItem { name: group.to_string(), label: None, kind: IoKind::Group, address, meaning: Some(class.to_owned()) })
 }
 
-/// Which side sets the signals of a class.
+/// Side that sets the signals of a class.
 fn kind(class: &str) -> IoKind {
     if class.ends_with("input") {
         IoKind::Input

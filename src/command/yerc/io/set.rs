@@ -24,19 +24,19 @@ use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::{WriteIoStep, plan_io_reads, plan_io_writes};
 use crate::failure::Failure;
 
-/// Signals to switch.
+/// Switches network inputs.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Only network inputs can be written from a PC: #27010 to #29567 on a DX200, #25010 to #26287 on \
-                        an FS100. The protocol writes eight signals at a time: the group is read, the named signals \
-                        are changed, and the other seven are written back as they were read. If something else changes \
-                        one of them in between, that change is undone. --group writes all eight, whatever they were."
+    after_help = "Only network inputs can be written from a PC: #27010 to #29567 on a DX200, #25010 to #26287 on an \
+                  FS100. The protocol writes eight signals at a time: armctl reads the group, changes the named \
+                  signals, and writes the others back unchanged. A change of these others in the meantime is lost. \
+                  --group writes all eight signals without a read."
 )]
 pub struct Set {
-    /// Such as 27010=on, #27011=off, or clamp=on by a name
+    /// 27010=on, #27011=off, or clamp=on for a name
     #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off", add = complete::SIGNAL_STATE)]
     signals: Vec<Switch>,
-    /// All eight signals of a group, such as 2701=0xA5, the first one lowest (repeatable)
+    /// Eight signals of a group, the first one lowest, such as 2701=0xA5 (repeatable)
     #[arg(long = "group", value_name = "GROUP=VALUE")]
     groups: Vec<Whole>,
 }
@@ -76,7 +76,7 @@ impl FromStr for Whole {
     }
 }
 
-/// What is to become of a group: bits of the mask are set to those of the value, the others stay.
+/// Change of a group: bits in the mask are set to those of the value, the others stay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Change {
     mask: u8,
@@ -136,7 +136,7 @@ impl Command for Set {
 }
 
 impl Set {
-    /// What is to become of each group. A signal that is named twice is a mistake.
+    /// Change of each group. A signal that is given twice is an error.
     fn changes(&self) -> Result<BTreeMap<u16, Change>, Failure> {
         let mut changes: BTreeMap<u16, Change> = BTreeMap::new();
         let wholes = self.groups.iter().map(|whole| (whole.group, Change { mask: u8::MAX, value: whole.value }));
@@ -156,7 +156,7 @@ impl Set {
     }
 }
 
-/// Notes in a dry run a change that depends on what is read first: signals that were not named are not known.
+/// Notes in a dry run a change that depends on the values read first.
 fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
     let reads = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
     let about = |groups: &[u16]| Some(format!("reads group {}", typed::runs(groups, "..")));
@@ -171,8 +171,8 @@ fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, 
         if one == other {
             link.plan(&one, &format!("writes group {groups}"));
         } else {
-            let about = format!("writes group {groups}; signals that are not named keep what was read");
-            link.plan_depending(&one, &other, Reason::about(&about).depending_on("what was read"));
+            let about = format!("writes group {groups}; the other signals keep the values that were read");
+            link.plan_depending(&one, &other, Reason::about(&about).depending_on("the values that were read"));
         }
     }
     Ok(unknown())
@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(set(&["27013=on", "27013=off"], &[]).unwrap_err().message, "#27013 is given twice");
         assert!(set(&["27013=on"], &["2701=0"]).is_err());
         assert!("27018=on".parse::<Switch>().is_err());
-        assert!("27010=yes".parse::<Switch>().unwrap_err().contains("on and off"));
+        assert!("27010=yes".parse::<Switch>().unwrap_err().contains("on or off"));
         assert!("2701=256".parse::<Whole>().unwrap_err().contains("0 to 255"));
     }
 }

@@ -1,4 +1,4 @@
-//! Signals and groups as the operator names them.
+//! Signal and group arguments.
 
 use super::super::orders::usage;
 use crate::command::frame::names;
@@ -10,10 +10,10 @@ use crate::controller::yerc::table::{Row, Span};
 use crate::controller::yerc::variables::{IoStep, plan_io_reads};
 use crate::failure::Failure;
 
-/// Stands for a name that is not known yet: a signal that every model has.
+/// Placeholder for a name that is not resolved yet: a signal that every model has.
 const ANY: &str = "10010";
 
-/// A single signal: `20010`, `#20010`, or its name.
+/// Parses a single signal: `20010`, `#20010`, or its name.
 pub fn single(text: &str) -> Result<Signal, String> {
     names::read(&[Kind::Signal], ANY, text, |text| text.parse().map_err(|error: SignalError| error.to_string()))
 }
@@ -23,7 +23,7 @@ pub fn single(text: &str) -> Result<Signal, String> {
 pub struct Signals(pub Vec<Signal>);
 
 impl Signals {
-    /// `20010`, `#20010`, `20010..20027` with both its ends, or a name.
+    /// Parses `20010`, `#20010`, `20010..20027` (inclusive), or a name.
     pub fn parse(text: &str) -> Result<Self, String> {
         names::read(&[Kind::Signal], ANY, text, Self::addresses)
     }
@@ -34,12 +34,12 @@ impl Signals {
     }
 }
 
-/// The number of one of a group's signals, `bit` from 0 to 7: `#20010`.
+/// Number of a signal in a group, `bit` from 0 to 7: `#20010`.
 pub fn name(group: u16, bit: u8) -> String {
     format!("#{:05}", u32::from(group) * 10 + u32::from(bit))
 }
 
-/// The class of a group: what it is, and whether it can be written.
+/// Class of a group: its meaning, and whether it is writable.
 pub fn class(model: Model, group: u16) -> Result<&'static Span, Failure> {
     io_class(model, group).ok_or_else(|| {
         Failure::usage(format!("group {group} ({}) does not exist on a {model}", name(group, 0)))
@@ -47,14 +47,14 @@ pub fn class(model: Model, group: u16) -> Result<&'static Span, Failure> {
     })
 }
 
-/// What groups are, which can all be written where that is wanted, and how they are read.
+/// Meanings of groups (all writable if `to_write` is set), and the read requests for them.
 pub fn reads(model: Model, groups: &[u16], to_write: bool) -> Result<(Vec<&'static str>, Vec<IoStep>), Failure> {
     let class = if to_write { writable } else { class };
     let meanings = groups.iter().map(|group| Ok(class(model, *group)?.meaning)).collect::<Result<_, Failure>>()?;
     Ok((meanings, plan_io_reads(model, groups).map_err(usage)?))
 }
 
-/// The class of a group that can be written.
+/// Class of a writable group.
 pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
     let span = class(model, group)?;
     if span.writable {
@@ -62,7 +62,7 @@ pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
     }
     let (first, meaning) = (name(group, 0), span.meaning);
     Err(Failure::usage(format!("group {group} ({first}) is {meaning}, which can only be read on a {model}"))
-        .hint(format!("a PC writes {}; let the ladder program pass them on", listed(model, |span| span.writable))))
+        .hint(format!("a PC can write {}; transfer them with the ladder program", listed(model, |span| span.writable))))
 }
 
 /// All groups of a model.

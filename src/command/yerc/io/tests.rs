@@ -1,4 +1,4 @@
-//! Whole command lines about signals.
+//! Tests of whole command lines for signals.
 
 use serde_json::Value;
 

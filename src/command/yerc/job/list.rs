@@ -12,7 +12,7 @@ use crate::controller::yerc::files::{self, FileType};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
 
-/// Lists the jobs of the controller (FS and DX 3.4.4), and which one is selected.
+/// Lists the jobs of the controller (FS and DX 3.4.4), and marks the selected job.
 #[derive(Debug, Args)]
 pub struct List {}
 
@@ -37,7 +37,7 @@ impl Command for List {
     }
 }
 
-/// The jobs of a controller.
+/// Jobs of a controller.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Listing {
     /// In the order of the controller.
@@ -47,10 +47,10 @@ pub struct Listing {
 /// A job.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Listed {
-    /// Without `.JBI`.
+    /// Name without `.JBI`.
     #[serde(flatten)]
     name: Shown,
-    /// Whether a start would run it.
+    /// Whether a start would run this job.
     selected: bool,
 }
 

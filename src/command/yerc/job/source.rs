@@ -1,7 +1,7 @@
-//! The text of the line that a job is at, from the job's file (`job show --source`).
+//! Text of the current line of a job, from the job file (`job show --source`).
 //!
-//! The protocol tells neither dates nor sizes nor hashes of files, so nothing that was kept could be known to be current:
-//! the file is got each time, and its hash says which one it was.
+//! The protocol has no dates, sizes or hashes of files, so a cached file could be outdated. The file is downloaded
+//! each time, and its hash identifies the version.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,16 +15,16 @@ use crate::failure::Failure;
 /// A line of a job file.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Source {
-    /// The file on the controller.
+    /// File on the controller.
     file: String,
-    /// Its hash, as backups have it.
+    /// SHA-256 of the file, as in backups.
     sha256: String,
-    /// The text of the line; null where the file has no such line.
+    /// Text of the line; null if the file has no such line.
     text: Option<String>,
 }
 
 impl Source {
-    /// Gets the file of a job and takes the line from it.
+    /// Downloads the file of a job and extracts the line.
     pub async fn read(link: &mut Link, job: &JobInfo) -> Result<Self, Failure> {
         let name = [job.name.as_bytes(), b".JBI"].concat();
         let (mut hash, mut content) = (Hash::default(), Vec::new());
@@ -38,13 +38,13 @@ impl Source {
         Ok(Self { file: link.encoding.decode(&name), sha256: hash.hex(), text })
     }
 
-    /// The text of the line.
+    /// Text of the line.
     pub fn text(&self) -> Option<&str> {
         self.text.as_deref()
     }
 }
 
-/// A line by the number that the controller gives it: NOP, the first instruction, is 0.
+/// Line by the controller's number: NOP, the first instruction, is 0.
 fn line(content: &[u8], number: u32) -> Option<&[u8]> {
     let lines = content.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
     lines.skip_while(|line| *line != b"NOP").nth(usize::try_from(number).ok()?)

@@ -1,4 +1,5 @@
-//! `yerc job start`: the selected job, or a job by its name, once or several times, and waiting for its end.
+//! `yerc job start`: start of the selected job, or of a job by name, once or several times, with an optional wait for
+//! its end.
 
 use std::time::Duration;
 
@@ -30,15 +31,16 @@ use crate::settings::duration;
 /// Starts the selected job, or selects a job and starts it (FS and DX 3.3.23, 3.3.24).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "One question names the job; it is selected and started after the yes. --wait and --repeat look at the \
-    status until the job has ended: END, or what stopped it. --repeat starts it again only after an end that was seen, with \
-    the same job at the same line; whatever else happens ends it, and an answer that is lost is never followed by a start."
+    after_help = "You confirm the job name once; then armctl selects and starts the job. --wait and --repeat read the \
+                  status until the job reaches END or is stopped. --repeat starts the job again only after a reported \
+                  end, with the same job at the same line. Any other event ends the command. After a lost answer, \
+                  armctl never starts the job."
 )]
 pub struct Start {
-    /// The job, without .JBI; the selected one unless given
+    /// Job name, without .JBI; default: the selected job
     #[arg(add = complete::JOB)]
     name: Option<String>,
-    /// Line to start at
+    /// Start line
     #[arg(long, value_name = "N", requires = "name", conflicts_with = "repeat", value_parser = within::<u32>(0, 9999))]
     line: Option<u32>,
     #[command(flatten)]
@@ -83,7 +85,7 @@ impl Command for Start {
         if let Some((name, select)) = named {
             let selected = link.is_for("selects it").ask(&select).await;
             selected.map_err(|failure| about(self.name.as_deref().unwrap_or_default(), failure))?;
-            if let Some(now) = Chosen::ask(link.is_for("whether it is selected")).await.known()?
+            if let Some(now) = Chosen::ask(link.is_for("selected job")).await.known()?
                 && !link.is_dry()
             {
                 check_selected(link, &name, &chosen, &now)?;
@@ -96,7 +98,7 @@ impl Command for Start {
         let mut line = None;
         for _ in 0..self.repeat.count() {
             let early = |failure| runs.early(failure);
-            // What ended is started again only if it stands as it did before.
+            // A job is started again only if its state is the same as before.
             if runs.last_ms().is_some() {
                 chosen.check_again(link).await.map_err(early)?;
             }
@@ -110,7 +112,7 @@ impl Command for Start {
             if link.is_dry() {
                 return Err(self.plan(link).await?);
             }
-            let what = runs.next().unwrap_or_else(|| "the job runs".to_owned());
+            let what = runs.next().unwrap_or_else(|| "the job is running".to_owned());
             let (elapsed_ms, at) = wait(link, screen, limit, &what, &chosen).await.map_err(early)?;
             runs.ended(elapsed_ms);
             line = at;
@@ -130,65 +132,65 @@ impl Start {
         Ok((link.encode("the job name", name)?, query))
     }
 
-    /// What the question says.
+    /// Text of the confirmation.
     fn change(&self, chosen: &Chosen, link: &Link) -> Change {
         let times = self.repeat.in_words();
         let Some(name) = &self.name else { return chosen.change(link.encoding, &times) };
-        let from = self.line.filter(|line| *line > 0).map(|line| format!(" from line {line} on")).unwrap_or_default();
+        let from = self.line.filter(|line| *line > 0).map(|line| format!(" from line {line}")).unwrap_or_default();
         let change = Change::new(format!("select and start job {}{from}{times}", without_suffix(name)));
         chosen.noted(change, link.encoding)
     }
 
     /// Notes in a dry run what follows a start.
     async fn plan(&self, link: &mut Link) -> Result<Failure, Failure> {
-        link.plan(&ReadStatus.request(), "again and again until the job has ended");
+        link.plan(&ReadStatus.request(), "repeatedly until the job has ended");
         let job = link.by_model(|model| ReadJob::new(model, 0)).await?;
-        link.plan(&job.request(), "at which line it ended");
+        link.plan(&job.request(), "line at the end");
         plan_alarm(link)?;
         if let Some(count) = self.repeat.repeat {
             link.then(&format!(
-                "after each end that was seen the job is looked at and started again, {count} starts in all"
+                "after each reported end the job is checked and started again, {count} starts in total"
             ));
         }
         Ok(unknown())
     }
 }
 
-/// Refuses to repeat what does not end, or ends after a line.
+/// Rejects the repetition of a job that does not end, or that ends after each line.
 async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
-    let Some(status) = link.is_for("whether the cycle ends by itself").ask(&ReadStatus).await.known()? else {
+    let Some(status) = link.is_for("cycle mode").ask(&ReadStatus).await.known()? else {
         return Ok(());
     };
     let why = if status.has(StatusBit::Continuous) {
-        "the cycle is continuous: the job does not end by itself"
+        "the cycle is continuous: the job does not end"
     } else if status.has(StatusBit::Step) {
         "the cycle is step: each start runs a line"
     } else {
         return Ok(());
     };
-    Err(Failure::new(Kind::ConditionNotMet, format!("{why}; nothing was started"))
-        .hint("`yerc cycle once` has a start run the job once"))
+    Err(Failure::new(Kind::ConditionNotMet, format!("{why}; no job was started"))
+        .hint("set `yerc cycle once`, so that each start runs the job once"))
 }
 
-/// Refuses to start another job than the one that was asked about.
+/// Rejects the start if another job is selected than the confirmed one.
 fn check_selected(link: &Link, name: &[u8], before: &Chosen, now: &Chosen) -> Result<(), Failure> {
-    let shown = |chosen: &Chosen| chosen.name(link.encoding).unwrap_or_else(|| "no job that could be read".to_owned());
+    let shown = |chosen: &Chosen| chosen.name(link.encoding).unwrap_or_else(|| "an unknown job".to_owned());
     if !now.is(name) {
         return Err(outdated(format!(
-            "{} is selected now, not {}; nothing was started",
+            "{} is selected now, not {}; no job was started",
             shown(now),
             link.encoding.decode(name)
         )));
     }
     match (before.speed_override(), now.speed_override()) {
         (Some(before), Some(now)) if before != now => {
-            Err(outdated("the speed override changed since the question; nothing was started"))
+            Err(outdated("the speed override has changed since the question; no job was started"))
         }
         _ => Ok(()),
     }
 }
 
-/// Waits for the end of what was started: the time it took and the line it ended at.
+/// Waits for the end of a started job. Returns the duration and the line at the end.
 async fn wait(
     link: &mut Link,
     screen: &Screen,
@@ -202,7 +204,7 @@ async fn wait(
     loop {
         let status = link.ask(&ReadStatus).await.map_err(|failure| lost("the job was started", failure))?;
         let look = watch.look(began.elapsed(), status);
-        // A short job may be over before the first look: then it stands at another line than before.
+        // A short job may end before the first status read; then its line has changed.
         if !watch.seen && matches!(look, Look::Running | Look::NotSeen) && has_gone_on(link, chosen).await? {
             break;
         }
@@ -212,9 +214,9 @@ async fn wait(
             Look::Stopped(trouble) => return Err(trouble.failure(link, "the job was started", None).await),
             Look::NotSeen => return Err(not_seen()),
             Look::Late(limit) => {
-                let message = format!("the job still runs after {}", duration::display(limit));
+                let message = format!("the job is still running after {}", duration::display(limit));
                 return Err(Failure::new(Kind::ConditionNotMet, message)
-                    .hint("it goes on; `yerc status` and `yerc job show` tell how far it is"));
+                    .hint("it continues; see `yerc status` and `yerc job show` for the progress"));
             }
         }
         if let Some(line) = line(link, screen.can_redraw()).await? {
@@ -223,13 +225,13 @@ async fn wait(
         tokio::time::sleep(LOOK_EVERY).await;
     }
     let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
-    // That it has ended is known whatever the controller says of its line.
+    // The end is certain even if the controller refuses to report the line.
     let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
     let at = link.ask(&question).await;
     Ok((elapsed_ms, at.ok().map(|job| job.line)))
 }
 
-/// Whether the job stands at another line than before it was started.
+/// Whether the line has changed since the start.
 async fn has_gone_on(link: &mut Link, chosen: &Chosen) -> Result<bool, Failure> {
     let Chosen::Job(before) = chosen else { return Ok(false) };
     let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
@@ -237,7 +239,7 @@ async fn has_gone_on(link: &mut Link, chosen: &Chosen) -> Result<bool, Failure> 
     Ok(now.is_ok_and(|now| now.name == before.name && now.line != before.line))
 }
 
-/// Job and line for the eye, where there is one; a controller that refuses is not asked to explain here.
+/// Job and line for the progress display, if there is one; a refusal is ignored here.
 async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure> {
     if !is_seen {
         return Ok(None);
@@ -250,31 +252,32 @@ async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure>
 
 fn not_seen() -> Failure {
     let message = format!(
-        "the start was accepted, but no running job was seen within {}: it may have ended at once, or not begun",
+        "the start was accepted, but no running job was reported within {}: it may have ended at once or not started",
         duration::display(START_WITHIN)
     );
-    Failure::new(Kind::ConditionNotMet, message).hint("`yerc job show` tells the line, `yerc status` what holds it")
+    Failure::new(Kind::ConditionNotMet, message)
+        .hint("`yerc job show` shows the line, `yerc status` shows what holds the robot")
 }
 
-/// Watches a job from its start to its end.
+/// Watcher of a job from its start to its end.
 #[derive(Debug)]
 pub(super) struct Watch {
     limit: Option<Duration>,
     seen: bool,
 }
 
-/// What a look at the status says about the job.
+/// State of the job after a status read.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Look {
-    /// Look again.
+    /// Still running.
     Running,
-    /// It has ended.
+    /// Ended.
     Ended,
-    /// Something stopped it.
+    /// Stopped by a cause.
     Stopped(StandstillCause),
-    /// It was not seen running in time.
+    /// Not seen running in time.
     NotSeen,
-    /// It runs for longer than wanted.
+    /// Running longer than the limit.
     Late(Duration),
 }
 
@@ -286,7 +289,7 @@ impl Watch {
     pub(super) fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
         self.seen |= status.running();
         match StandstillCause::of(status) {
-            // An error is a message on the pendant; a job may run on under it.
+            // An error is a message on the pendant; the job may continue.
             Some(StandstillCause::Error) if status.running() => {}
             Some(trouble) => return Look::Stopped(trouble),
             None if self.seen && !status.running() => return Look::Ended,
@@ -303,9 +306,9 @@ impl Watch {
 /// Result of a start.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Started {
-    /// The controller took the order.
+    /// The controller accepted the start.
     accepted: bool,
-    /// The job. Its line is where it ended, 0 being its head, to which END leads.
+    /// The job. Its line is the line at the end; 0 is the first line, where END leads.
     #[serde(flatten)]
     program: Program,
 }

@@ -9,7 +9,7 @@ use crate::controller::Risk;
 use crate::controller::yerc::query::{self, Query as _};
 use crate::failure::Failure;
 
-/// Stops the running job, and all that moves: HOLD on, as `yerc hold on` (FS and DX 3.3.20).
+/// Stops the running job and all motion: HOLD on, as `yerc hold on` (FS and DX 3.3.20).
 #[derive(Debug, Args)]
 pub struct Stop {}
 
@@ -31,7 +31,7 @@ impl Command for Stop {
     }
 }
 
-/// The same, for whatever moves.
+/// Stops all motion, for `yerc stop`.
 #[derive(Debug, Args)]
 pub struct Halt {}
 
@@ -55,7 +55,7 @@ impl Command for Halt {
 
 async fn hold(context: Context<'_, Yerc>) -> Result<Done, Failure> {
     context.link.ask(&query::Hold(true)).await?;
-    let words = "HOLD is on: the job stands; after `yerc hold off` a `yerc job start` goes on where it stands";
-    // A stop waits for nothing, as `hold on` does.
+    let words = "HOLD is on and the job is stopped; to continue it, use `yerc hold off` and `yerc job start`";
+    // A stop must not be delayed by a read, as in `hold on`.
     Ok(New::of("held", true, words).replaces(Old::UNREAD))
 }

@@ -1,4 +1,4 @@
-//! What the command line of a move says, read exactly into the integers of the wire.
+//! Arguments of a move, converted exactly to the integers of the protocol.
 
 use std::fmt;
 
@@ -17,10 +17,10 @@ use crate::controller::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedCl
 use crate::controller::yerc::variables::Reference;
 use crate::failure::Failure;
 
-/// Who moves, and who waits.
+/// Group that moves, and the wait option.
 #[derive(Debug, Args)]
 pub(super) struct Mover {
-    /// The robot or station that moves: R1 …, S1 …
+    /// Robot or station to move: R1 …, S1 …
     #[arg(long, default_value = "R1", value_parser = mover)]
     pub(super) group: Group,
     #[command(flatten)]
@@ -28,7 +28,7 @@ pub(super) struct Mover {
 }
 
 impl Mover {
-    /// The words of the frame: robot number and station number, one of them 0.
+    /// Words of the frame: robot number and station number, one of them 0.
     pub(super) fn words(&self) -> (u32, u32) {
         match self.group {
             Group::Robot(number) => (number.into(), 0),
@@ -40,19 +40,19 @@ impl Mover {
 
 fn mover(text: &str) -> Result<Group, String> {
     match text.parse()? {
-        group @ Group::Base(_) => Err(format!("{group} moves with its robot: name the robot, and give --base-axes")),
+        group @ Group::Base(_) => Err(format!("{group} moves with its robot: select the robot and give --base-axes")),
         group => Ok(group),
     }
 }
 
-/// A whole target in coordinates.
+/// Complete target in coordinates.
 #[derive(Debug, Args)]
 pub(super) struct To {
-    /// The target: x, y, z in mm and rx, ry, rz in degrees; or a position variable, such as P2 or its name
+    /// Target: x, y, z in mm and rx, ry, rz in degrees; or a position variable, such as P2 or its name
     #[arg(long, value_name = "X,Y,Z,RX,RY,RZ|REF", allow_hyphen_values = true, value_parser = typed, add = complete::VARIABLE,
         conflicts_with_all = ["x", "y", "z", "rx", "ry", "rz"])]
     to: Option<Typed>,
-    /// The target in degrees of the axes, by pulses_per_degree of its entry in robots.toml
+    /// Target as axis angles in degrees, with pulses_per_degree of the robot in robots.toml
     #[arg(long, value_name = "S,L,U,R,B,T[,E]", allow_hyphen_values = true, value_parser = axis_degrees,
         conflicts_with_all = ["to", "x", "y", "z", "rx", "ry", "rz"])]
     deg: Option<Destination>,
@@ -61,7 +61,7 @@ pub(super) struct To {
 }
 
 impl To {
-    /// The six coordinates; `None` if there are none, which only a station may do without.
+    /// The six coordinates; `None` if not given, which is valid only for a station.
     pub(super) fn coordinates(&self) -> Option<[i32; 6]> {
         if let Some(Typed::Coordinates(to)) = &self.to {
             return Some(*to);
@@ -70,7 +70,7 @@ impl To {
         Some([x?, y?, z?, rx?, ry?, rz?])
     }
 
-    /// What else it leads to.
+    /// Target other than coordinates.
     pub(super) fn destination(&self) -> Option<Destination> {
         match &self.to {
             Some(Typed::Variable(variable)) => Some(Destination::Variable(*variable)),
@@ -79,19 +79,19 @@ impl To {
     }
 }
 
-/// What `--to` takes.
+/// Values of `--to`.
 #[derive(Debug, Clone, PartialEq)]
 enum Typed {
     Coordinates([i32; 6]),
     Variable(Reference),
 }
 
-/// Where a move leads to, other than to coordinates that were typed.
+/// Target of a move other than typed coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Destination {
-    /// To what a position variable holds.
+    /// Content of a position variable.
     Variable(Reference),
-    /// To degrees of the axes.
+    /// Axis angles in degrees.
     Degrees(Vec<f64>),
 }
 
@@ -117,12 +117,12 @@ fn coordinates_or_variable(text: &str) -> Result<Typed, String> {
     }
     let variable: Reference = text.parse().map_err(|error| format!("{error}"))?;
     if !variable.kind.is_position() {
-        return Err(format!("{variable} holds no position; P and EX do"));
+        return Err(format!("{variable} is not a position variable; use P or EX"));
     }
     Ok(Typed::Variable(variable))
 }
 
-/// Degrees of as many axes as a robot must have named.
+/// Angles in degrees, for as many axes as a robot requires.
 fn axis_degrees(text: &str) -> Result<Destination, String> {
     let degrees: Vec<f64> = text
         .split(',')
@@ -134,13 +134,13 @@ fn axis_degrees(text: &str) -> Result<Destination, String> {
     if ROBOT.contains(&degrees.len()) {
         return Ok(Destination::Degrees(degrees));
     }
-    Err(format!("{} to {} numbers of degrees are wanted, {} given", ROBOT.start(), ROBOT.end(), degrees.len()))
+    Err(format!("expected {} to {} numbers of degrees, {} given", ROBOT.start(), ROBOT.end(), degrees.len()))
 }
 
-/// A distance in coordinates.
+/// Distance in coordinates.
 #[derive(Debug, Args)]
 pub(super) struct By {
-    /// The distance: x, y, z in mm and rx, ry, rz in degrees
+    /// Distance: x, y, z in mm and rx, ry, rz in degrees
     #[arg(long, alias = "to", value_name = "X,Y,Z,RX,RY,RZ", allow_hyphen_values = true, value_parser = coordinates,
         conflicts_with_all = ["x", "y", "z", "rx", "ry", "rz"],
         required_unless_present_any = ["x", "y", "z", "rx", "ry", "rz", "base_axes", "station_axes"])]
@@ -150,13 +150,13 @@ pub(super) struct By {
 }
 
 impl By {
-    /// The six distances; those not given are 0.
+    /// The six distances; missing ones are 0.
     pub(super) fn distances(&self) -> [i32; 6] {
         self.by.unwrap_or_else(|| self.single.values().map(Option::unwrap_or_default))
     }
 }
 
-/// A coordinate each. All of them are required of a target, as a forgotten one must not become 0.
+/// Single coordinates. A target requires all of them, because a missing coordinate must not become 0.
 #[derive(Debug)]
 struct Single<const ALL: bool>([Option<i32>; 6]);
 
@@ -166,7 +166,7 @@ impl<const ALL: bool> Single<ALL> {
     }
 }
 
-/// Id of each coordinate.
+/// Argument id of each coordinate.
 const COORDINATES: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 impl<const ALL: bool> Args for Single<ALL> {
@@ -174,8 +174,8 @@ impl<const ALL: bool> Args for Single<ALL> {
         COORDINATES.iter().enumerate().fold(command, |command, (axis, id)| {
             let arg = clap::Arg::new(*id).long(*id).allow_hyphen_values(true);
             let arg = match axis {
-                0..=2 => arg.value_name("MM").value_parser(millimetres).help("A coordinate in mm"),
-                _ => arg.value_name("DEG").value_parser(degrees).help("An angle in degrees"),
+                0..=2 => arg.value_name("MM").value_parser(millimetres).help("Coordinate in mm"),
+                _ => arg.value_name("DEG").value_parser(degrees).help("Angle in degrees"),
             };
             command.arg(if ALL { arg.required_unless_present_any(["to", "deg", "station_axes"]) } else { arg })
         })
@@ -197,10 +197,10 @@ impl<const ALL: bool> clap::FromArgMatches for Single<ALL> {
     }
 }
 
-/// What the coordinates refer to.
+/// Reference of the coordinates.
 #[derive(Debug, Args)]
 pub(super) struct Frame {
-    /// Coordinates that the numbers are in [default: base]
+    /// Coordinate system of the numbers [default: base]
     #[arg(long, value_enum)]
     pub(super) coordinate: Option<Coordinate>,
     /// Tool number [default: 0]
@@ -218,7 +218,7 @@ pub(super) enum Coordinate {
     Base,
     /// Robot coordinates
     Robot,
-    /// A user coordinate system, by --user
+    /// User coordinates, selected with --user
     User,
     /// Tool coordinates
     Tool,
@@ -236,7 +236,7 @@ impl From<Coordinate> for PositionKind {
 }
 
 impl Frame {
-    /// What the numbers are.
+    /// Type of the position.
     pub(super) fn kind(&self) -> PositionKind {
         self.coordinate.unwrap_or(Coordinate::Base).into()
     }
@@ -249,7 +249,7 @@ impl Frame {
         self.user.unwrap_or(0)
     }
 
-    /// For the question before the motion.
+    /// Text for the confirmation.
     pub(super) fn describe(&self) -> String {
         let name = match self.coordinate.unwrap_or(Coordinate::Base) {
             Coordinate::Base => "base coordinates".to_owned(),
@@ -261,14 +261,14 @@ impl Frame {
     }
 }
 
-/// How the arm reaches the target.
+/// Arm configuration at the target.
 #[derive(Debug, Args)]
 pub(super) struct Forms {
-    /// Form of the arm; of each pair not named, the first: front|back, upper|lower, flip|noflip, r-lt180|r-ge180,
-    /// t-lt180|t-ge180, s-lt180|s-ge180 [default: front,upper,flip]
+    /// Arm form; for each pair that is not given, the first value applies: front|back, upper|lower, flip|noflip,
+    /// r-lt180|r-ge180, t-lt180|t-ge180, s-lt180|s-ge180 [default: front,upper,flip]
     #[arg(long, value_name = "WORD,…", value_parser = form)]
     pub(super) form: Option<Form>,
-    /// More of the form, likewise: l-lt180|l-ge180, then u-, b-, e-, w- [default: l-lt180]
+    /// Extended form, in the same way: l-lt180|l-ge180, then u-, b-, e-, w- [default: l-lt180]
     #[arg(long, value_name = "WORD,…", value_parser = extended_form)]
     pub(super) extended_form: Option<ExtendedForm>,
 }
@@ -282,7 +282,7 @@ impl Forms {
         self.extended_form.unwrap_or_default()
     }
 
-    /// For the question before the motion.
+    /// Text for the confirmation.
     pub(super) fn describe(&self) -> String {
         let extended = extended_words(self.extended_form());
         let plus = if extended.is_empty() { "" } else { "+" };
@@ -290,7 +290,7 @@ impl Forms {
     }
 }
 
-/// Bits that a move defines; the others are reserved (FS and DX 3.3.39).
+/// Number of bits that a move defines; the others are reserved (FS and DX 3.3.39).
 const MOVE_FORM_BITS: usize = 6;
 const MOVE_EXTENDED_FORM_BITS: usize = 5;
 
@@ -302,7 +302,7 @@ fn extended_form(text: &str) -> Result<ExtendedForm, String> {
     bits(text, MOVE_EXTENDED_FORM_BITS, |word| ExtendedForm(word).words().collect()).map(ExtendedForm)
 }
 
-/// Reads words; `words` gives those of a value, bit 0 first.
+/// Parses form words; `words` returns the words of a value, bit 0 first.
 fn bits(text: &str, count: usize, words: impl Fn(u32) -> Vec<&'static str>) -> Result<u32, String> {
     let (clear, set) = (words(0), words(u32::MAX));
     let pairs = clear.iter().zip(&set).take(count);
@@ -312,7 +312,7 @@ fn bits(text: &str, count: usize, words: impl Fn(u32) -> Vec<&'static str>) -> R
             pairs.clone().position(|(clear, set)| word.eq_ignore_ascii_case(clear) || word.eq_ignore_ascii_case(set));
         let Some(bit) = found else {
             let all: Vec<String> = pairs.map(|(clear, set)| format!("{clear}|{set}")).collect();
-            return Err(format!("'{word}' is none of {}", all.join(", ")));
+            return Err(format!("'{word}' is not one of {}", all.join(", ")));
         };
         if given >> bit & 1 == 1 {
             return Err(format!("'{word}': {}|{} is given twice", clear[bit], set[bit]));
@@ -323,7 +323,7 @@ fn bits(text: &str, count: usize, words: impl Fn(u32) -> Vec<&'static str>) -> R
     Ok(value)
 }
 
-/// A speed in the integer and class of the wire.
+/// Speed in the integer and class of the protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Speed {
     pub(super) class: SpeedClass,
@@ -332,7 +332,7 @@ pub(super) struct Speed {
 
 /// 100 % in 0.01 %.
 const FULL_SPEED: u32 = 10_000;
-/// Suffix, class and unit of every way to say a speed.
+/// Suffix, class and unit of each speed notation.
 const SPEEDS: [(&str, SpeedClass, Unit); 3] = [
     ("%", SpeedClass::Percent, units::PERCENT),
     ("mm/s", SpeedClass::Linear, units::MILLIMETRE_PER_SECOND),
@@ -340,30 +340,30 @@ const SPEEDS: [(&str, SpeedClass, Unit); 3] = [
 ];
 
 impl Speed {
-    /// Of a joint move: `10%`.
+    /// Parses the speed of a joint move: `10%`.
     pub(super) fn percent(text: &str) -> Result<Self, String> {
-        // A bare number is percent.
+        // A number without a unit is percent.
         let bare = text.trim_end().ends_with(|last: char| last.is_ascii_digit()).then(|| format!("{text}%"));
         match Self::parse(bare.as_deref().unwrap_or(text))? {
             Self { class: SpeedClass::Percent, word } if word > FULL_SPEED => {
                 Err(format!("'{text}' is more than 100%"))
             }
             speed @ Self { class: SpeedClass::Percent, .. } => Ok(speed),
-            _ => Err("a joint move takes its speed in percent, such as 10%".to_owned()),
+            _ => Err("the speed of a joint move must be in percent, such as 10%".to_owned()),
         }
     }
 
-    /// Of a straight move: `100mm/s` or `20deg/s`.
+    /// Parses the speed of a linear move: `100mm/s` or `20deg/s`.
     pub(super) fn path(text: &str) -> Result<Self, String> {
         match Self::parse(text)? {
             Self { class: SpeedClass::Percent, .. } => {
-                Err("a straight move takes its speed in mm/s or deg/s, such as 100mm/s".to_owned())
+                Err("the speed of a linear move must be in mm/s or deg/s, such as 100mm/s".to_owned())
             }
             speed => Ok(speed),
         }
     }
 
-    /// As reports have it.
+    /// Speed for reports.
     pub(super) fn reported(self) -> motion::Speed {
         let (unit, by) = SPEEDS
             .iter()
@@ -374,7 +374,7 @@ impl Speed {
 
     fn parse(text: &str) -> Result<Self, String> {
         let found = SPEEDS.iter().find_map(|(suffix, class, unit)| Some((text.strip_suffix(suffix)?, *class, *unit)));
-        let (number, class, unit) = found.ok_or("a speed has its unit: 10%, 100mm/s or 20deg/s")?;
+        let (number, class, unit) = found.ok_or("a speed needs a unit: 10%, 100mm/s or 20deg/s")?;
         let word = unit.parse(number.trim_end()).map_err(|error| error.to_string())?;
         match u32::try_from(word) {
             Ok(word @ 1..) => Ok(Self { class, word }),
@@ -390,12 +390,12 @@ impl fmt::Display for Speed {
     }
 }
 
-/// Values of axes, as many as were given.
+/// Values of axes.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Values(pub(super) Vec<i32>);
 
 impl Values {
-    /// The values in a field of `N` words; those not given are 0.
+    /// Values in a field of `N` words; missing values are 0.
     pub(super) fn padded<const N: usize>(&self) -> [i32; N] {
         let mut words = [0; N];
         for (word, value) in words.iter_mut().zip(&self.0) {
@@ -405,11 +405,11 @@ impl Values {
     }
 }
 
-/// Axes of a base; as many as a move has words for.
+/// Maximum number of base axes in a move.
 const MAX_BASE: usize = 3;
-/// Axes of a station; likewise.
+/// Maximum number of station axes in a move.
 const MAX_STATION: usize = 6;
-/// Axes of a robot that must be named, and that can be.
+/// Number of robot axes that are required, and allowed.
 const ROBOT: std::ops::RangeInclusive<usize> = 6..=8;
 
 /// Base axes of a cartesian move, in mm.
@@ -438,12 +438,12 @@ fn list(text: &str, unit: Unit, count: std::ops::RangeInclusive<usize>) -> Resul
     if count.contains(&values.len()) {
         return Ok(Values(values));
     }
-    Err(format!("{} to {} numbers of {} are wanted, {} given", count.start(), count.end(), unit.symbol, values.len()))
+    Err(format!("expected {} to {} numbers of {}, {} given", count.start(), count.end(), unit.symbol, values.len()))
 }
 
 fn coordinates(text: &str) -> Result<[i32; 6], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-    let wrong = || format!("x,y,z,rx,ry,rz are wanted, six numbers; {} given", parts.len());
+    let wrong = || format!("expected six numbers x,y,z,rx,ry,rz; {} given", parts.len());
     let parts: [&str; 6] = parts.as_slice().try_into().map_err(|_| wrong())?;
     let mut values = [0; 6];
     for (axis, (value, part)) in values.iter_mut().zip(parts).enumerate() {
@@ -461,7 +461,8 @@ fn degrees(text: &str) -> Result<i32, String> {
     units::DEGREE.parse(text).map_err(|error| error.to_string())
 }
 
-/// What of the target a group moves by: robots by `robot` values and their base, stations by their own axes alone.
+/// Part of the target that applies to a group: for a robot the `robot` values and its base, for a station only its
+/// own axes.
 pub(super) fn split<'a, T>(
     group: Group,
     robot: Option<T>,
@@ -473,28 +474,28 @@ pub(super) fn split<'a, T>(
         Err(Failure::usage(message).hint("a robot and a station cannot move in one command (FS and DX 3.3.39)"))
     };
     match (group, robot, station) {
-        (Group::Station(_), Some(_), _) => {
-            wrong(format!("{group} is a station: it moves by --station-axes, not {flag}"))
-        }
-        (Group::Station(_), None, _) if base.is_some() => wrong(format!("{group} is a station: it has no --base-axes")),
+        (Group::Station(_), Some(_), _) => wrong(format!("{group} is a station: use --station-axes, not {flag}")),
+        (Group::Station(_), None, _) if base.is_some() => wrong(format!("{group} is a station and has no --base-axes")),
         (Group::Station(_), None, Some(station)) => Ok(Part::Station(station)),
-        (Group::Station(_), None, None) => wrong(format!("the target of {group} is missing: --station-axes")),
-        (_, Some(_), Some(_)) => wrong(format!("{group} is a robot: --station-axes move stations, such as --group S1")),
-        (_, None, _) => wrong(format!("the target of {group} is missing: {flag}")),
+        (Group::Station(_), None, None) => wrong(format!("the target of {group} is missing: add --station-axes")),
+        (_, Some(_), Some(_)) => {
+            wrong(format!("{group} is a robot: --station-axes needs a station, such as --group S1"))
+        }
+        (_, None, _) => wrong(format!("the target of {group} is missing: add {flag}")),
         (_, Some(robot), None) => Ok(Part::Robot(robot, base)),
     }
 }
 
-/// The target of one group.
+/// Target of one group.
 #[derive(Debug)]
 pub(super) enum Part<'a, T> {
-    /// Of a robot, and of its base where given.
+    /// Target of a robot, and of its base if given.
     Robot(T, Option<&'a Values>),
-    /// Of a station.
+    /// Target of a station.
     Station(&'a Values),
 }
 
-/// The target for the question before the motion.
+/// Text of the target for the confirmation.
 pub(super) fn describe(
     kind: PositionKind,
     robot: Option<&[i32]>,
@@ -506,7 +507,7 @@ pub(super) fn describe(
     [robot, base.map(|base| format!("base {base}")), station].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// Base axes for the question before the motion.
+/// Text of the base axes for the confirmation.
 pub(super) fn base_told(base: Option<&Values>, unit: Unit) -> Option<String> {
     let values: Vec<String> = base?.0.iter().map(|value| unit.show(*value).to_string()).collect();
     Some(format!("{} {}", values.join(" "), unit.symbol))

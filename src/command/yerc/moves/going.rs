@@ -1,4 +1,4 @@
-//! A motion from the order to its end: what is asked before, and what is watched after.
+//! A motion from the confirmation to its end: reads before the start, and supervision after it.
 
 use std::time::Duration;
 
@@ -28,28 +28,29 @@ use crate::settings::duration;
 /// A motion that has been checked.
 #[derive(Debug)]
 pub(super) struct Going<Q> {
-    /// The order.
+    /// Request.
     pub(super) order: Q,
-    /// Who moves.
+    /// Group that moves.
     pub(super) group: Group,
-    /// Where to, as far as a position that is read can be compared with it.
+    /// Target, as far as a position can be compared with it.
     pub(super) goal: Goal,
-    /// Groups whose axes the order moves to 0 beyond those that were named: group, axes named, flag to name them with.
+    /// Groups with axes that the request would move to 0 because they were not named: group, named axes, option to
+    /// name them.
     pub(super) unnamed: Vec<(Group, usize, &'static str)>,
-    /// Return on acceptance.
+    /// Whether to return after acceptance.
     pub(super) no_wait: bool,
 }
 
-/// Where a motion leads.
+/// Target of a motion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Goal {
-    /// To pulses.
+    /// Pulses.
     Pulses(Vec<i32>),
-    /// To base coordinates with this tool.
+    /// Base coordinates with this tool.
     Base([i32; 6], u32),
-    /// By a distance along base coordinates, without turning, with this tool.
+    /// Distance along base coordinates without rotation, with this tool.
     Shift([i32; 3], u32),
-    /// To something that a position, read in these coordinates, does not tell.
+    /// A target that cannot be compared with a position in these coordinates.
     Unknown(Coordinates),
 }
 
@@ -62,7 +63,7 @@ impl Goal {
         }
     }
 
-    /// With the start known, a distance is a target.
+    /// Converts a distance to a target with the start position.
     fn from(self, start: &Position) -> Self {
         let Self::Shift(by, tool) = self else { return self };
         let mut target = [0; 6];
@@ -76,7 +77,7 @@ impl Goal {
         Self::Base(target, tool)
     }
 
-    /// The target as a position, where it is one that can be compared.
+    /// Target position, if it can be compared.
     fn position(&self) -> Option<Position> {
         let (kind, axes, tool) = match self {
             Self::Pulses(axes) => (PositionKind::Pulse, &axes[..], 0),
@@ -87,12 +88,12 @@ impl Goal {
         Some(Position { kind, form, tool, user: 0, extended, axes: Axes::new(axes)? })
     }
 
-    /// Whether this position is the target; `None` if that cannot be told.
+    /// Whether this position is the target; `None` if unknown.
     fn is_reached(&self, here: &Position) -> Option<bool> {
         let axes = here.axes.as_slice();
         match self {
             Self::Pulses(target) => Some(target.iter().zip(axes).all(|(t, h)| is_near(units::PULSE, *t, *h))),
-            // Coordinates of another tool are other coordinates.
+            // Coordinates of another tool cannot be compared.
             Self::Base(target, tool) if here.tool == *tool && axes.len() >= target.len() => {
                 let unit = |axis| PositionKind::Base.unit(axis);
                 let mut near = target.iter().zip(axes).enumerate().map(|(axis, (t, h))| is_near(unit(axis), *t, *h));
@@ -100,7 +101,7 @@ impl Goal {
                 match (place, turn) {
                     (false, _) => Some(false),
                     (true, true) => Some(true),
-                    // Different angles can name the same orientation.
+                    // Different angles can describe the same orientation.
                     (true, false) => None,
                 }
             }
@@ -109,13 +110,13 @@ impl Goal {
     }
 }
 
-/// How far a robot that has arrived may be from its target: 0.1 mm, 0.1 degree, 100 pulses (less than 0.1 degree on the
-/// usual axes). Coarser than any robot stands, finer than any motion worth a command.
+/// Tolerance of the target position: 0.1 mm, 0.1 degree, 100 pulses (less than 0.1 degree on usual axes). It is
+/// larger than the accuracy of a robot and smaller than a useful motion.
 fn is_near(unit: Unit, target: i32, here: i32) -> bool {
     within(unit, target, here, 100, 1000)
 }
 
-/// How far a standing robot's readings may differ: 0.02 mm, 0.02 degree, 20 pulses.
+/// Tolerance between readings of a robot at rest: 0.02 mm, 0.02 degree, 20 pulses.
 fn is_same(unit: Unit, one: i32, other: i32) -> bool {
     within(unit, one, other, 20, 200)
 }
@@ -124,7 +125,7 @@ fn within(unit: Unit, one: i32, other: i32, others: i64, degrees: i64) -> bool {
     const TURN: i64 = 3_600_000;
     let difference = (i64::from(one) - i64::from(other)).abs();
     if unit == units::DEGREE {
-        // 180 and -180 degrees are the same.
+        // 180 and -180 degrees are equal.
         let difference = difference % TURN;
         return difference.min(TURN - difference) <= degrees;
     }
@@ -132,7 +133,7 @@ fn within(unit: Unit, one: i32, other: i32, others: i64, degrees: i64) -> bool {
 }
 
 impl<Q: Query<Answer = ()>> Going<Q> {
-    /// Has the motion confirmed, orders it and, unless told otherwise, waits for its end.
+    /// Confirms the motion, starts it and, unless `--no-wait` is set, waits for its end.
     pub(super) async fn run(
         self,
         context: Context<'_, Yerc>,
@@ -146,12 +147,12 @@ impl<Q: Query<Answer = ()>> Going<Q> {
             refuse_silent_zeros(link, group, named, flag).await?;
         }
         if link.known_model() == Some(Model::Dx100) {
-            screen.note("warning: the layout of moves is unproven for a dx100; it is that of a DX200");
+            screen.note("warning: moves are not tested on a dx100; armctl uses the layout of a DX200");
         }
         let is_asked = authority.asks();
         if (is_asked || !no_wait)
             && let Some((position, _)) =
-                position::ask(link.is_for("where it stands"), group, coordinates).await.known()?
+                position::ask(link.is_for("current position"), group, coordinates).await.known()?
         {
             goal = goal.from(&position);
             start = Some(position);
@@ -164,7 +165,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
             }
         }
         let start = start.filter(|_| !no_wait);
-        link.is_for("orders the motion").ask(&order).await?;
+        link.is_for("starts the motion").ask(&order).await?;
         if link.is_dry() && !no_wait {
             plan_looks(link, group, coordinates).await?;
         }
@@ -195,9 +196,9 @@ impl<Q: Query<Answer = ()>> Going<Q> {
                 Look::Ended if at_target == Some(false) => {
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
-                        format!("{done}, but it ended short of its target; it stands at {place}"),
+                        format!("{done}, but it ended before its target; position: {place}"),
                     )
-                    .hint("somebody or something stopped it without an alarm: look at the pendant before going on"));
+                    .hint("it was stopped without an alarm: check the pendant before you continue"));
                 }
                 Look::Ended => {
                     let motion = &mut moved.motion;
@@ -213,9 +214,9 @@ impl<Q: Query<Answer = ()>> Going<Q> {
                     let within = duration::display(START_WITHIN);
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
-                        format!("{done}, but it has not begun within {within}; it stands at {place}"),
+                        format!("{done}, but it has not started within {within}; position: {place}"),
                     )
-                    .hint("it may still begin: keep clear, and look at `yerc status` and the pendant"));
+                    .hint("it may still start: keep clear, and check `yerc status` and the pendant"));
                 }
             }
             tokio::time::sleep(LOOK_EVERY).await;
@@ -223,19 +224,19 @@ impl<Q: Query<Answer = ()>> Going<Q> {
     }
 }
 
-/// Notes in a dry run what is asked while the robot moves.
+/// Notes in a dry run the requests during the motion.
 pub(super) async fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
-    let about = "again and again until the motion has ended";
+    let about = "repeatedly until the motion has ended";
     link.plan(&ReadStatus.request(), about);
     let question = link.by_model(|model| ReadPosition::new(model, group, coordinates)).await?;
     link.plan(&question.request(), about);
     plan_alarm(link)
 }
 
-/// Looks that a robot gets to come to rest, two seconds.
+/// Maximum number of reads until a robot is at rest: two seconds.
 const LOOKS_TO_REST: u32 = 40;
 
-/// Where a robot that is being stopped comes to rest, in words; where it was seen last if it cannot be asked.
+/// Position of a robot after a stop, as text; the last known position if it cannot be read.
 async fn resting_place(
     link: &mut Link,
     group: Group,
@@ -256,14 +257,14 @@ async fn resting_place(
     place
 }
 
-/// A move has words for every axis, and 0 in those that the operator did not name would move them there. That is
-/// only right for axes that are not fitted, or stand at 0.
+/// A move has words for every axis, and a 0 for an axis that was not named would move it there. That is correct only
+/// if the axis is not fitted, or is at 0.
 async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: &str) -> Result<(), Failure> {
     if named >= words(group) {
         return Ok(());
     }
     let question = link.by_model(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
-    let Some(answer) = link.is_for("where axes stand that were not named").try_ask(&question).await.known()? else {
+    let Some(answer) = link.is_for("current position of the unnamed axes").try_ask(&question).await.known()? else {
         link.plan_fit(group, Coordinates::Pulse);
         return Ok(());
     };
@@ -272,22 +273,22 @@ async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: 
             let (axes, _) = link.fit(group, Coordinates::Pulse, position.axes).await;
             silent_zero(group, &Position { axes, ..position }, named, flag).map_or(Ok(()), Err)
         }
-        // A group that the controller does not have cannot move.
+        // A group that does not exist cannot move.
         Err(Refusal { status, .. }) if is_absent(status) => Ok(()),
-        // Any other reason leaves open where the axes stand.
+        // After any other refusal, the position of the axes is unknown.
         Err(refusal) => {
             let failure = Failure::from(refusal);
-            let message =
-                format!("the axes of {group} that {flag} does not name could not be read: {}", failure.message);
+            let message = format!("the axes of {group} that are not in {flag} could not be read: {}", failure.message);
             Err(Failure { message, ..failure }.hint(format!(
-                "nothing was sent, as they might move to 0; repeat it, or name {} axes with {flag}, 0 where none is fitted",
+                "nothing was sent, because they might move to 0; repeat the command, or give {} axes with {flag}, 0 \
+                 for axes that are not fitted",
                 words(group)
             )))
         }
     }
 }
 
-/// Axes of a group that a move has words for (FS and DX 3.3.39, 3.3.40).
+/// Number of axes of a group in a move (FS and DX 3.3.39, 3.3.40).
 const fn words(group: Group) -> usize {
     match group {
         Group::Robot(_) => 8,
@@ -298,12 +299,11 @@ const fn words(group: Group) -> usize {
 
 fn silent_zero(group: Group, position: &Position, named: usize, flag: &str) -> Option<Failure> {
     let (axis, value) = position.axes.as_slice().iter().enumerate().skip(named).find(|(_, value)| **value != 0)?;
-    let message =
-        format!("axis {} of {group} stands at {value} pulses and has no target: it would move to 0", axis + 1);
-    Some(Failure::usage(message).hint(format!("nothing was sent; name every axis of {group} with {flag}")))
+    let message = format!("axis {} of {group} is at {value} pulses and has no target, so it would move to 0", axis + 1);
+    Some(Failure::usage(message).hint(format!("nothing was sent; give every axis of {group} with {flag}")))
 }
 
-/// Watches a motion from its acceptance to its end.
+/// Watcher of a motion from its acceptance to its end.
 #[derive(Debug)]
 struct Watch {
     start: Position,
@@ -312,16 +312,16 @@ struct Watch {
     seen: bool,
 }
 
-/// What a look at status and position says about the motion.
+/// State of the motion after a read of status and position.
 #[derive(Debug, PartialEq, Eq)]
 enum Look {
-    /// Look again.
+    /// Still moving.
     Moving,
-    /// It has ended.
+    /// Ended.
     Ended,
-    /// Something stopped it.
+    /// Stopped by a cause.
     Stopped(StandstillCause),
-    /// Nothing moved in time.
+    /// No motion started in time.
     NotBegun,
 }
 
@@ -330,9 +330,9 @@ impl Watch {
         Self { start, last: start, looked: false, seen: false }
     }
 
-    /// The position was read after the status: once the status says that nothing runs, it is the last one. The running
-    /// bit may come a moment after the acceptance, so standing still counts from the second look on, and only once the
-    /// motion was seen or its target is where the robot stands.
+    /// The position is read after the status: if the status shows that nothing is running, the position is final. The
+    /// running bit may be set shortly after the acceptance. So a standstill counts from the second read, and only if
+    /// the motion was seen or the robot is at its target.
     fn look(&mut self, elapsed: Duration, status: ControllerStatus, here: Position, at_target: Option<bool>) -> Look {
         self.seen |= status.running() || !stands(&self.start, &here);
         let is_still = !status.running() && self.looked && stands(&self.last, &here);
@@ -349,7 +349,7 @@ impl Watch {
     }
 }
 
-/// Whether both are readings of a group that stands still.
+/// Whether both readings are those of a group at rest.
 pub(in crate::command::yerc) fn stands(one: &Position, other: &Position) -> bool {
     let axes = one.axes.as_slice().iter().zip(other.axes.as_slice()).enumerate();
     axes.into_iter().all(|(axis, (a, b))| is_same(one.kind.unit(axis), *a, *b))
@@ -360,12 +360,12 @@ pub(in crate::command::yerc) fn stands(one: &Position, other: &Position) -> bool
 pub struct MotionReport {
     #[serde(flatten)]
     motion: Motion,
-    /// The variable whose position is the target; null where it was typed.
+    /// Variable that contains the target; null if the target was typed.
     variable: Option<String>,
 }
 
 impl MotionReport {
-    /// With the position that was read of a variable, or computed of degrees.
+    /// Adds the target position from a variable or from degrees.
     pub(super) fn leads_to(&mut self, name: Option<String>, target: robot::Position) {
         (self.variable, self.motion.to) = (name, Some(target));
     }
@@ -484,7 +484,7 @@ mod tests {
         assert!(silent_zero(Group::Base(1), &base(&[0, 0]), 0, "--base-axes").is_none());
         assert!(silent_zero(Group::Base(1), &base(&[5, 0]), 1, "--base-axes").is_none());
         let failure = silent_zero(Group::Base(1), &base(&[5, 7]), 1, "--base-axes").unwrap();
-        assert!(failure.message.starts_with("axis 2 of B1 stands at 7 pulses"), "{failure}");
+        assert!(failure.message.starts_with("axis 2 of B1 is at 7 pulses"), "{failure}");
         assert_eq!(failure.kind, Kind::Usage);
     }
 }

@@ -1,4 +1,4 @@
-//! What is asked before a motion: each axis with its value and unit, from where it stands as far as that can be compared.
+//! Confirmation of a motion: each axis with target and unit, and its current value if that can be compared.
 
 use std::borrow::Cow;
 
@@ -11,28 +11,28 @@ use crate::controller::yerc::payload::{Position, PositionKind, SpeedClass};
 use crate::failure::Failure;
 use crate::gate::{Change, outdated};
 
-/// A motion in words.
+/// Text parts of a motion.
 #[derive(Debug)]
 pub(super) struct Question<'a> {
     /// `move R1 in a straight line`.
     pub(super) what: String,
-    /// `to`, or `by` where they are distances.
+    /// `to`, or `by` for distances.
     pub(super) preposition: &'static str,
-    /// What the numbers are.
+    /// Type of the numbers.
     pub(super) kind: PositionKind,
-    /// Those of a robot.
+    /// Values of a robot.
     pub(super) robot: Option<Vec<i32>>,
-    /// Those of its base, and their unit.
+    /// Values of its base, and their unit.
     pub(super) base: (Option<&'a Values>, Unit),
-    /// Those of a station.
+    /// Values of a station.
     pub(super) station: Option<Cow<'a, Values>>,
-    /// `in base coordinates, tool 0`; nothing where there is nothing to say.
+    /// `in base coordinates, tool 0`; may be empty.
     pub(super) how: String,
     pub(super) speed: Speed,
 }
 
 impl Question<'_> {
-    /// In a line: where nothing of the robot was read.
+    /// One-line text, if nothing was read from the robot.
     pub(super) fn in_a_line(&self) -> String {
         let base = base_told(self.base.0, self.base.1);
         let place = describe(self.kind, self.robot.as_deref(), base, self.station.as_deref());
@@ -41,8 +41,8 @@ impl Question<'_> {
         format!("{}{place}{how} at {}", self.what, self.speed)
     }
 
-    /// An axis a line; with its present value where `start` can be compared with the goal.
-    /// `per_degree` are the pulses of a degree of each axis, as far as they are known.
+    /// One line per axis, with its current value if `start` can be compared with the goal. `per_degree` has the
+    /// pulses per degree of each axis, as far as they are known.
     pub(super) fn change(&self, group: Group, start: Option<&Position>, goal: &Goal, per_degree: &[f64]) -> Change {
         let mut change = Change::new(format!("{} at {}", self.what, self.speed));
         match (goal, start) {
@@ -77,7 +77,7 @@ impl Question<'_> {
         }
     }
 
-    /// How long it takes at least, where the speed is one along the way.
+    /// Minimum duration, for a speed along the path.
     fn time(&self, way_mm: f64) -> String {
         if self.speed.class != SpeedClass::Linear {
             return String::new();
@@ -103,28 +103,28 @@ pub(in crate::command::yerc) fn compared(
     })
 }
 
-/// Which axis turns the most, where that is known in degrees.
+/// Axis with the largest rotation, if degrees are known.
 fn farthest(group: Group, start: &Position, target: &[i32], per_degree: &[f64]) -> Option<String> {
     let ways = axis_names(start.kind, group).into_iter().zip(per_degree).enumerate();
     let ways = ways.map(|(at, (name, per))| (name, (apart(start, target, at) / per).abs()));
     let (name, degrees) = ways.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
-    Some(format!("The longest way is that of {name}: {degrees:.3} deg."))
+    Some(format!("Largest rotation: {name}, {degrees:.3} deg."))
 }
 
-/// A value with its unit.
+/// Value with its unit.
 fn shown(kind: PositionKind, axis: usize, value: i32) -> String {
     let unit = kind.unit(axis);
     let symbol = if unit == units::PULSE { "pulses" } else { unit.symbol };
     format!("{} {symbol}", unit.show(value))
 }
 
-/// How far an axis goes, in steps.
+/// Distance of an axis in steps.
 fn apart(start: &Position, target: &[i32], axis: usize) -> f64 {
     let of = |axes: &[i32]| axes.get(axis).copied().map_or(0.0, f64::from);
     of(target) - of(start.axes.as_slice())
 }
 
-/// Where the robot stands is not where it stood when that was asked.
+/// Failure: the robot has moved since the question.
 pub(in crate::command::yerc) fn moved_meanwhile(group: Group, now: &Position) -> Failure {
     let place = in_a_line(now.kind, now.axes.as_slice(), matches!(group, Group::Robot(_)));
     outdated(format!("{group} has moved since the question, to {place}; nothing was sent"))

@@ -1,4 +1,4 @@
-//! Moves to what a position variable holds (`--to P2`), and to degrees of the axes (`--deg`).
+//! Moves to the content of a position variable (`--to P2`), and to axis angles in degrees (`--deg`).
 
 use super::arguments::{Destination, Speed, Values};
 use super::going::{Goal, Going, MotionReport, plan_looks};
@@ -23,7 +23,7 @@ use crate::controller::yerc::query::{
 use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 use crate::failure::{Failure, Kind};
 
-/// What a move to a variable or to degrees is about.
+/// A move to a variable or to degrees.
 pub(super) struct Motion<'a> {
     pub(super) target: &'a Target,
     pub(super) kind: MoveKind,
@@ -31,7 +31,7 @@ pub(super) struct Motion<'a> {
 }
 
 impl Motion<'_> {
-    /// Reads what it leads to, has it confirmed and moves.
+    /// Reads the target, confirms the motion and starts it.
     pub(super) async fn run(
         &self,
         context: Context<'_, Yerc>,
@@ -130,12 +130,12 @@ impl Motion<'_> {
             Value::External(external) if external.kind == PositionKind::Pulse => {
                 let [first @ .., seventh, eighth] = external.axes.padded();
                 if (seventh, eighth) != (0, 0) {
-                    return Err(not_a_target(name, "it has more axes than a move of a station has words for"));
+                    return Err(not_a_target(name, "it has more axes than a move of a station supports"));
                 }
                 order.station_axes = first;
                 (external.axes, Vec::new())
             }
-            _ => return Err(not_a_target(name, "it is neither pulses nor coordinates that the manual defines")),
+            _ => return Err(not_a_target(name, "its type is neither pulses nor coordinates of the manual")),
         };
         let order = link.by_model(|model| MovePulse::new(model, self.kind, order)).await?;
         let goal = Goal::Pulses(axes.as_slice().to_vec());
@@ -151,20 +151,20 @@ impl Motion<'_> {
         let group = self.target.mover.group;
         let [x, y, z, rx, ry, rz, re, eighth] = position.axes.padded();
         if (re, eighth) != (0, 0) {
-            return Err(not_a_target(name, "a move to coordinates has no word for the seventh axis that it names")
-                .hint("teach it in pulses, which a move takes whole"));
+            return Err(not_a_target(name, "a move to coordinates does not support its seventh axis")
+                .hint("teach it in pulses, which support all axes"));
         }
         let target = [x, y, z, rx, ry, rz];
         let mut order = plain(link, &self.target.mover, self.speed, &self.target.frame);
         order.coordinate = position.kind;
         (order.target, order.form, order.extended) = (target, position.form, position.extended);
-        // The user coordinate number is of use with user coordinates alone; a move elsewhere takes 0.
+        // The user coordinate number applies only to user coordinates; other moves need 0.
         (order.tool, order.user) = (position.tool, if position.kind == PositionKind::User { position.user } else { 0 });
         let model = link.model_for(|model| MoveCartesian::new(model, self.kind, order)).await?;
         let order = MoveCartesian::new(model, self.kind, order).map_err(|error| {
             let why = error.to_string();
-            not_a_target(name, &format!("a move cannot say it: {why}"))
-                .hint("teach it in pulses, which a move takes whole")
+            not_a_target(name, &format!("a move does not support it: {why}"))
+                .hint("teach it in pulses, which support all axes")
         })?;
         let goal = match position.kind {
             PositionKind::Base => Goal::Base(target, position.tool),
@@ -173,21 +173,22 @@ impl Motion<'_> {
         Ok(Going { order, group, goal, unnamed: unnamed_base(group, None), no_wait: self.target.mover.end.no_wait() })
     }
 
-    /// Degrees in pulses, by what the inventory says of the robot.
+    /// Converts degrees to pulses, with the values of the inventory.
     fn turned(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
         let group = self.target.mover.group;
         let per_degree = link.pulses_per_degree(group);
         if per_degree.len() < degrees.len() {
             let known = per_degree.len();
             let message =
-                format!("pulses_per_degree is known of {known} axes of {group}, and --deg names {}", degrees.len());
+                format!("pulses_per_degree is known for {known} axes of {group}, but --deg has {}", degrees.len());
             return Err(Failure::usage(message).hint(
-                "its entry in robots.toml says it of R1: pulses_per_degree = [S, L, U, R, B, T]; the pendant shows both",
+                "set pulses_per_degree = [S, L, U, R, B, T] for R1 in robots.toml; the pendant shows pulses and \
+                 degrees",
             ));
         }
         let pulses = degrees.iter().zip(per_degree).map(|(degrees, per_degree)| whole(degrees * per_degree));
         let too_far =
-            || Failure::usage("--deg: this is more pulses than an axis has").hint("look at pulses_per_degree");
+            || Failure::usage("--deg: the number of pulses is too large for an axis").hint("check pulses_per_degree");
         let pulses: Vec<i32> = pulses.collect::<Option<_>>().ok_or_else(too_far)?;
         let mut words = [0; MAX_AXES];
         words.iter_mut().zip(&pulses).for_each(|(word, pulses)| *word = *pulses);
@@ -201,20 +202,20 @@ impl Motion<'_> {
         })
     }
 
-    /// Notes in a dry run what follows: nobody knows which of the two moves it is.
+    /// Notes in a dry run what follows; the kind of move is unknown.
     async fn plan(&self, link: &mut Link, variable: Reference) -> Result<Failure, Failure> {
         let group = self.target.mover.group;
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         if let Group::Robot(number) = group {
             let base = ReadPosition::new(model, Group::Base(number), Coordinates::Pulse).map_err(usage)?;
-            link.plan(&base.request(), "where axes stand that were not named");
+            link.plan(&base.request(), "current position of the unnamed axes");
         }
-        let reason = Reason::about("where it stands").depending_on("whether the variable holds pulses");
+        let reason = Reason::about("current position").depending_on("whether the variable contains pulses");
         let pulse = ReadPosition::new(model, group, Coordinates::Pulse).map_err(usage)?;
         let base = ReadPosition::new(model, group, Coordinates::Base).unwrap_or(pulse);
         link.plan_depending(&pulse.request(), &base.request(), reason);
         link.plan_fit(group, Coordinates::Pulse);
-        let holds = format!("orders the motion, if {variable} holds");
+        let holds = format!("starts the motion, if {variable} contains");
         let [one, other] = unlike();
         let (robot, station) = self.target.mover.words();
         let pulses = |word: i32| PulseMove {
@@ -230,7 +231,7 @@ impl Motion<'_> {
         let order = |word| MovePulse::new(model, self.kind, pulses(word)).map_err(usage);
         let (first, second) = (order(0)?, order(-1)?);
         let about = format!("{holds} pulses");
-        link.plan_depending(&first.request(), &second.request(), Reason::about(&about).depending_on("what it holds"));
+        link.plan_depending(&first.request(), &second.request(), Reason::about(&about).depending_on("its content"));
         if robot != 0 {
             let coordinates = |position: Position, kind, flag: u32| {
                 let mut order = plain(link, &self.target.mover, self.speed, &self.target.frame);
@@ -242,7 +243,7 @@ impl Motion<'_> {
             let first = coordinates(one, PositionKind::Base, 0)?;
             let second = coordinates(other, PositionKind::User, 1)?;
             let about = format!("{holds} coordinates");
-            let reason = Reason::about(&about).depending_on("what it holds");
+            let reason = Reason::about(&about).depending_on("its content");
             link.plan_depending(&first.request(), &second.request(), reason);
         }
         if !self.target.mover.end.no_wait() {
@@ -252,21 +253,21 @@ impl Motion<'_> {
     }
 }
 
-/// What a variable holds, which must be something.
+/// Content of a variable, which must be defined.
 async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
     let question = ReadVariable::new(variable.kind, variable.number);
-    match link.is_for("where it leads to").try_ask(&question).await? {
+    match link.is_for("target position").try_ask(&question).await? {
         Ok(value) => Ok(value),
         Err(refusal) if is_undefined(&Denied::Refused(refusal)) => {
-            let message = format!("{variable} was never taught: it leads nowhere; nothing was sent that moves");
+            let message = format!("{variable} was never taught; no motion command was sent");
             Err(Failure { message, ..Failure::from(refusal) }
-                .hint(format!("`yerc teach {variable}` stores where the robot stands")))
+                .hint(format!("`yerc teach {variable}` stores the current position")))
         }
         Err(refusal) => Err(refusal.into()),
     }
 }
 
-/// Refuses a variable of other groups.
+/// Rejects a variable of another group.
 fn suits(variable: Reference, group: Group) -> Result<(), Failure> {
     let is_right = match group {
         Group::Robot(_) => variable.kind == VariableKind::P,
@@ -276,21 +277,22 @@ fn suits(variable: Reference, group: Group) -> Result<(), Failure> {
     if is_right {
         return Ok(());
     }
-    let message = format!("{variable} holds no position that {group} can move to");
-    Err(Failure::usage(message).hint("a robot moves to P, a station to EX (--group S1); a base moves with its robot"))
+    let message = format!("{variable} is not a position for {group}");
+    Err(Failure::usage(message)
+        .hint("use P for a robot and EX for a station (--group S1); a base moves with its robot"))
 }
 
 fn not_a_target(name: Option<Reference>, why: &str) -> Failure {
     let name = name.map_or_else(|| "this".to_owned(), |name| name.to_string());
-    Failure::new(Kind::Usage, format!("{name} is no target: {why}; nothing was sent that moves"))
+    Failure::new(Kind::Usage, format!("{name} is not a valid target: {why}; no motion command was sent"))
 }
 
-/// What coordinates are called.
+/// Name of a coordinate system.
 fn word(kind: PositionKind) -> &'static str {
     PositionKind::ALL.iter().find(|row| row.0 == kind).map_or("other", |row| row.2)
 }
 
-/// The nearest whole number of pulses.
+/// Nearest whole number of pulses.
 fn whole(pulses: f64) -> Option<i32> {
     let text = format!("{pulses:.0}");
     text.parse().ok()

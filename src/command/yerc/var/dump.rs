@@ -22,29 +22,28 @@ use crate::failure::Failure;
 use crate::output::escape;
 use crate::output::view::View;
 
-/// What the files begin with, so that another file is not taken for one.
+/// Format name at the start of the files, to recognise them.
 pub const FORMAT: &str = "armctl-variables";
-/// The layout of the files.
+/// Version of the file layout.
 pub const VERSION: u64 = 1;
 
-/// What to save and where.
+/// Saves variables.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A dump is whole or is not written: if the controller refuses a variable for another reason than \
-                        that it is undefined, the dump fails and names it. Undefined positions stand in the file as \
-                        null. `var restore` writes a dump back.\n\nA name that ends in .csv makes a table for a \
-                        spreadsheet. With --update, one that is there keeps its comments (columns whose names begin with \
-                        comment), its order and the variables that are not read. A string without characters is \"\", as an empty cell \
-                        says nothing."
+    after_help = "Only a complete dump is written. If the controller refuses a variable for any reason other than an \
+                  undefined value, the dump fails and shows it. Undefined positions are null in the file. `var \
+                  restore` writes a dump back.\n\nA name that ends in .csv creates a table for a spreadsheet. With \
+                  --update, an existing table keeps its comments (columns whose names begin with comment), its order \
+                  and the variables that are not read. An empty string is \"\", because an empty cell means no value."
 )]
 pub struct Dump {
-    /// A new file, NAME.json or NAME.csv; - for stdout
+    /// New file NAME.json or NAME.csv; - for stdout
     file: PathBuf,
     #[command(flatten)]
     choice: Choice,
     #[command(flatten)]
     manner: SheetManner,
-    /// The robot whose variables went into the file, so that a second robot does not replace them.
+    /// Robot whose variables are in the file, so that a second robot does not overwrite them.
     #[arg(skip)]
     taken: OnceLock<String>,
 }
@@ -112,21 +111,21 @@ impl Command for Dump {
     }
 }
 
-/// Where a dump goes.
+/// Output of a dump.
 enum Place {
     Screen,
-    /// Begun unless it is a dry run.
+    /// Draft file; `None` in a dry run.
     Json(Option<Draft>),
     Sheet(SheetTarget),
 }
 
 impl Dump {
-    /// The file beside the one to be written, made before the controller is asked: what cannot be written is known
-    /// at once.
+    /// Creates the draft of the output file before the controller is asked, so that an unwritable file is reported at
+    /// once.
     fn place(&self, robot: &str, dry: bool) -> Result<Place, Failure> {
         let is_sheet = is_sheet(&self.file);
         if !is_sheet && self.manner.is_of_tables() {
-            return Err(Failure::usage("--update and --decimal-comma are for tables").hint("name a file NAME.csv"));
+            return Err(Failure::usage("--update and --decimal-comma need a table").hint("use a file NAME.csv"));
         }
         if self.file == Path::new("-") {
             return Ok(Place::Screen);
@@ -147,23 +146,23 @@ pub fn is_sheet(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
 }
 
-/// To the second: what is read takes longer.
+/// Time to the second; a read takes longer than that.
 fn now() -> String {
     let now = Timestamp::now();
     now.round(jiff::Unit::Second).unwrap_or(now).to_string()
 }
 
-/// A dump, or where it went.
+/// A dump, or its summary.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Dumped {
-    /// With `-`.
+    /// Output to stdout.
     Document(Document),
-    /// With a file.
+    /// Output to a file.
     Summary(Summary),
 }
 
-/// What a dump file holds.
+/// Content of a dump file.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Document {
     /// `armctl-variables`.
@@ -174,25 +173,25 @@ pub struct Document {
     target: String,
     simulated: bool,
     model: &'static str,
-    /// In which strings were decoded.
+    /// Encoding of the decoded strings.
     encoding: &'static str,
     taken_at: String,
     variables: Vec<Entry>,
 }
 
-/// Where a dump went.
+/// Summary of a dump.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Summary {
     file: String,
-    /// How many it holds.
+    /// Number of variables.
     variables: usize,
-    /// How many of them are undefined.
+    /// Number of undefined variables.
     undefined: usize,
     taken_at: String,
 }
 
 impl Document {
-    /// The file: a variable a line, so that two dumps can be compared line by line.
+    /// Text of the file: one variable per line, so that two dumps can be compared line by line.
     fn text(&self) -> Result<String, Failure> {
         let head = json!({
             "format": self.format, "version": self.version, "family": self.family, "robot": self.robot,

@@ -1,4 +1,4 @@
-//! A variable in JSON, both ways.
+//! JSON form of a variable.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -16,49 +16,49 @@ use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::Text;
 use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 
-/// A variable and what it holds.
+/// A variable and its value.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Entry {
     /// `B0`.
     name: String,
-    /// What people call it; null where it has no name, and not in files.
+    /// User name; null if there is none; absent in files.
     #[serde(skip_serializing_if = "Label::is_of_file")]
     #[schemars(with = "Option<String>")]
     label: Label,
     /// `variable`; in files `B`, `I`, `D`, `R`, `S`, `P`, `BP` or `EX`.
     kind: &'static str,
     number: u16,
-    /// Whether the controller answered, if only that there is no value; not in files.
+    /// Whether the controller answered, even if there is no value; absent in files.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "bool")]
     ok: Option<bool>,
-    /// Null where the controller has none.
+    /// Null if the controller has none.
     value: Option<Data>,
-    /// The bytes on the wire, where the value does not lead back to them.
+    /// Raw bytes, if the value does not convert back to them.
     #[serde(skip_serializing_if = "Option::is_none")]
     value_hex: Option<String>,
-    /// The variable exists and has not been taught yet.
+    /// The variable exists but was never taught.
     #[serde(skip_serializing_if = "is_false")]
     undefined: bool,
-    /// Why the controller did not answer.
+    /// Reason why the controller did not answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
-    /// Why there is no value, in a failure.
+    /// Reason for the missing value, for a failure.
     #[serde(skip)]
     missing: Option<ItemError>,
 }
 
-/// What people call a variable.
+/// User name of a variable.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[serde(untagged)]
 enum Label {
-    /// Files do not say it.
+    /// Not present in files.
     #[default]
     OfFile,
-    /// It has no name.
+    /// No name.
     Unnamed,
-    /// This.
+    /// This name.
     Named(String),
 }
 
@@ -79,25 +79,25 @@ const fn is_false(flag: &bool) -> bool {
 pub enum Data {
     /// B, I, D.
     Integer(i32),
-    /// R, in the fewest digits that lead back to it.
+    /// R, with the fewest digits that convert back to it.
     Real(f64),
-    /// S; also an R that is no number: `NaN`, `inf`, `-inf`.
+    /// S; also an R that is not a number: `NaN`, `inf`, `-inf`.
     Text(String),
     /// P, BP, EX.
     Position(Box<PositionData>),
 }
 
-/// Added status of a variable without a value. The manuals give 0xB001 another meaning too, which cannot occur where
-/// one variable is read (3.3.16; DX chapter 5).
+/// Added status of a variable without a value. The manuals give 0xB001 a second meaning, which cannot occur when one
+/// variable is read (3.3.16; DX chapter 5).
 const UNDEFINED: [u32; 2] = [0xB005, 0xB001];
 
-/// Whether a refusal to read one variable says that it holds nothing.
+/// Whether a refusal to read one variable means that it is undefined.
 pub fn is_undefined(denied: &Denied) -> bool {
     matches!(denied, Denied::Refused(refusal) if UNDEFINED.contains(&refusal.status.added))
 }
 
 impl Entry {
-    /// What a controller answered.
+    /// Entry from an answer.
     pub fn new(reference: Reference, outcome: &Outcome<Value>, encoding: Encoding) -> Self {
         let (name, kind, number) = (reference.to_string(), VARIABLE, reference.number);
         let known = Self {
@@ -128,21 +128,21 @@ impl Entry {
         }
     }
 
-    /// The same without what the controller said, for a file in which null says enough.
+    /// Entry without the controller's status, for a file, in which null is sufficient.
     #[must_use]
     pub fn bare(self) -> Self {
         let letters = self.name.parse().map_or(self.kind, |reference: Reference| reference.kind.letters());
         Self { label: Label::default(), kind: letters, ok: None, undefined: false, error: None, missing: None, ..self }
     }
 
-    /// The same with the name that people gave it.
+    /// Entry with the user name.
     #[must_use]
     pub fn labelled(self, names: &Names) -> Self {
         let label = names::label(names, Kind::Variable, &self.name);
         Self { label: label.map_or(Label::Unnamed, Label::Named), ..self }
     }
 
-    /// What people call it.
+    /// User name.
     pub fn label(&self) -> Option<&str> {
         match &self.label {
             Label::Named(name) => Some(name),
@@ -150,12 +150,12 @@ impl Entry {
         }
     }
 
-    /// Its name.
+    /// Variable name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its value as a person reads it, or why there is none.
+    /// Value as text, or the reason why there is none.
     pub fn shown(&self) -> String {
         match (&self.value, &self.error) {
             (Some(data), _) => data.to_string(),
@@ -164,17 +164,17 @@ impl Entry {
         }
     }
 
-    /// Its value in JSON; null where it has none.
+    /// Value in JSON; null if there is none.
     pub fn data(&self) -> Json {
         serde_json::to_value(&self.value).unwrap_or(Json::Null)
     }
 
-    /// Whether it has a value, and that is a number.
+    /// Whether the value is a number.
     pub fn is_number(&self) -> bool {
         matches!(self.value, Some(Data::Integer(_) | Data::Real(_)))
     }
 
-    /// Whether it holds nothing that anybody wrote: 0, no text, a position that was never taught.
+    /// Whether it has a default value: 0, an empty text, or a position that was never taught.
     pub fn is_blank(&self) -> bool {
         match &self.value {
             Some(Data::Integer(number)) => *number == 0,
@@ -185,17 +185,17 @@ impl Entry {
         }
     }
 
-    /// Whether it has a value.
+    /// Whether there is a value.
     pub fn has_value(&self) -> bool {
         self.value.is_some()
     }
 
-    /// Why the controller did not answer.
+    /// Reason why the controller did not answer.
     pub fn error(&self) -> Option<&ItemError> {
         self.error.as_ref()
     }
 
-    /// Why it has no value, whether that was refused or is not there.
+    /// Reason for the missing value: refused or undefined.
     pub fn missing(&self) -> Option<&ItemError> {
         self.missing.as_ref()
     }
@@ -205,7 +205,7 @@ impl std::fmt::Display for Data {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Integer(value) => value.fmt(f),
-            // With a point or an exponent, so that it reads as a real.
+            // With a decimal point or an exponent, so that it is recognised as a real.
             Self::Real(value) => write!(f, "{value:?}"),
             Self::Text(text) => f.write_str(text),
             Self::Position(position) => f.write_str(position.text()),
@@ -235,36 +235,36 @@ fn data_of(value: &Value, encoding: Encoding) -> (Data, Option<String>) {
     }
 }
 
-/// The 64-bit number that is written with the digits of the 32-bit one; none for what is no number.
+/// 64-bit number with the digits of the 32-bit number; none if it is not a number.
 fn shortest(value: f32) -> Option<f64> {
     if value.is_finite() { format!("{value:?}").parse().ok() } else { None }
 }
 
-/// How the variables of a file are read.
+/// Context for reading the variables of a file.
 #[derive(Debug, Clone, Copy)]
 pub struct Reading {
-    /// Of the robot they are for.
+    /// Model of the target robot.
     pub model: Model,
-    /// In which strings were decoded.
+    /// Encoding of the decoded strings.
     pub encoding: Encoding,
 }
 
-/// The kind of every item in a report.
+/// Kind of every item in a report.
 const VARIABLE: &str = "variable";
 
 const KEYS: [&str; 5] = ["name", "kind", "number", "value", "value_hex"];
-/// What a report says beside them.
+/// Additional keys in reports.
 const REPORTED: [&str; 4] = ["ok", "label", "undefined", "error"];
 
 impl Reading {
-    /// Reads an entry of a dump: the variable, and its value unless that is null. The error begins with the place in the
-    /// entry, such as `.value: `.
+    /// Reads an entry of a dump: the variable, and its value unless it is null. An error starts with the location in
+    /// the entry, such as `.value: `.
     pub fn entry(self, entry: &Json) -> Result<(Reference, Option<Value>), String> {
-        let object = entry.as_object().ok_or(": an object is expected")?;
+        let object = entry.as_object().ok_or(": expected an object")?;
         if let Some(key) = object.keys().find(|key| !KEYS.iter().chain(&REPORTED).any(|known| known == key)) {
             return Err(format!(".{key}: unknown; there are {}", KEYS.join(", ")));
         }
-        let name = object.get("name").and_then(Json::as_str).ok_or(".name: a name such as \"B0\" is expected")?;
+        let name = object.get("name").and_then(Json::as_str).ok_or(".name: expected a name such as \"B0\"")?;
         let reference: Reference = name.parse().map_err(|error| format!(".name: {error}"))?;
         let reference = in_form(reference, self.model, false);
         if object.get("kind").is_some_and(|kind| kind != reference.kind.letters() && kind != VARIABLE) {
@@ -276,7 +276,7 @@ impl Reading {
         let bytes =
             object.get("value_hex").map(|digits| from_hex(digits).map_err(|error| format!(".value_hex: {error}")));
         let value = match (object.get("value"), bytes.transpose()?) {
-            (None, _) => return Err(".value: missing; null is for what is undefined".to_owned()),
+            (None, _) => return Err(".value: missing; use null for an undefined variable".to_owned()),
             (Some(Json::Null), None) => None,
             (Some(value), Some(bytes)) => Some(self.exact(reference.kind, value, &bytes)?),
             (Some(value), None) => Some(self.value(reference.kind, value).map_err(|error| format!(".value{error}"))?),
@@ -284,7 +284,7 @@ impl Reading {
         Ok((reference, value))
     }
 
-    /// Reads a value in the form that an entry holds it. The error begins with the place in the value.
+    /// Reads a value in the form of an entry. An error starts with the location in the value.
     pub fn value(self, kind: VariableKind, value: &Json) -> Result<Value, String> {
         let typed = |text: &[u8]| Value::from_text(kind, text).map_err(|error| format!(": {error}"));
         match (kind, value) {
@@ -293,25 +293,25 @@ impl Reading {
             }
             (VariableKind::P | VariableKind::Bp | VariableKind::Ex, Json::String(text)) => typed(text.as_bytes()),
             (VariableKind::P | VariableKind::Bp | VariableKind::Ex, _) => {
-                Err(": a position is an object, or a text such as \"pulse:…\"".to_owned())
+                Err(": expected an object or a text such as \"pulse:…\"".to_owned())
             }
             (VariableKind::S16 | VariableKind::S32, Json::String(text)) => {
                 typed(&self.encoding.encode(text).map_err(|error| format!(": {error}"))?)
             }
-            (VariableKind::S16 | VariableKind::S32, _) => Err(": a string is expected".to_owned()),
-            // The digits as they stand there, so that no real is rounded twice.
+            (VariableKind::S16 | VariableKind::S32, _) => Err(": expected a string".to_owned()),
+            // The original digits, so that a real is not rounded twice.
             (_, Json::Number(number)) => typed(number.to_string().as_bytes()),
-            _ => Err(": a number is expected".to_owned()),
+            _ => Err(": expected a number".to_owned()),
         }
     }
 
-    /// A value that only its bytes tell; what stands beside them must still belong to them.
+    /// A value defined by its bytes; the shown value must match them.
     fn exact(self, kind: VariableKind, shown: &Json, bytes: &[u8]) -> Result<Value, String> {
         let value = match kind {
             VariableKind::S16 => Text::new(bytes).map(Value::Short).map_err(|error| format!(".value_hex: {error}"))?,
             VariableKind::S32 => Text::new(bytes).map(Value::Long).map_err(|error| format!(".value_hex: {error}"))?,
             VariableKind::R => {
-                let bytes = bytes.try_into().map_err(|_| ".value_hex: 4 bytes are expected")?;
+                let bytes = bytes.try_into().map_err(|_| ".value_hex: expected 4 bytes")?;
                 Value::Real(f32::from_le_bytes(bytes))
             }
             _ => return Err(".value_hex: only strings and reals have one".to_owned()),
@@ -325,13 +325,13 @@ impl Reading {
         if *shown == expected {
             Ok(value)
         } else {
-            Err(".value: is not what value_hex says; remove value_hex to use the value".to_owned())
+            Err(".value: does not match value_hex; remove value_hex to use the value".to_owned())
         }
     }
 }
 
 fn from_hex(digits: &Json) -> Result<Vec<u8>, &'static str> {
-    let wrong = "pairs of hexadecimal digits are expected";
+    let wrong = "expected pairs of hexadecimal digits";
     let digits = digits.as_str().ok_or(wrong)?.as_bytes();
     if digits.len() % 2 == 1 {
         return Err(wrong);
@@ -353,7 +353,7 @@ mod tests {
     fn round(name: &str, value: &Value) -> Json {
         let reference = in_form(name.parse().unwrap(), READING.model, false);
         let json = serde_json::to_value(Entry::new(reference, &Ok(value.clone()), READING.encoding)).unwrap();
-        // As it comes back from a file.
+        // As read from a file.
         let json: Json = serde_json::from_str(&json.to_string()).unwrap();
         let (back, read) = READING.entry(&json).unwrap();
         assert_eq!((back, read.map(|value| value.emit())), (reference, Some(value.emit())), "{json}");
@@ -399,15 +399,15 @@ mod tests {
         assert_eq!(error(json!({"name": "B0", "value": 1.5})), ".value: '1.5' is not a number from 0 to 255");
         assert_eq!(error(json!({"name": "B0", "kind": "I", "value": 1})), ".kind: contradicts the name B0");
         assert_eq!(error(json!({"name": "B0", "number": 1, "value": 1})), ".number: contradicts the name B0");
-        assert_eq!(error(json!({"name": "B0"})), ".value: missing; null is for what is undefined");
+        assert_eq!(error(json!({"name": "B0"})), ".value: missing; use null for an undefined variable");
         assert!(error(json!({"name": "B0", "vlaue": 1})).starts_with(".vlaue: unknown"));
         assert!(error(json!({"name": "S0", "value": "A", "value_hex": "42"})).contains("remove value_hex"));
         assert!(error(json!({"name": "S0", "value": "A", "value_hex": "4"})).starts_with(".value_hex"));
         assert_eq!(error(json!({"name": "P0", "value": {"type": "pulse"}})), ".value: axes are missing");
         let position = json!({"type": "base", "x_mm": "1"});
-        assert_eq!(error(json!({"name": "P0", "value": position})), ".value.x_mm: a number is expected");
+        assert_eq!(error(json!({"name": "P0", "value": position})), ".value.x_mm: expected a number");
         assert!(error(json!({"name": "S0", "value": "한"})).starts_with(".value: '한'"));
-        assert!(error(json!([1])).starts_with(": an object"));
+        assert!(error(json!([1])).starts_with(": expected an object"));
         assert_eq!(READING.entry(&json!({"name": "P0", "value": null})).unwrap().1, None);
     }
 

@@ -17,28 +17,27 @@ use crate::controller::yerc::variables::{Reference, parse_references};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
 
-/// Variables to read.
+/// Reads variables.
 #[derive(Debug, Args)]
-#[command(after_help = "A position that was never taught has no value: it is shown as undefined (null in JSON). Of \
-                        several, each has its own outcome: the exit code is 9 if some were refused, 3 if all were or \
-                        none has a value. Many variables take few requests; \
-                        numbers beyond the standard 0-99 (positions 0-127) exist where the controller's parameters \
-                        say so.")]
+#[command(after_help = "A position that was never taught is shown as undefined (null in JSON). Each variable has its \
+                        own result. The exit code is 9 if some were refused, and 3 if all were refused or none has a \
+                        value. armctl reads many variables with few requests. The standard numbers are 0-99 (positions \
+                        0-127); the controller's parameters can define more.")]
 pub struct Get {
-    /// Such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1, or names
+    /// Variables, such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1, or names
     #[arg(required = true, value_name = "REF", value_delimiter = ',', value_parser = Named::parse, add = complete::VARIABLE)]
     variables: Vec<Named>,
-    /// Read strings by the 16-byte commands, also from a DX200
+    /// Read strings with the 16-byte commands, even from a DX200
     #[arg(long)]
     s16: bool,
 }
 
-/// A variable or a range of them, as typed.
+/// A variable or a range of variables.
 #[derive(Debug, Clone)]
 pub struct Named(pub Vec<Reference>);
 
 impl Named {
-    /// `B0`, `B0..B99`, `B0..99`, or a name.
+    /// Parses `B0`, `B0..B99`, `B0..99`, or a name.
     pub fn parse(text: &str) -> Result<Self, String> {
         names::read(&[Kind::Variable], "B0", text, |text| {
             parse_references(text).map(Self).map_err(|error| error.to_string())
@@ -111,7 +110,7 @@ impl Watchable for Get {
     const WATCHED: Watched = Watched::ITEMS;
 }
 
-/// Variables in the order they were asked for.
+/// Variables in the order requested.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Variables {
     items: Vec<Entry>,

@@ -1,10 +1,10 @@
-//! Whole command lines that read and write memory: golden frames, and what becomes of them on a simulator.
+//! Tests of whole command lines that read and write memory: golden frames, and results on a simulator.
 
 use serde_json::Value;
 
 use crate::command::yerc::testing::{Bench, DX200, FS100, dry_run, same, without_header};
 
-/// [`same`] with words that are made.
+/// [`same`] with generated words.
 #[track_caller]
 fn same_many(id: &str, target: &str, first: &[&str], rest: &[String]) {
     let words: Vec<&str> = first.iter().copied().chain(rest.iter().map(String::as_str)).collect();
@@ -174,7 +174,7 @@ fn a_file_of_var_get_sets_a_position() {
 fn nothing_is_written_where_nobody_answers() {
     let mut bench = Bench::new("sim:?fault=drop=100%25");
     let failure = bench.run(&["var", "set", "B0=1", "I0=1"]).unwrap_err();
-    // What it replaces is asked first, and there nobody answers.
+    // The old value is read first, and the controller does not answer that.
     assert_eq!(failure.kind.exit(), 4);
     assert!(failure.message.ends_with("; nothing was written"), "{failure}");
 }

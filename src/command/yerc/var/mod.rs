@@ -28,7 +28,7 @@ use crate::controller::yerc::variables::{Reference, VariableKind};
 use crate::failure::Failure;
 
 commands! {
-    /// What can be done with variables.
+    /// Commands for variables.
     pub enum Var {
         /// Read variables: B0 I1..I20 D5 R3 S2 P10 BP1 EX1
         Get(get::Get),
@@ -45,10 +45,10 @@ commands! {
     }
 }
 
-/// Which variables: some, or all standard numbers of some kinds.
+/// Selection of variables, or of all standard numbers of some kinds.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Choice {
-    /// Such as B0..B199,P0..P9, or names; all standard numbers unless given
+    /// Variables, such as B0..B199,P0..P9, or names; default: all standard numbers
     #[arg(value_name = "REF", value_delimiter = ',', value_parser = get::Named::parse)]
     variables: Vec<get::Named>,
     /// Only these kinds: B,I,D,R,S,P,BP,EX
@@ -70,7 +70,7 @@ impl Choice {
     }
 }
 
-/// A variable as a question names it: `P5`, or `P5 (HOME)` where it has a name.
+/// Variable in a confirmation: `P5`, or `P5 (HOME)` with its name.
 pub fn called(names: &Names, variable: Reference) -> String {
     let address = variable.to_string();
     match names.label(Kind::Variable, &address) {
@@ -79,12 +79,12 @@ pub fn called(names: &Names, variable: Reference) -> String {
     }
 }
 
-/// The same variable, with strings in the form that the model and `--s16` want.
+/// Variable with the string form for the model and `--s16`.
 fn in_form(reference: Reference, model: Model, short: bool) -> Reference {
     Reference::new(reference.kind.string_form(model, short), reference.number)
 }
 
-/// The model that variables are told for; the controller is asked only if there are strings among them.
+/// Model for the variables; the controller is asked only if there are strings.
 async fn model_of(
     link: &mut Link,
     references: impl Iterator<Item = &Reference> + Clone,
@@ -94,7 +94,7 @@ async fn model_of(
     link.model_for(|model| Ok::<_, Infallible>(form(model))).await
 }
 
-/// A kind by its letters, for `--kinds` and `--only`; strings read as the 32-byte form.
+/// Parses a kind by its letters, for `--kinds` and `--only`; strings have the 32-byte form.
 fn parse_kind(letters: &str) -> Result<VariableKind, String> {
     let kinds: Vec<VariableKind> = VariableKind::all().filter(|kind| *kind != VariableKind::S16).collect();
     kinds.iter().copied().find(|kind| kind.letters().eq_ignore_ascii_case(letters)).ok_or_else(|| {
@@ -103,7 +103,7 @@ fn parse_kind(letters: &str) -> Result<VariableKind, String> {
     })
 }
 
-/// Names in the order given, runs of a kind as `B0..B9`.
+/// Names in the order given, with runs of a kind as `B0..B9`.
 fn listed(references: impl IntoIterator<Item = Reference>) -> String {
     let mut runs: Vec<(Reference, Reference)> = Vec::new();
     for reference in references {

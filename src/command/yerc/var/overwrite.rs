@@ -1,4 +1,4 @@
-//! What a write replaces: the same question for every command that writes variables.
+//! Confirmation of overwritten variables, for every command that writes variables.
 
 use std::collections::HashMap;
 
@@ -18,7 +18,7 @@ use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 use crate::failure::Failure;
 use crate::gate::Change;
 
-/// Reads positions that are to be written, one by one, as each may hold nothing yet. A dry run notes the requests.
+/// Reads positions before a write, one by one, because each can be undefined. A dry run notes the requests.
 pub async fn read_taught(link: &mut Link, positions: &[Reference]) -> Result<Answers, Failure> {
     let mut answers = HashMap::new();
     for reference in positions {
@@ -29,7 +29,7 @@ pub async fn read_taught(link: &mut Link, positions: &[Reference]) -> Result<Ans
     Ok(answers)
 }
 
-/// What is overwritten. A variable that holds nothing yet is not.
+/// Overwritten values. An undefined variable is not overwritten.
 pub fn overwritten(known: &Answers, differing: &[(Reference, Value)], encoding: Encoding) -> Change {
     let mut overwritten = Vec::new();
     for (reference, value) in differing {
@@ -50,20 +50,20 @@ pub fn overwritten(known: &Answers, differing: &[(Reference, Value)], encoding: 
     overwritten.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))
 }
 
-/// Whether a controller that holds `old` would hold the same after `new` was written: axes that are not told are 0.
+/// Whether the controller would have the same value after the write; axes that are not reported are 0.
 pub fn same(old: &Value, new: &Value) -> bool {
     match (old, new) {
         (Value::Position(old), Value::Position(new)) => {
             let full = |position: &Position| Position { axes: Axes::full(position.axes.padded()), ..*position };
             full(old) == full(new)
         }
-        // Zeros of both signs are equal, a number that is none is never.
+        // Positive and negative zero are equal; NaN never is.
         (Value::Real(old), Value::Real(new)) => old.to_bits() == new.to_bits(),
         (old, new) => old == new,
     }
 }
 
-/// What a position is after a single field of it was written; nothing where there is no such field.
+/// Position after a write of one field; none if there is no such field.
 pub fn with_field(old: &Value, request: &Request) -> Option<Value> {
     let mut bytes = old.emit();
     let at = usize::from(request.attribute).checked_sub(1)? * 4;
@@ -71,8 +71,8 @@ pub fn with_field(old: &Value, request: &Request) -> Option<Value> {
     Value::parse(old.kind(), &bytes).ok()
 }
 
-/// Confirms a raw request that writes positions (3.3.16 to 3.3.18, 3.3.34 to 3.3.36). `intent` stands for what armctl
-/// cannot take apart.
+/// Confirms a raw request that writes positions (3.3.16 to 3.3.18, 3.3.34 to 3.3.36). `intent` describes a request
+/// that armctl cannot decode.
 pub async fn confirm_raw(
     link: &mut Link,
     authority: &Authority<'_>,
@@ -94,7 +94,7 @@ pub async fn confirm_raw(
     authority.confirm(&change).await
 }
 
-/// The positions that a request writes; nothing where it writes none, or is not as the manual has it.
+/// Positions that a request writes; none if it writes no positions or does not match the manual.
 fn references(request: &Request) -> Option<Vec<Reference>> {
     let kind = |number: fn(VariableKind) -> u16| {
         VariableKind::all().find(|kind| kind.is_position() && number(*kind) == request.command)
@@ -109,7 +109,7 @@ fn references(request: &Request) -> Option<Vec<Reference>> {
         .then(|| (request.instance..=last).map(|number| Reference::new(kind, number)).collect())
 }
 
-/// The value that a request writes into its position of this place, which holds `old`.
+/// Value that a request writes to its position at this index, which currently has `old`.
 fn value_at(request: &Request, at: usize, old: &Value) -> Option<Value> {
     let kind = old.kind();
     match request.service {

@@ -1,5 +1,5 @@
-//! Single words of a position variable (P): the manuals list no request that writes one alone, so the position is read,
-//! changed and written back as a whole (3.3.16, service 0x02).
+//! Single words of a position variable (P). The manuals list no request that writes one word, so the position is
+//! read, changed and written back completely (3.3.16, service 0x02).
 
 use std::collections::BTreeMap;
 
@@ -13,19 +13,19 @@ use crate::controller::yerc::query::{Query as _, ReadVariable, WriteVariable};
 use crate::controller::yerc::variables::{Reference, Value};
 use crate::failure::{Failure, Kind};
 
-/// A word of a position that can be written.
+/// A writable word of a position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Word {
     /// Tool number.
     Tool(u32),
     /// User coordinate number.
     User(u32),
-    /// An axis, counted from 0, in steps of the wire.
+    /// Axis (starting with 0) and value in protocol steps.
     Axis(usize, i32),
 }
 
 impl Word {
-    /// Its place, counted from 1, the type.
+    /// Attribute: its index starting with 1, the type.
     pub fn attribute(self) -> u8 {
         match self {
             Self::Tool(_) => 3,
@@ -34,7 +34,7 @@ impl Word {
         }
     }
 
-    /// As it is typed.
+    /// Name as typed.
     pub fn name(self) -> String {
         match self {
             Self::Tool(_) => "tool".to_owned(),
@@ -43,7 +43,7 @@ impl Word {
         }
     }
 
-    /// The value to write.
+    /// Value to write.
     pub fn value(self) -> i64 {
         match self {
             Self::Tool(value) | Self::User(value) => value.into(),
@@ -51,7 +51,7 @@ impl Word {
         }
     }
 
-    /// The value that a position has there.
+    /// Current value in a position.
     pub fn old(self, position: &Position) -> i64 {
         match self {
             Self::Tool(_) => position.tool.into(),
@@ -60,7 +60,7 @@ impl Word {
         }
     }
 
-    /// Writes it into a position.
+    /// Sets the word in a position.
     pub fn set(self, position: &mut Position) {
         match self {
             Self::Tool(tool) => position.tool = tool,
@@ -76,10 +76,10 @@ impl Word {
     }
 }
 
-/// The words to write of each position.
+/// Words to write for each position.
 pub type Words = BTreeMap<Reference, Vec<Word>>;
 
-/// Reads the positions, and says how each is before and after; nothing is written yet.
+/// Reads the positions. Returns each before and after the change; nothing is written yet.
 pub async fn changed(link: &mut Link, words: &Words) -> Result<Vec<(Reference, Position, Position)>, Failure> {
     let mut changed = Vec::with_capacity(words.len());
     for (reference, words) in words {
@@ -105,7 +105,7 @@ async fn read(link: &mut Link, reference: Reference) -> Result<Position, Failure
             let is_undefined = is_undefined(&Denied::Refused(refusal));
             let failure = wrong(refusal.into());
             Err(if is_undefined {
-                failure.hint(format!("there is nothing yet to change a word of: write it whole, {reference}=pulse:…"))
+                failure.hint(format!("the position is undefined: write all of it, {reference}=pulse:…"))
             } else {
                 failure
             })
@@ -113,7 +113,7 @@ async fn read(link: &mut Link, reference: Reference) -> Result<Position, Failure
     }
 }
 
-/// Notes in a dry run what is read, and `then` what is written.
+/// Notes in a dry run the reads of the positions.
 pub fn plan_reads(link: &mut Link, words: &Words) {
     for reference in words.keys() {
         let question = ReadVariable::new(reference.kind, reference.number);
@@ -121,7 +121,7 @@ pub fn plan_reads(link: &mut Link, words: &Words) {
     }
 }
 
-/// Notes in a dry run the positions that are written back; words that were not named are not known.
+/// Notes in a dry run the positions that are written back; unnamed words are unknown.
 pub fn plan_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
     for (reference, words) in words {
         let write = |mut position: Position| {
@@ -133,14 +133,14 @@ pub fn plan_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
         let [one, other] = unlike();
         let named: Vec<String> = words.iter().map(|word| format!("{}={}", word.name(), word.value())).collect();
         let about =
-            format!("writes {reference} with {}; words that are not named keep what was read", named.join(", "));
-        let reason = Reason::about(&about).depending_on("what was read");
+            format!("writes {reference} with {}; the other words keep the values that were read", named.join(", "));
+        let reason = Reason::about(&about).depending_on("the values that were read");
         link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
     }
     Ok(())
 }
 
-/// Two positions of which no byte is the same: to show in a dry run what is known of one.
+/// Two positions that differ in every byte, to show in a dry run the known part of one.
 pub fn unlike() -> [Position; 2] {
     let position = |kind, word: u32, axis| Position {
         kind,

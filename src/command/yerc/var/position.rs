@@ -1,4 +1,4 @@
-//! Positions in JSON: every axis with its unit, and the text form that `var set` takes.
+//! JSON form of positions: every axis with its unit, and the text of `var set`.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use crate::controller::yerc::payload::{
 };
 use crate::controller::yerc::variables::{Value, VariableKind};
 
-/// The position of a group as the variable that holds such: P of robots, BP of bases, EX of stations.
+/// Position of a group as a variable value: P for robots, BP for bases, EX for stations.
 pub fn held(group: Group, position: Position) -> Value {
     let Position { kind, axes, .. } = position;
     match group {
@@ -24,7 +24,7 @@ pub fn held(group: Group, position: Position) -> Value {
     }
 }
 
-/// A value in the form of a robot's position: of a base or a station only kind and axes mean something.
+/// Value in the form of a robot position; for a base or a station only type and axes are valid.
 pub fn as_position(value: &Value) -> Position {
     let bare = |kind, axes| Position { kind, form: Form(0), tool: 0, user: 0, extended: ExtendedForm(0), axes };
     match value {
@@ -38,36 +38,36 @@ pub fn as_position(value: &Value) -> Position {
 /// A position.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PositionData {
-    /// As `var set` takes it.
+    /// Notation of `var set`.
     text: String,
-    /// `pulse`, `base`, `robot`, `user`, `tool`; `type5` for a number without a name.
+    /// `pulse`, `base`, `robot`, `user`, `tool`; `type5` for a type without a name.
     r#type: String,
-    /// The type as a number.
+    /// Type number.
     type_code: u32,
     /// `x_mm`, `y_mm`, `z_mm`, `rx_deg`, `ry_deg`, `rz_deg`, `re_deg`; `s_pulses`, `l_pulses`, …; `axis_8_pulses`.
     #[serde(flatten)]
     #[schemars(with = "BTreeMap<String, f64>")]
     axes: Map<String, Json>,
-    /// What only robot positions have.
+    /// Fields of robot positions only.
     #[serde(flatten)]
     arm: Option<Arm>,
 }
 
-/// How a robot reaches a position.
+/// Arm configuration of a position.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 struct Arm {
     tool: u32,
     user: u32,
-    /// The form in words: `back+upper+noflip`.
+    /// Decoded form: `back+upper+noflip`.
     form: String,
     form_code: u32,
-    /// The extended form in words.
+    /// Decoded extended form.
     extended_form: String,
     extended_form_code: u32,
 }
 
 impl PositionData {
-    /// A value as a position, if it is one.
+    /// Value as a position, if it is one.
     pub fn of(value: &Value) -> Option<Self> {
         let (text, kind, axes, shown) = match value {
             Value::Position(position) => {
@@ -96,36 +96,36 @@ impl PositionData {
         Some(Self { text, r#type: type_name(kind), type_code: kind.word(), axes, arm })
     }
 
-    /// The text form.
+    /// Text in the notation of `var set`.
     pub fn text(&self) -> &str {
         &self.text
     }
 }
 
-/// Reads a position from its JSON object, from the text, from the fields, or from both where they agree. The error
-/// begins with the place, such as `.x_mm: `.
+/// Reads a position from its JSON object: from the text, from the fields, or from both if they agree. An error starts
+/// with the location, such as `.x_mm: `.
 pub fn read(kind: VariableKind, object: &Map<String, Json>) -> Result<Value, String> {
     let from_text = match object.get("text") {
         Some(Json::String(text)) => Some(parse(kind, text).map_err(|error| format!(".text{error}"))?),
-        Some(_) => return Err(".text: a string is expected".to_owned()),
+        Some(_) => return Err(".text: expected a string".to_owned()),
         None => None,
     };
     let from_fields = if object.contains_key("type") { Some(read_fields(kind, object)?) } else { None };
     match (from_text, from_fields) {
         (Some(text), Some(fields)) if text != fields => {
-            Err(": text and the other fields say different things; remove text to use the fields".to_owned())
+            Err(": text contradicts the other fields; remove text to use the fields".to_owned())
         }
         (Some(_), None) if object.len() > 1 => {
-            Err(": type is missing; give type and all axes, or text alone".to_owned())
+            Err(": type is missing; give type and all axes, or only text".to_owned())
         }
         (Some(value), _) | (None, Some(value)) => Ok(value),
-        (None, None) => Err(": neither text nor type is there".to_owned()),
+        (None, None) => Err(": text and type are missing".to_owned()),
     }
 }
 
 fn read_fields(kind: VariableKind, object: &Map<String, Json>) -> Result<Value, String> {
     let Some(Json::String(name)) = object.get("type") else {
-        return Err(".type: a string is expected".to_owned());
+        return Err(".type: expected a string".to_owned());
     };
     let mut parts = Vec::new();
     let mut given = Vec::new();
@@ -136,7 +136,7 @@ fn read_fields(kind: VariableKind, object: &Map<String, Json>) -> Result<Value, 
             "form_code" if kind == VariableKind::P => parts.extend(flags("form", name, value)?),
             "extended_form_code" if kind == VariableKind::P => parts.extend(flags("ext", name, value)?),
             _ => {
-                let axis = axis_of(name).ok_or_else(|| format!(".{name}: no part of a position"))?;
+                let axis = axis_of(name).ok_or_else(|| format!(".{name}: not a field of a position"))?;
                 parts.push(format!("{axis}={}", number(name, value)?));
                 given.push(name);
             }
@@ -150,7 +150,7 @@ fn read_fields(kind: VariableKind, object: &Map<String, Json>) -> Result<Value, 
     agrees(object, "type_code", &json!(data.type_code))?;
     let names: Vec<String> = axes(&value).iter().map(key).collect();
     if let Some(name) = given.iter().find(|name| !names.contains(name)) {
-        return Err(format!(".{name}: no part of this position; its axes are {}", names.join(", ")));
+        return Err(format!(".{name}: not a field of this position; its axes are {}", names.join(", ")));
     }
     if let Value::Position(position) = &value {
         words_agree(object, "form", "form_code", &position.form.words().collect::<Vec<_>>(), position.form == Form(0))?;
@@ -160,7 +160,7 @@ fn read_fields(kind: VariableKind, object: &Map<String, Json>) -> Result<Value, 
     Ok(value)
 }
 
-/// Words that came without their code would be lost, and words that contradict it are a mistake.
+/// Decoded words without their code would be lost, and words that contradict the code are an error.
 fn words_agree(
     object: &Map<String, Json>,
     words: &str,
@@ -170,8 +170,8 @@ fn words_agree(
 ) -> Result<(), String> {
     match (object.get(words), object.contains_key(code)) {
         (Some(found), _) if *found == json!(expected.join("+")) => Ok(()),
-        (Some(_), true) => Err(format!(": {words} and {code} say different things; remove {words} to use {code}")),
-        (Some(_), false) => Err(format!(": {code} is missing; it holds the number that {words} explains")),
+        (Some(_), true) => Err(format!(": {words} contradicts {code}; remove {words} to use {code}")),
+        (Some(_), false) => Err(format!(": {code} is missing; it is the number of {words}")),
         (None, true) => Ok(()),
         (None, false) if is_default => Ok(()),
         (None, false) => Err(format!(": {code} is missing")),
@@ -189,18 +189,18 @@ fn parse(kind: VariableKind, text: &str) -> Result<Value, String> {
     Value::from_text(kind, text.as_bytes()).map_err(|error| format!(": {error}"))
 }
 
-/// The digits of a number as they stand in the file.
+/// Digits of a number as in the file.
 fn number(name: &str, value: &Json) -> Result<String, String> {
     match value {
         Json::Number(number) => Ok(number.to_string()),
-        _ => Err(format!(".{name}: a number is expected")),
+        _ => Err(format!(".{name}: expected a number")),
     }
 }
 
-/// A word of flags as the text form takes it; nothing for 0.
+/// Flags in the notation of `var set`; none for 0.
 fn flags(key: &str, name: &str, value: &Json) -> Result<Option<String>, String> {
     let code = value.as_u64().and_then(|code| u32::try_from(code).ok());
-    let code = code.ok_or_else(|| format!(".{name}: a number from 0 to 4294967295 is expected"))?;
+    let code = code.ok_or_else(|| format!(".{name}: expected a number from 0 to 4294967295"))?;
     Ok((code != 0).then(|| format!("{key}={code:#x}")))
 }
 
@@ -239,7 +239,7 @@ const fn suffix(unit: Unit) -> &'static str {
     unit.symbol
 }
 
-/// An exact decimal as a number of JSON.
+/// Exact decimal as a JSON number.
 fn amount(quantity: Quantity) -> Json {
     let text = quantity.to_string();
     serde_json::from_str(&text).unwrap_or(Json::String(text))
@@ -310,15 +310,15 @@ mod tests {
             read(VariableKind::P, &object).unwrap_err()
         };
         assert!(changed("x_mm", json!(9)).contains("remove text"));
-        assert!(changed("x_mm", json!("9")).starts_with(".x_mm: a number"));
+        assert!(changed("x_mm", json!("9")).starts_with(".x_mm: expected a number"));
         assert!(changed("x_pulses", json!(9)).contains("twice"));
         assert!(changed("form_code", json!(1)).contains("form"));
         assert!(changed("type_code", json!(17)).starts_with(".type_code"));
-        assert!(changed("speed", json!(17)).starts_with(".speed: no part"));
+        assert!(changed("speed", json!(17)).starts_with(".speed: not a field"));
         let mut lone = object(&json);
         lone.remove("x_mm");
         lone.insert("x_deg".to_owned(), json!(1));
-        assert!(read(VariableKind::P, &lone).unwrap_err().starts_with(".x_deg: no part of this position"));
+        assert!(read(VariableKind::P, &lone).unwrap_err().starts_with(".x_deg: not a field of this position"));
         lone.remove("type");
         assert!(read(VariableKind::P, &lone).unwrap_err().starts_with(": type is missing"));
     }

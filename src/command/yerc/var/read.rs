@@ -1,4 +1,4 @@
-//! Reads many variables in few requests, and finds out which of a refused run are to blame.
+//! Reads many variables in few requests, and finds the refused variables of a refused run.
 
 use std::collections::{HashMap, HashSet};
 
@@ -8,31 +8,29 @@ use crate::command::yerc::parts::{Parts, read_in_parts};
 use crate::controller::yerc::variables::{Reference, Value, plan_reads};
 use crate::failure::Failure;
 
-/// What each variable answered.
+/// Outcome of each variable.
 pub type Answers = HashMap<Reference, Outcome<Value>>;
 
-/// More would be a slip of the finger: a refused range is searched for what exists, and that takes its time.
+/// Maximum number of variables: a larger range is probably a typing error, and a refused range takes long to read in
+/// parts.
 const MOST: usize = 10_000;
 
-/// Reads each of `references` once. A run that the controller refuses is read again in parts, down to the variables
-/// that are refused: positions one by one, since each may be undefined; others by halves, since numbers end somewhere.
-/// `progress` is told what is asked for, and how many variables are known by then.
+/// Reads each of `references` once. A refused run is read again in parts, down to the refused variables: positions
+/// one by one, because each can be undefined; others in halves, because valid numbers end somewhere. `progress`
+/// receives the current variables and the number of variables known so far.
 pub async fn read_all(
     link: &mut Link,
     references: &[Reference],
     progress: impl FnMut(&[Reference], usize),
 ) -> Result<Answers, Failure> {
     if references.len() > MOST {
-        return Err(Failure::usage(format!(
-            "these are {} variables; at most {MOST} are read at a time",
-            references.len()
-        ))
-        .hint("a controller has 100 of a kind (128 positions) unless its parameters say more"));
+        return Err(Failure::usage(format!("{} variables requested; the maximum is {MOST}", references.len()))
+            .hint("a controller has 100 of each kind (128 positions), unless its parameters define more"));
     }
     read_whatever_told(link, references, progress).await
 }
 
-/// As [`read_all`], of as many as a file names.
+/// Like [`read_all`], without the limit, for the variables of a file.
 pub async fn read_whatever(link: &mut Link, references: &[Reference]) -> Result<Answers, Failure> {
     read_whatever_told(link, references, |_, _| {}).await
 }
@@ -49,7 +47,7 @@ async fn read_whatever_told(
     read_in_parts(link, |references| Ok(plan_reads(references)), references, parts, progress).await
 }
 
-/// The same references, each where it comes first.
+/// References without duplicates, in the order of their first occurrence.
 pub fn once(references: impl IntoIterator<Item = Reference>) -> Vec<Reference> {
     let mut seen = HashSet::new();
     references.into_iter().filter(|reference| seen.insert(*reference)).collect()

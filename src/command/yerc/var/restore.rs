@@ -31,16 +31,16 @@ use crate::files;
 use crate::gate::Confirmation;
 use crate::output::view::{Cell, View};
 
-/// What to write back.
+/// Writes variables back.
 #[derive(Debug, Args)]
-#[command(after_help = "The whole file is checked before anything is sent. What is null in it is left alone on the \
-                        controller. If the work is interrupted or refused, the message says which variables were \
-                        written and which were not.\n\nA table has columns name, value, text, and for positions type, x_mm \
-                        and the like; cells are parted by commas, semicolons or tabs, and numbers may have a decimal comma \
-                        unless commas part the cells. What a position has no cell for stays as it is on the \
-                        controller. Columns beginning with comment are yours.")]
+#[command(after_help = "The whole file is checked before anything is sent. Variables that are null in the file stay \
+                        unchanged. If the command is interrupted or refused, the message lists the variables that were \
+                        written and those that were not.\n\nA table has the columns name, value, text, and for \
+                        positions type, x_mm and so on. Commas, semicolons or tabs separate cells. Decimal commas are \
+                        allowed unless commas separate the cells. Fields of a position without a cell stay unchanged \
+                        on the controller. Columns that begin with comment are free for your use.")]
 pub struct Restore {
-    /// What `var dump` wrote: JSON, or a table NAME.csv
+    /// File from `var dump`: JSON, or a table NAME.csv
     file: PathBuf,
     /// Only these kinds: B,I,D,R,S,P,BP,EX
     #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = parse_kind)]
@@ -52,14 +52,14 @@ impl Command for Restore {
     type Report = Restored;
     const ID: &'static str = "yerc.var.restore";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite variables by those of the file";
+    const INTENT: &'static str = "overwrite variables with those of the file";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let shown = self.file.display().to_string();
         let wrong = |error: String| {
-            Failure::usage(format!("{shown}: {error}")).hint("nothing was sent; correct the file, or take a new dump")
+            Failure::usage(format!("{shown}: {error}")).hint("nothing was sent; correct the file or create a new dump")
         };
         let model = link.model().await?;
         let dump = if is_sheet(&self.file) {
@@ -77,17 +77,17 @@ impl Command for Restore {
         let values: Vec<(Reference, Kept)> =
             kept.into_iter().filter_map(|(reference, value)| Some((reference, value?))).collect();
         if values.is_empty() {
-            return Err(Failure::usage(format!("{shown} holds no values of the kinds wanted"))
-                .hint("--only chooses the kinds; what is null in the file is left alone"));
+            return Err(Failure::usage(format!("{shown} has no values of the selected kinds"))
+                .hint("select other kinds with --only; null values in the file are skipped"));
         }
         if dump.model != model {
-            screen.note(&format!("the dump was taken from a {}, this is a {model}", dump.model));
+            screen.note(&format!("the dump is from a {}, this is a {model}", dump.model));
         }
         if dump.encoding != link.encoding {
-            screen.note(&format!("strings are written in {}, as the dump says", dump.encoding));
+            screen.note(&format!("strings are written in {}, the encoding of the dump", dump.encoding));
         }
         if !undefined.is_empty() {
-            screen.note(&format!("left alone, undefined in the dump: {}", listed(undefined.iter().copied())));
+            screen.note(&format!("skipped, undefined in the dump: {}", listed(undefined.iter().copied())));
         }
         let references: Vec<Reference> = values.iter().map(|(reference, _)| *reference).collect();
         let known = read_whatever(link, &references).await.known()?;
@@ -108,7 +108,7 @@ impl Command for Restore {
         if is_dry {
             for step in &steps {
                 let about = format!("writes {}", listed(step.written().iter().copied()));
-                let reason = Reason::about(&about).depending_on("which values differ: only those are written");
+                let reason = Reason::about(&about).depending_on("which values differ; only those are written");
                 link.plan_if(&step.request(), reason);
             }
             return Err(unknown());
@@ -129,30 +129,35 @@ impl Command for Restore {
     }
 }
 
-/// Notes positions that a file has in part.
+/// Notes positions that the file defines in part.
 fn plan_parts(link: &mut Link, values: &[(Reference, Kept)]) -> Result<(), Failure> {
     for (reference, kept) in values {
         let Some(fields) = kept.describe() else { continue };
-        let about = format!("writes {reference} with {fields}, unless it is so; the rest of it stays as it is");
+        let about = format!("writes {reference} with {fields}, if they differ; the rest stays unchanged");
         let Some(ends) = kept.sketch(reference.kind) else {
             link.then(&about);
             continue;
         };
         let [one, other] = ends.map(|value| WriteVariable::new(reference.number, value).map_err(usage));
-        link.plan_depending(&one?.request(), &other?.request(), Reason::about(&about).depending_on("what was read"));
+        link.plan_depending(
+            &one?.request(),
+            &other?.request(),
+            Reason::about(&about).depending_on("the values that were read"),
+        );
     }
     Ok(())
 }
 
-/// Whole values: positions with what they keep. Those are not known in a dry run, and left out.
+/// Complete values: positions are completed with the values on the controller. In a dry run these are unknown and
+/// left out.
 fn resolved(values: Vec<(Reference, Kept)>, known: &Answers, is_dry: bool) -> Result<Vec<(Reference, Value)>, String> {
     let values = values.into_iter().filter(|(_, kept)| !is_dry || kept.describe().is_none());
     let whole = |(reference, kept): (Reference, Kept)| {
         let old = match known.get(&reference) {
             Some(Ok(old)) => Some(old),
-            // What was not told cannot be kept.
+            // A position that could not be read cannot be completed.
             Some(Err(denied)) if kept.describe().is_some() && !is_undefined(denied) => {
-                return Err(format!("{reference}: it could not be read: {}", Failure::from(denied.clone()).message));
+                return Err(format!("{reference} could not be read: {}", Failure::from(denied.clone()).message));
             }
             _ => None,
         };
@@ -161,12 +166,12 @@ fn resolved(values: Vec<(Reference, Kept)>, known: &Answers, is_dry: bool) -> Re
     values.map(whole).collect()
 }
 
-/// A dump of every variable that a controller can have is smaller.
+/// Maximum file size: larger than a dump of every variable that a controller can have.
 const MOST: u64 = 256 << 20;
 
 impl Restore {
     fn wants(&self, reference: Reference) -> bool {
-        // Kinds of the flag name strings by their 32-byte form.
+        // Kinds of the option use the 32-byte form of strings.
         self.only.is_empty() || self.only.iter().any(|kind| kind.letters() == reference.kind.letters())
     }
 
@@ -175,7 +180,7 @@ impl Restore {
     }
 }
 
-/// A dump that is right from the first byte to the last.
+/// A dump that is completely valid.
 #[derive(Debug)]
 struct Dump {
     model: Model,
@@ -184,31 +189,30 @@ struct Dump {
 }
 
 impl Dump {
-    /// Reads a file for a robot of `model`. The error begins with the place in the JSON.
+    /// Reads a file for a robot of `model`. An error starts with the location in the JSON.
     fn parse(text: &str, model: Model) -> Result<Self, String> {
         let json: Json = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
         if json.get("format").and_then(Json::as_str) != Some(FORMAT) {
-            return Err(format!("format: \"{FORMAT}\" is expected; this is not a dump of variables"));
+            return Err(format!("format: expected \"{FORMAT}\"; this is not a dump of variables"));
         }
         if json.get("version").and_then(Json::as_u64) != Some(VERSION) {
-            return Err(format!("version: {VERSION} is expected; a newer armctl may have written it"));
+            return Err(format!("version: expected {VERSION}; the file may be from a newer armctl"));
         }
         if json.get("family").is_some_and(|family| family != "yerc") {
-            return Err("family: the dump is of another family than yerc".to_owned());
+            return Err("family: the dump is not from a yerc robot".to_owned());
         }
-        let text =
-            |name: &str| json.get(name).and_then(Json::as_str).ok_or_else(|| format!("{name}: a name is expected"));
+        let text = |name: &str| json.get(name).and_then(Json::as_str).ok_or_else(|| format!("{name}: expected a name"));
         let taken_from: Model = text("model")?.parse().map_err(|error| format!("model: {error}"))?;
         let encoding: Encoding = text("encoding")?.parse().map_err(|error| format!("encoding: {error}"))?;
         let entries = ["variables", "items"].iter().find_map(|list| json.get(*list)?.as_array());
-        let entries = entries.ok_or("variables: a list is expected")?;
+        let entries = entries.ok_or("variables: expected a list")?;
         let reading = Reading { model, encoding };
         let mut seen = HashMap::new();
         let mut variables = Vec::with_capacity(entries.len());
         for (index, entry) in entries.iter().enumerate() {
             let (reference, value) = reading.entry(entry).map_err(|error| format!("variables[{index}]{error}"))?;
             if let Some(first) = seen.insert(reference, index) {
-                return Err(format!("variables[{index}].name: {reference} is in variables[{first}] already"));
+                return Err(format!("variables[{index}].name: {reference} is already in variables[{first}]"));
             }
             variables.push((reference, value.map(Kept::Whole)));
         }
@@ -228,21 +232,21 @@ impl WriteOrder for WriteStep {
     }
 }
 
-/// What was written back.
+/// Result of a restore.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Restored {
     file: String,
-    /// How many variables.
+    /// Number of variables written.
     written: usize,
-    /// Which, as in `B0..B99, I0..I99`.
+    /// Names of the variables written, as in `B0..B99, I0..I99`.
     written_names: String,
-    /// How many the controller held like this already.
+    /// Number of variables that already had this value.
     unchanged: usize,
     unchanged_names: String,
-    /// How many the dump has no value for.
+    /// Number of variables without a value in the dump.
     left_alone: usize,
     left_alone_names: String,
-    /// Frames it took.
+    /// Number of frames sent.
     requests: usize,
 }
 
@@ -252,7 +256,7 @@ impl Report for Restored {
         View::fields([
             ("written", names(self.written, &self.written_names)),
             ("unchanged", names(self.unchanged, &self.unchanged_names)),
-            ("left alone", names(self.left_alone, &self.left_alone_names)),
+            ("skipped", names(self.left_alone, &self.left_alone_names)),
             ("variables", self.written.into()),
             ("requests", self.requests.into()),
         ])
@@ -278,7 +282,7 @@ mod tests {
             entry(json!({"name": "B1", "value": 256})),
             "variables[1].value: '256' is not a number from 0 to 255"
         );
-        assert_eq!(entry(json!({"name": "B0", "value": 2})), "variables[1].name: B0 is in variables[0] already");
+        assert_eq!(entry(json!({"name": "B0", "value": 2})), "variables[1].name: B0 is already in variables[0]");
         assert!(error("{").starts_with("no JSON: "));
         assert!(error("{}").starts_with("format: "));
         assert!(error(&dump(&json!([])).replace("\"version\":1", "\"version\":2")).starts_with("version: "));

@@ -35,27 +35,27 @@ use crate::gate::{self, Confirmation};
 use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Table, View};
 
-/// Variables to write.
+/// Writes variables.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Every value is checked before the first is sent; runs of numbers go in one request. A position \
-                        is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with \
-                        tool=, user=, form=back+lower+noflip, or @FILE with what `var get P1 --json` or \
-                        `position --json` printed (of both coordinates the pulses; @- is stdin). P1=here is `teach P1`. BP takes \
-                        base: or pulse:, EX pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change that word and keep \
-                        the others (a P is read, changed and written back whole); axis words count steps of the wire \
-                        (pulses, or 0.001 mm and 0.0001 degree)."
+    after_help = "All values are checked before the first is sent; consecutive numbers are sent in one request. A \
+                  position is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with \
+                  tool=, user=, form=back+lower+noflip. @FILE reads the output of `var get P1 --json` or `position \
+                  --json` (its pulses, if it has both; @- is stdin). P1=here is the same as `teach P1`. BP accepts \
+                  base: or pulse:, EX pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change only that word (a P is \
+                  read, changed and written back completely). Axis words are in protocol steps (pulses, or 0.001 mm \
+                  and 0.0001 degree)."
 )]
 pub struct Set {
-    /// Such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
+    /// B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
     #[arg(required = true, value_name = "REF=VALUE", add = complete::VARIABLE_VALUE)]
     assignments: Vec<Assignment>,
-    /// Write strings by the 16-byte commands, also on a DX200
+    /// Write strings with the 16-byte commands, even on a DX200
     #[arg(long)]
     s16: bool,
 }
 
-/// `B0=255`, taken apart, and checked as far as that goes without the robot's settings.
+/// An assignment such as `B0=255`, checked as far as possible without the robot's settings.
 #[derive(Debug, Clone, PartialEq)]
 struct Assignment {
     reference: Reference,
@@ -65,9 +65,9 @@ struct Assignment {
 #[derive(Debug, Clone, PartialEq)]
 enum Input {
     Ready(Value),
-    /// A string, in an encoding yet to be known.
+    /// String, with an encoding that is not known yet.
     Text(String),
-    /// A position in a JSON file.
+    /// Position in a JSON file.
     File(PathBuf),
     /// One word of a BP or EX.
     Field(WriteField),
@@ -82,7 +82,7 @@ impl FromStr for Assignment {
         let (name, value) = typed::setting(text, "a variable", "a value", "B0=255")?;
         let (reference, field) = reference_of(name)?;
         let Some(reference) = reference else {
-            // What a name stands for decides what the value must be.
+            // The variable of a name decides which values are valid.
             return Ok(Self { reference: ANY, input: Input::Text(value.to_owned()) });
         };
         if let Some(field) = field {
@@ -104,14 +104,14 @@ impl FromStr for Assignment {
     }
 }
 
-/// Stands for a name that is not known yet.
+/// Placeholder for a name that is not resolved yet.
 const ANY: Reference = Reference::new(VariableKind::B, 0);
 
-/// A variable as typed, or its name, and the part of it that is named; no variable yet where its name is to be looked up.
+/// Parses a variable or its name, and the part after it; no variable yet for a name.
 fn reference_of(text: &str) -> Result<(Option<Reference>, Option<&str>), String> {
     let parts = text.rsplit_once('.').map(|(name, field)| (name, Some(field)));
     let address = |name: &str| name.parse::<Reference>().map_err(message);
-    // A name may have a point in it; a part stands behind the last one.
+    // A name may contain a dot; the part is after the last dot.
     let (name, field) = match parts {
         Some((name, field)) if is_part(field.unwrap_or_default()) || address(name).is_ok() => (name, field),
         _ => (text, None),
@@ -120,7 +120,7 @@ fn reference_of(text: &str) -> Result<(Option<Reference>, Option<&str>), String>
     Ok(((!is_open).then_some(reference), field))
 }
 
-/// Whether a word is that of a part of a position.
+/// Whether a word is a part of a position.
 fn is_part(field: &str) -> bool {
     matches!(field, "tool" | "user") || field.strip_prefix("axis").is_some_and(|number| number.parse::<u8>().is_ok())
 }
@@ -136,11 +136,11 @@ fn in_range(what: &str, number: u32) -> Result<u32, String> {
     }
 }
 
-/// A single word (3.3.16 to 3.3.18).
+/// Parses a single word (3.3.16 to 3.3.18).
 fn field_of(reference: Reference, field: &str, value: &str) -> Result<Input, String> {
     let kind = reference.kind;
     if !kind.is_position() {
-        return Err(format!("{reference} has no parts; only positions (P, BP, EX) have"));
+        return Err(format!("{reference} has no parts; only positions (P, BP, EX) have parts"));
     }
     let is_robot = kind == VariableKind::P;
     let number = integer(value);
@@ -154,12 +154,12 @@ fn field_of(reference: Reference, field: &str, value: &str) -> Result<Input, Str
         }
         (_, Some(axis)) => {
             let steps = number.and_then(|number| i32::try_from(number).ok()).ok_or_else(|| {
-                format!("'{value}' is not a number from {} to {} (steps of the wire)", i32::MIN, i32::MAX)
+                format!("'{value}' is not a number from {} to {} (protocol steps)", i32::MIN, i32::MAX)
             })?;
             if is_robot {
                 return Ok(Input::Word(Word::Axis(usize::from(axis) - 1, steps)));
             }
-            // Before the axes stands the type.
+            // The type precedes the axes.
             let field = WriteField::new(kind, reference.number, 1 + axis, steps.to_le_bytes()).map_err(message)?;
             Ok(Input::Field(field))
         }
@@ -218,7 +218,7 @@ impl Command for Set {
         }
         let mut whole_words = Vec::new();
         for (reference, value) in &mut values {
-            // Words of a position that is given whole are a part of it.
+            // Words of a position that is written completely are merged into it.
             let Value::Position(position) = value else { continue };
             for word in words.remove(reference).unwrap_or_default() {
                 word.set(position);
@@ -303,7 +303,7 @@ impl Assignment {
 
 fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, Failure> {
     let wrong = |error: String| {
-        let hint = "`armctl yerc var set --help` shows how values are written";
+        let hint = "see `armctl yerc var set --help` for the notation of values";
         Failure::usage(format!("{reference}: {error}")).hint(hint)
     };
     match input {
@@ -316,7 +316,7 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
         }
         Input::File(path) => {
             let wrong = |error: String| {
-                let hint = "the file holds a position as `yerc var get P1 --json` or `yerc position --json` prints it";
+                let hint = "use a file from `yerc var get P1 --json` or `yerc position --json`";
                 Failure::usage(format!("{}: {error}", path.display())).hint(hint)
             };
             let text = printed_position(path)?;
@@ -324,7 +324,7 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
                 wrong(error.to_string()).hint(format!("it must be a position of {}", reference.kind.letters()))
             })
         }
-        Input::Field(_) | Input::Word(_) => Err(wrong("a part is no value".to_owned())),
+        Input::Field(_) | Input::Word(_) => Err(wrong("a part is not a value".to_owned())),
     }
 }
 
@@ -367,10 +367,10 @@ impl WriteOrder for Change {
     }
 }
 
-/// What the controller confirmed.
+/// Confirmed writes.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Written {
-    /// Whole variables.
+    /// Complete variables.
     items: Vec<orders::Written<Entry>>,
     /// Single words of positions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -384,13 +384,13 @@ struct Part {
     name: String,
     /// `tool`, `user` or `axis1`.
     part: String,
-    /// Its place, counted from 1, the type.
+    /// Attribute: its index starting with 1, the type.
     attribute: u8,
-    /// What was there; null where that was not read.
+    /// Old value; null if it was not read.
     old: Option<i64>,
-    /// Its value now.
+    /// New value.
     new: i64,
-    /// The same.
+    /// New value (same as `new`).
     value: i64,
 }
 
@@ -432,10 +432,10 @@ mod tests {
     #[test]
     fn values_are_checked_before_anything_is_sent() {
         assert_eq!(error("B0=256"), "'256' is not a number from 0 to 255");
-        assert_eq!(error("B0"), "a variable, '=' and a value are expected, as in B0=255");
+        assert_eq!(error("B0"), "write a variable, '=' and a value, as in B0=255");
         assert_eq!(
             error("X0=1"),
-            "'X0' names no variable; there are B, I, D, R, S, P, BP and EX with a number, e.g. B0 or B0..B99"
+            "'X0' is not a variable; use B, I, D, R, S, P, BP or EX with a number, e.g. B0 or B0..B99"
         );
         assert!(error("P1=base:x=1").starts_with("axis 'y' is missing"));
         assert_eq!(error("P1=pulse:s=0,l=0,u=0,r=0,b=0,t=0,tool=64"), "tool: 64 is not a number from 0 to 63");

@@ -1,6 +1,6 @@
-//! Variables as a table that people keep in a spreadsheet: a row each, with the axes of positions in columns of their own.
+//! Variables as a spreadsheet table: one row per variable, with the axes of positions in columns.
 //!
-//! What a position has no cell for stays as it is on the controller.
+//! Fields of a position without a cell stay unchanged on the controller.
 
 use std::collections::HashMap;
 
@@ -15,29 +15,29 @@ use crate::controller::text::hex;
 use crate::controller::yerc::payload::{Axes, ExtendedForm, Form, MAX_AXES, Position, PositionKind};
 use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 
-/// What a file says of a variable.
+/// Content of a file for a variable.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Kept {
-    /// All of it.
+    /// Complete value.
     Whole(Value),
-    /// Fields of a position, as JSON has them.
+    /// Fields of a position, as in JSON.
     Fields(Map<String, Json>),
 }
 
-/// Before the axes, and behind them.
+/// Column before the axes, and column after them.
 const NAME: &str = "name";
 const VALUE: &str = "value";
 const TEXT: &str = "text";
 const TEXT_HEX: &str = "value_hex";
 const TYPE: &str = "type";
-/// The text that is empty: an empty cell says nothing of its variable. A text of these two characters has its bytes beside
-/// it.
+/// Text for an empty string, because an empty cell means no value. A string of these two characters also has its
+/// bytes in the row.
 const EMPTY: &str = "\"\"";
 const ARM: [&str; 4] = ["tool", "user", "form_code", "extended_form_code"];
-const EXPECTED: &str = "the columns are name, value (numbers), text (strings), and of positions type, x_mm and the like, \
-                        as `var dump FILE.csv` writes them";
+const EXPECTED: &str = "the columns are name, value (numbers), text (strings), and for positions type, x_mm and so on, \
+                        as in a file from `var dump FILE.csv`";
 
-/// Variables as cells under columns: those that have something in them.
+/// Table of variables, with only the columns that have a value.
 pub fn rows(entries: &[Entry]) -> (Vec<Column>, Vec<Vec<String>>) {
     let cells: Vec<Vec<(String, String)>> = entries.iter().map(cells).collect();
     let used = |name: &str| cells.iter().flatten().any(|(column, _)| column == name);
@@ -58,7 +58,7 @@ pub fn rows(entries: &[Entry]) -> (Vec<Column>, Vec<Vec<String>>) {
     (columns, rows)
 }
 
-/// What a variable has in which column.
+/// Cells of a variable by column.
 fn cells(entry: &Entry) -> Vec<(String, String)> {
     let mut cells = vec![(NAME.to_owned(), entry.name().to_owned())];
     let json = serde_json::to_value(entry).unwrap_or_default();
@@ -88,12 +88,12 @@ fn plain(json: &Json) -> String {
     json.as_str().map_or_else(|| json.to_string(), ToOwned::to_owned)
 }
 
-/// One spelling of a name.
+/// Canonical spelling of a name.
 pub fn canonical(name: &str) -> String {
     name.parse::<Reference>().map_or_else(|_| name.to_owned(), |reference| reference.to_string())
 }
 
-/// The variables of a file, each once; none of one without a cell.
+/// Variables of a file without duplicates; a variable without cells has no value.
 pub fn read(bytes: &[u8], reading: Reading) -> Result<Vec<(Reference, Option<Kept>)>, Vec<Finding>> {
     let mut findings = Findings::default();
     let mut variables = Vec::new();
@@ -113,7 +113,7 @@ pub fn read(bytes: &[u8], reading: Reading) -> Result<Vec<(Reference, Option<Kep
             match variable(&sheet, row, given, reading) {
                 Ok((reference, kept)) => {
                     if let Some(other) = seen.insert(reference, row.line) {
-                        let message = format!("{reference} is there already, in line {other}");
+                        let message = format!("{reference} is already in line {other}");
                         findings.error(row.place(usize::MAX), message, None);
                     }
                     variables.push((reference, kept));
@@ -125,7 +125,7 @@ pub fn read(bytes: &[u8], reading: Reading) -> Result<Vec<(Reference, Option<Kep
     if findings.errors() == 0 { Ok(variables) } else { Err(findings.into_errors()) }
 }
 
-/// A row. An error comes with the cell that it is in.
+/// Parses a row. An error includes the column of the cell.
 fn variable<'k>(
     sheet: &Sheet,
     row: &Row,
@@ -152,7 +152,7 @@ fn variable<'k>(
         first = if column == NAME { first } else { at };
     }
     if whole.contains_key("value_hex") && whole.get("value") == Some(&json!("")) {
-        // With its bytes beside it, it is no empty text.
+        // With its bytes in the row, it is not an empty string.
         whole.insert("value".to_owned(), json!(EMPTY));
     }
     let reference: Reference = name.1.parse().map_err(|error| (name.0, format!("{error}")))?;
@@ -160,7 +160,7 @@ fn variable<'k>(
     let is_position = reference.kind.is_position();
     let (own, other) = if is_position { (&fields, &whole) } else { (&whole, &fields) };
     if !other.is_empty() {
-        let what = if is_position { "a position, which has axes in columns" } else { "no position" };
+        let what = if is_position { "a position, which has axes in columns" } else { "not a position" };
         return Err((first, format!("{reference} is {what}")));
     }
     if own.is_empty() {
@@ -175,7 +175,7 @@ fn variable<'k>(
 }
 
 impl Kept {
-    /// The value, with what is kept of the one that is there. The error says what is wrong.
+    /// Complete value, with missing fields from the current one.
     pub fn over(self, kind: VariableKind, old: Option<&Value>) -> Result<Value, String> {
         let fields = match self {
             Self::Whole(value) => return Ok(value),
@@ -189,7 +189,7 @@ impl Kept {
         let is_other_type = fields.get(TYPE).is_some_and(|given| merged.get(TYPE) != Some(given));
         let is_alone = merged.is_empty() || is_other_type;
         if is_alone && !fields.contains_key(TYPE) {
-            return Err("the controller has none that could be kept in part; give type and all axes".to_owned());
+            return Err("the position is undefined on the controller; give type and all axes".to_owned());
         }
         if is_alone {
             merged.clear();
@@ -203,15 +203,14 @@ impl Kept {
             Some(axes.filter(|name| !fields.contains_key(*name)).cloned().collect::<Vec<_>>())
         };
         match PositionData::of(&value).as_ref().and_then(missing).filter(|_| is_alone) {
-            Some(missing) if !missing.is_empty() => Err(format!(
-                "the controller has none of this type that could be kept in part; {} is missing",
-                missing.join(", ")
-            )),
+            Some(missing) if !missing.is_empty() => {
+                Err(format!("the position on the controller has another type; {} is missing", missing.join(", ")))
+            }
             _ => Ok(value),
         }
     }
 
-    /// Two positions that agree in nothing but what is known before, for a dry run.
+    /// Two positions that differ in all unknown fields, for a dry run.
     pub fn sketch(&self, kind: VariableKind) -> Option<[Value; 2]> {
         let Self::Fields(fields) = self else { return None };
         let is_pulses =
@@ -229,7 +228,7 @@ impl Kept {
         Some([whole(of((0, 0, 0)))?, whole(of((1, u32::MAX, -1)))?])
     }
 
-    /// What a dry run says of what is not known before.
+    /// Text of the unknown fields for a dry run.
     pub fn describe(&self) -> Option<String> {
         let Self::Fields(fields) = self else { return None };
         Some(fields.iter().map(|(name, value)| format!("{name}={}", plain(value))).collect::<Vec<_>>().join(", "))
@@ -306,7 +305,7 @@ mod tests {
         let error = |text: &str| read(text.as_bytes(), READING).unwrap_err()[0].to_string();
         assert!(error("value\n1\n").contains("column name is missing"));
         assert!(error("name,value\nB0,256\n").contains("not a number from 0 to 255"));
-        assert!(error("name,value\nB0,1\nB000,2\n").contains("B0 is there already, in line 2"));
+        assert!(error("name,value\nB0,1\nB000,2\n").contains("B0 is already in line 2"));
         assert!(error("name,value\nP0,1\n").contains("P0 is a position"));
         assert!(error("name,x_mm\nB0,1\n").contains("B0 is no position"));
         assert!(error("name,value\nQ0,1\n").starts_with("line 2, column 1"));

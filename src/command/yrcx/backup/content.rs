@@ -1,4 +1,4 @@
-//! The parts of a controller as texts, and texts as what is to be written.
+//! Conversion between the parts of a controller and the text files of a backup.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -26,12 +26,12 @@ use crate::output::Screen;
 use crate::output::progress::Progress;
 use crate::settings::target::Family;
 
-/// What kind of controller it is.
+/// Controller model and its robots.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Controller {
-    /// Of the host software: `V1.08 R0048`.
+    /// Host software version: `V1.08 R0048`.
     pub software: String,
-    /// The robots that it has.
+    /// Robots of the controller.
     pub robots: Vec<Robot>,
 }
 
@@ -42,7 +42,7 @@ pub struct Robot {
     pub robot: u8,
     /// The number of its model.
     pub robot_type: i32,
-    /// The axes that it has, 1 to 4.
+    /// Its axes, 1 to 4.
     pub axes: Vec<u8>,
 }
 
@@ -61,7 +61,7 @@ impl About for Controller {
 }
 
 impl Controller {
-    /// Asks the controller.
+    /// Reads it from the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let versions = link.ask(&Command::Versions.order().build()?).await?.values;
         let told = |key| shown(Command::Versions, &versions, key).unwrap_or_default();
@@ -80,46 +80,46 @@ impl Controller {
         Ok(Self { software, robots })
     }
 
-    /// What a dry run notes of [`ask`](Self::ask).
+    /// Notes the requests of [`ask`](Self::ask) in a dry run.
     pub fn plan(link: &mut Link) -> Result<(), Failure> {
-        link.plan(&Command::Versions.order().build()?, "which versions it has");
+        link.plan(&Command::Versions.order().build()?, "versions");
         for robot in 1..=4_u8 {
-            link.plan(&of_robot(Command::ServoStatus, robot).build()?, &format!("which axes robot {robot} has"));
-            let (order, about) = (of_robot(Command::System, robot).build()?, format!("its type, robot {robot}"));
-            plan_if(link, &order, &about, &format!("the axes: it is asked if there is a robot {robot}"));
+            link.plan(&of_robot(Command::ServoStatus, robot).build()?, &format!("axes of robot {robot}"));
+            let (order, about) = (of_robot(Command::System, robot).build()?, format!("type of robot {robot}"));
+            plan_if(link, &order, &about, &format!("the axes: it is read if there is a robot {robot}"));
         }
         Ok(())
     }
 
-    /// The types of its robots, in words.
+    /// Types of the robots as text.
     pub fn types(&self) -> String {
         let types = self.robots.iter().map(|robot| format!("{} (robot {})", robot.robot_type, robot.robot));
         types.collect::<Vec<_>>().join(", ")
     }
 }
 
-/// Notes in a dry run what is sent only if an answer says so.
+/// Notes a conditional request in a dry run.
 fn plan_if(link: &mut Link, order: &Order, about: &str, depends_on: &str) {
     link.plan_depending(order, order, Reason::about(about).depending_on(depends_on));
 }
 
-/// What the state of the servo of an axis is that is not there (4.7.3).
+/// Servo state of an axis that does not exist (4.7.3).
 const NO_AXIS: i32 = 9;
 
 /// A part as text.
 pub struct Text {
-    /// What its file holds.
+    /// Content of the file.
     pub text: String,
-    /// Which numbers were asked for.
+    /// Numbers that were requested.
     pub numbers: Vec<i32>,
-    /// Numbers that the controller has nothing for, with the alarm that it refused them with.
+    /// Numbers that the controller refused, with the alarm.
     pub refused: Vec<(i32, Alarm)>,
-    /// What there is and is not in the file.
+    /// Items that are not in the file, with the reason.
     pub left_out: Vec<LeftOut>,
 }
 
 impl Text {
-    /// As the list says it.
+    /// Text for the list of items.
     pub fn holds(&self, part: Part) -> String {
         match part {
             Part::Points(_) | Part::Comments(_) => format!("{} {}", part.kind(), runs(&self.numbers)),
@@ -127,7 +127,7 @@ impl Text {
         }
     }
 
-    /// Numbers that were refused, by alarms.
+    /// Refused numbers, grouped by alarm.
     pub fn refusals(&self) -> Vec<LeftOut> {
         let mut alarms: Vec<Alarm> = self.refused.iter().map(|(_, alarm)| *alarm).collect();
         alarms.dedup();
@@ -144,12 +144,12 @@ impl Text {
     }
 }
 
-/// An order for a robot of the controller.
+/// A command for one robot of the controller.
 fn of_robot(command: Command, robot: u8) -> Draft {
     command.order().with(Key::Robot, i32::from(robot))
 }
 
-/// Asks; a refusal is an answer, unless the next command would be refused as well.
+/// Sends a request. A refusal is a result, unless the next command would be refused as well.
 pub async fn ask(link: &mut Link, order: &Order) -> Result<Result<Values, Alarm>, Failure> {
     match link.try_ask(order).await? {
         Ok(done) => check_echo(order, &done.values).map(|()| Ok(done.values)),
@@ -158,41 +158,41 @@ pub async fn ask(link: &mut Link, order: &Order) -> Result<Result<Values, Alarm>
     }
 }
 
-/// So many in a row that are not defined end the points, where nobody says which.
+/// Number of consecutive undefined points that ends the search, if the user gives no range.
 pub const GAP: usize = 100;
 
-/// Which numbers of records are read.
+/// Selection of the record numbers to read.
 pub struct Wanted {
-    /// In this order.
+    /// Numbers in the order of reading.
     pub numbers: Vec<i32>,
-    /// These are read in any case.
+    /// Numbers that are always read.
     pub always: BTreeSet<i32>,
-    /// After so many other ones in a row that were refused no more are read; `None` to read all.
+    /// Number of consecutive refusals that ends the search; `None` reads all.
     pub gap: Option<usize>,
-    /// Refused ones before the first.
+    /// Refusals before the first number.
     pub gap_before: usize,
 }
 
 impl Wanted {
-    /// All of these.
+    /// Selects all of `numbers`.
     pub fn all(numbers: Vec<i32>) -> Self {
         Self { numbers, always: BTreeSet::new(), gap: None, gap_before: 0 }
     }
 }
 
 impl Records {
-    /// All numbers that there are.
+    /// All valid numbers.
     pub fn all(&self) -> Result<Vec<i32>, Failure> {
         let numbers = self.numbers.split(',').map(|text| self.parse(text)).collect::<Result<Vec<_>, _>>();
         Ok(Numbers::of(&numbers.map_err(Failure::local)?))
     }
 
-    /// A number, or a range of them.
+    /// Parses a number or a range.
     pub fn parse(&self, text: &str) -> Result<Numbers, String> {
         Numbers::parse(self.read, self.columns[0].1, text)
     }
 
-    /// What reads one.
+    /// Request that reads one record.
     pub fn read(&self, number: i32) -> Result<Order, Failure> {
         Ok(self.read.order().with(self.columns[0].1, number).build()?)
     }
@@ -201,7 +201,7 @@ impl Records {
         self.columns.iter().map(|(name, _)| *name).collect()
     }
 
-    /// What an answer says, under the columns.
+    /// Row of an answer, in the order of the columns.
     pub fn row(&self, number: i32, values: &Values) -> Row {
         let text = |(index, key): (usize, Key)| match values.value(key) {
             None if index == 0 => {
@@ -214,10 +214,10 @@ impl Records {
         self.columns.iter().map(|(_, key)| *key).enumerate().map(|column| text(column).unwrap_or_default()).collect()
     }
 
-    /// What stores a row.
+    /// Request that stores a row.
     pub fn store(&self, row: &Row) -> Result<Store, Failure> {
         let cells = || self.columns.iter().map(|(_, key)| *key).zip(row);
-        // A hand is written to a robot, and read with the robot that has it; no hand system has no text.
+        // A hand is written to a robot, and its answer names that robot. No hand system is an empty text.
         let draft = cells().fold(self.write.order(), |draft, (key, text)| match key {
             Key::Owner => draft.with(Key::Robot, text.as_str()),
             Key::HandSystem if text.is_empty() => draft,
@@ -234,7 +234,7 @@ impl Records {
     }
 }
 
-/// The field of a key that counts where a layout has several.
+/// Last field of a key, because a layout can have several.
 fn field(mut layout: impl Iterator<Item = &'static Field>, key: Key, values: &Values) -> Option<&'static Field> {
     let counts = |field: &Field| {
         let other = |key| values.int(key).unwrap_or_default();
@@ -243,7 +243,8 @@ fn field(mut layout: impl Iterator<Item = &'static Field>, key: Key, values: &Va
     layout.find(|field| field.key == key && counts(field))
 }
 
-/// What a robot is set to: its name, what reads it and what writes it (4.2.8, 4.2.14 to 16, 4.2.19; 4.7.8, 9, 16).
+/// Settings of a robot: name, read command and key, write command and key (4.2.8, 4.2.14 to 16, 4.2.19; 4.7.8, 9,
+/// 16).
 const SETTINGS: [(&str, Command, Key, Command, Key); 5] = [
     ("auto_speed_percent", Command::SpeedStatus, Key::AutoSpeed, Command::SpeedAuto, Key::SpeedPercent),
     ("manual_speed_percent", Command::SpeedStatus, Key::ManualSpeed, Command::SpeedManual, Key::SpeedPercent),
@@ -254,11 +255,11 @@ const SETTINGS: [(&str, Command, Key, Command, Key); 5] = [
 const SETTING_COLUMNS: [&str; 3] = ["robot", "setting", "value"];
 const PARAMETER_COLUMNS: [&str; 4] = ["robot", "parameter", "axis", "value"];
 
-/// Notes in a dry run what reads a part; points are those that are asked for.
+/// Notes the read requests of a part in a dry run; `points` is the requested selection.
 pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Result<(), Failure> {
     match (part, part.records()) {
         (Part::Points(_), Some(records)) => {
-            // As many as are read in any case.
+            // These are read in any case.
             let certain = || (0..).take(GAP).collect();
             let numbers = points.map_or_else(certain, |points| points.iter().copied().collect::<Vec<_>>());
             plan_records(link, records, numbers)?;
@@ -275,7 +276,7 @@ pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Resu
                     (Command::ArmDesignation, "hand system"),
                 ] {
                     let (order, about) = (of_robot(command, robot).build()?, format!("{about} of robot {robot}"));
-                    plan_if(link, &order, &about, &format!("its axes: it is asked if there is a robot {robot}"));
+                    plan_if(link, &order, &about, &format!("its axes: it is read if there is a robot {robot}"));
                 }
             }
             Ok(())
@@ -285,14 +286,14 @@ pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Resu
                 for (name, axis) in parameters_of(&[1, 2, 3, 4]) {
                     let about = parameter_key(robot, name, &axis);
                     let order = parameter(robot, name, &axis)?;
-                    plan_if(link, &order, &about, "its axes: it is asked if the robot has them");
+                    plan_if(link, &order, &about, "its axes: they are read if the robot has them");
                 }
             }
             Ok(())
         }
         _ => {
             link.plan(&Command::Versions.order().build()?, "versions");
-            link.plan(&Command::Slots.order().with(Key::Controller, 1).build()?, "what is in the option slots");
+            link.plan(&Command::Slots.order().with(Key::Controller, 1).build()?, "option slots");
             Ok(())
         }
     }
@@ -334,7 +335,7 @@ pub async fn read_records(
         match ask(link, &records.read(*number)?).await? {
             Ok(values) => {
                 gap = if is_over { gap } else { 0 };
-                // A point without a comment has an empty one.
+                // A point without a comment has an empty comment.
                 if values.text(Key::Comment) != Some("") {
                     rows.push(records.row(*number, &values));
                 }
@@ -352,11 +353,11 @@ pub async fn read_records(
     Ok(Text { text: rows::write(&records.names(), &rows), numbers: asked, refused, left_out })
 }
 
-/// What may not be written back, such as a pallet without places, is told and not kept.
+/// Removes rows that the controller would refuse, such as a pallet without positions, and lists them.
 fn keep_writable(rows: &mut Vec<Row>, left_out: &mut Vec<LeftOut>, store: impl Fn(&Row) -> Result<Store, Failure>) {
     rows.retain(|row| {
         let Err(failure) = store(row) else { return true };
-        let why = format!("it may not be written: {}", failure.message);
+        let why = format!("it cannot be written back: {}", failure.message);
         left_out.push(LeftOut { key: row.join(" "), why });
         false
     });
@@ -367,7 +368,7 @@ fn bar(screen: &Screen, what: &str, count: usize) -> Progress {
 }
 
 async fn info(link: &mut Link, controller: &Controller) -> Result<String, Failure> {
-    let mut text = String::from("# What the controller is. Nothing of it is written back.\n");
+    let mut text = String::from("# Information about the controller. It is not written back.\n");
     let mut add = |name: &str, value: String| text.push_str(&format!("{name} = {value:?}\n"));
     for (command, keys) in
         [(Command::Versions, &VERSIONS[..]), (Command::Slots, &[Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4][..])]
@@ -434,7 +435,8 @@ fn parameter(robot: u8, name: &str, axis: &str) -> Result<Order, Failure> {
     Ok(draft.with_some(Key::Axes, Some(axis).filter(|axis| !axis.is_empty())).build()?)
 }
 
-/// All parameters of a robot with these axes but one: the payload in kilograms is that in grams, less exactly.
+/// All parameters of a robot with these axes, except the payload in kilograms, which is the payload in grams,
+/// rounded.
 fn parameters_of(axes: &[u8]) -> Vec<(&'static str, String)> {
     let mut all = Vec::new();
     for parameter in PARAMETERS.iter().filter(|parameter| parameter.name != "WEIGHT") {
@@ -477,31 +479,31 @@ fn parameter_key(robot: impl std::fmt::Display, name: &str, axis: &str) -> Strin
     format!("{name} of robot {robot}{of_axis}")
 }
 
-/// A value to be written, unless the controller has it.
+/// A value to be written, unless the controller already has it.
 #[derive(Debug, PartialEq)]
 pub struct Store {
-    /// What tells it from the others.
+    /// Name of the value.
     pub key: String,
-    /// Reads what is there.
+    /// Request that reads the current value.
     pub read: Order,
-    /// Writes it.
+    /// Request that writes it.
     pub write: Order,
-    /// What the answer must hold for it to be the same.
+    /// Fields that an equal answer must contain.
     wanted: Vec<(Key, Value)>,
 }
 
 impl Store {
-    /// What an answer that reads it would hold.
+    /// Answer that is expected if the value is equal.
     pub fn wanted_values(&self) -> Values {
         self.wanted.iter().cloned().collect()
     }
 
-    /// Whether what was read is what would be written.
+    /// Whether the value read equals the value to be written.
     pub fn is_there(&self, values: &Values) -> bool {
         self.wanted.iter().all(|(key, wanted)| values.value(*key).unwrap_or(&Value::Int(0)) == wanted)
     }
 
-    /// What was read, in words.
+    /// Text of the value read.
     pub fn describe(&self, values: &Values) -> String {
         let fields = self.wanted.iter().filter_map(|(key, _)| {
             let value = values.value(*key)?;
@@ -510,13 +512,13 @@ impl Store {
         fields.collect::<Vec<_>>().join(" ")
     }
 
-    /// What would be written, in words.
+    /// Text of the value to be written.
     pub fn wanted(&self) -> String {
         self.describe(&self.wanted_values())
     }
 }
 
-/// Reads and checks the file of a part: what is to be written.
+/// Reads and checks the file of a part. Returns the values to be written.
 pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     let path = folder.join(part.file());
     let text = files::text(&path, files::SETTINGS).with_context(|| path.display().to_string())?;
@@ -537,7 +539,7 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     for (line, row) in rows::read(&columns, &text).map_err(wrong)? {
         let store = store(&row).map_err(|failure| wrong(format!("line {line}: {}", failure.message)))?;
         if !seen.insert(store.key.clone()) {
-            return Err(wrong(format!("line {line}: {} is there twice", store.key)));
+            return Err(wrong(format!("line {line}: {} is listed twice", store.key)));
         }
         stores.push(store);
     }
@@ -545,9 +547,10 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
 }
 
 fn setting_store(row: &Row) -> Result<Store, Failure> {
-    let [robot, name, value] = &row[..] else { return Err(Failure::usage("three cells are wanted")) };
+    let [robot, name, value] = &row[..] else { return Err(Failure::usage("expected three cells")) };
     let setting = SETTINGS.iter().find(|(known, ..)| known == name);
-    let (_, read, told, write, key) = setting.ok_or_else(|| Failure::usage(format!("there is no setting '{name}'")))?;
+    let (_, read, told, write, key) =
+        setting.ok_or_else(|| Failure::usage(format!("setting '{name}' does not exist")))?;
     let write = write.order().with(Key::Robot, robot.as_str()).with(*key, value.as_str()).build()?;
     let wanted = vec![(*told, write.values().value(*key).cloned().unwrap_or(Value::Int(0)))];
     let read = read.order().with(Key::Robot, robot.as_str()).build()?;
@@ -555,7 +558,7 @@ fn setting_store(row: &Row) -> Result<Store, Failure> {
 }
 
 fn parameter_store(row: &Row) -> Result<Store, Failure> {
-    let [robot, name, axis, value] = &row[..] else { return Err(Failure::usage("four cells are wanted")) };
+    let [robot, name, axis, value] = &row[..] else { return Err(Failure::usage("expected four cells")) };
     let draft = |command: Command| {
         let draft = command.order().with(Key::Robot, robot.as_str()).with(Key::Parameter, name.as_str());
         draft.with_some(Key::Axes, Some(axis.as_str()).filter(|axis| !axis.is_empty()))
@@ -565,13 +568,13 @@ fn parameter_store(row: &Row) -> Result<Store, Failure> {
     Ok(Store { key: parameter_key(robot, name, axis), read: draft(Command::ParamGet).build()?, write, wanted })
 }
 
-/// The points that a file of them has.
+/// Numbers of the points in a file.
 pub fn defined(part: Part, folder: &Path) -> Result<Vec<i32>, Failure> {
     let number = |store: &Store| store.write.values().int(Key::Point);
     Ok(load(part, folder)?.iter().filter_map(number).collect())
 }
 
-/// The points that the file of pallets names: five each (4.3.3).
+/// Points that the pallet file refers to: five for each pallet (4.3.3).
 pub fn points_of_pallets(pallets: Part, folder: &Path) -> Result<BTreeSet<i32>, Failure> {
     let first = |store: &Store| store.write.values().int(Key::FirstPoint);
     Ok(load(pallets, folder)?.iter().filter_map(first).flat_map(|first| first..first + 5).collect())

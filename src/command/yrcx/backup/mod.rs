@@ -1,6 +1,6 @@
-//! `yrcx backup` and `yrcx restore`: what remote commands read and write, in a folder of text files with a list of itself.
+//! `yrcx backup` and `yrcx restore`: a folder of text files with a manifest, read and written with remote commands.
 //!
-//! Programs and all else are out of reach of remote commands.
+//! Remote commands cannot reach programs and other data.
 
 mod content;
 mod parts;

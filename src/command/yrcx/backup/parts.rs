@@ -1,4 +1,4 @@
-//! The parts of a controller, each in a file of its own.
+//! Parts of a controller backup, one file each.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,35 +6,35 @@ use std::str::FromStr;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 
-/// What is stored in a file of its own.
+/// Part of a backup.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// Versions, option slots, robots: to read only.
+    /// Versions, option slots and robots; read-only.
     Info,
-    /// Speeds, inching distance, hand system of each robot.
+    /// Speeds, inching distance and hand system of each robot.
     Settings,
     /// Parameters of robots and axes.
     Parameters,
-    /// What is read and written by its number.
+    /// Numbered records.
     Records(&'static Records),
-    /// A thousand points, from 0 to 29.
+    /// A thousand points; the value is 0 to 29.
     Points(u16),
-    /// The comments of these points.
+    /// Comments of these points.
     Comments(u16),
 }
 
-/// What is read and written by its number.
+/// A kind of numbered record.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Records {
     /// `pallets`.
     pub kind: &'static str,
-    /// What reads one.
+    /// Read command.
     pub read: Command,
-    /// What writes one.
+    /// Write command.
     pub write: Command,
-    /// Numbers there are.
+    /// Valid numbers.
     pub numbers: &'static str,
-    /// Columns of the file with the fields they hold; the first is the number.
+    /// Columns of the file and their fields; the first is the number.
     pub columns: &'static [(&'static str, Key)],
 }
 
@@ -77,7 +77,7 @@ pub static SHIFTS: Records = Records {
         ("axis_4_mm", Key::Axis4),
     ],
 };
-/// Hands (4.3.5). A hand is written to the robot that has it.
+/// Hands (4.3.5). A hand is written to the robot that it belongs to.
 pub static HANDS: Records = Records {
     kind: "hands",
     read: Command::HandGet,
@@ -92,7 +92,7 @@ pub static HANDS: Records = Records {
         ("data_4", Key::Data4),
     ],
 };
-/// Points (4.3.1); axes are in the unit of each point.
+/// Points (4.3.1); axes in the unit of each point.
 pub static POINTS: Records = Records {
     kind: "points",
     read: Command::PointGet,
@@ -117,24 +117,24 @@ pub static COMMENTS: Records = Records {
     columns: &[("point", Key::Point), ("comment", Key::Comment)],
 };
 
-/// Points in a file.
+/// Points per file.
 pub const THOUSAND: u16 = 1000;
 
 impl Part {
-    /// Those of one file, in the order of reading: pallets come before the points that they name.
+    /// Parts with one file, in the order of reading: pallets before the points that they refer to.
     pub fn single() -> [Self; 7] {
         let [variables, pallets, shifts, hands] = [&VARIABLES, &PALLETS, &SHIFTS, &HANDS].map(Self::Records);
         [Self::Info, Self::Settings, Self::Parameters, variables, pallets, shifts, hands]
     }
 
-    /// All that there can be.
+    /// All possible parts.
     pub fn all() -> impl Iterator<Item = Self> {
         let thousands = (0..30).flat_map(|thousand| [Self::Points(thousand), Self::Comments(thousand)]);
         Self::single().into_iter().chain(thousands)
     }
 
-    /// In the order of writing: a pallet is worth nothing without its points, and what moves the robot otherwise comes
-    /// last.
+    /// Parts in the order of writing: points before the pallets that need them, and parts that change the motion of
+    /// the robot last.
     pub fn in_order_of_writing() -> impl Iterator<Item = Self> {
         let place = |part: &Self| match part {
             Self::Records(records) if records.kind != PALLETS.kind => 0,
@@ -147,13 +147,13 @@ impl Part {
         parts.into_iter()
     }
 
-    /// Its file in the folder.
+    /// File name in the folder.
     pub fn file(self) -> String {
         let ending = if self == Self::Info { "toml" } else { "csv" };
         format!("{self}.{ending}")
     }
 
-    /// What is read and written by its number, if it is that.
+    /// Record description, if the part consists of records.
     pub fn records(self) -> Option<&'static Records> {
         match self {
             Self::Records(records) => Some(records),
@@ -163,7 +163,7 @@ impl Part {
         }
     }
 
-    /// Of which kind it is.
+    /// Kind of the part.
     pub fn kind(self) -> &'static str {
         match (self, self.records()) {
             (_, Some(records)) => records.kind,
@@ -173,7 +173,7 @@ impl Part {
         }
     }
 
-    /// Whether it changes how the robot moves, and goes back only when that is asked for.
+    /// Whether the part changes how the robot moves. It is restored only with `--machine`.
     pub fn is_machine(self) -> bool {
         matches!(self, Self::Settings | Self::Parameters)
     }
@@ -194,7 +194,7 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        Self::all().find(|part| part.to_string() == name).ok_or_else(|| format!("there is no part '{name}'"))
+        Self::all().find(|part| part.to_string() == name).ok_or_else(|| format!("part '{name}' does not exist"))
     }
 }
 

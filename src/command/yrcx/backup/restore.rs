@@ -18,21 +18,21 @@ use crate::failure::{Failure, Kind};
 use crate::gate::Change;
 use crate::output::Screen;
 
-/// A part with what is to be written.
+/// A part with the values to be written.
 pub struct Job {
-    /// Which.
+    /// Part.
     pub part: Part,
-    /// What progress and dry runs call it.
+    /// Name in progress messages and dry runs.
     pub called: String,
-    /// Value by value.
+    /// Values in the order of writing.
     pub stores: Vec<Store>,
 }
 
-/// Writes back what a backup holds.
+/// Restores a backup.
 pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Result<Restored, Failure> {
     let Context { link, screen, authority, .. } = context;
     let Restoring { folder, only, machine, force } = restoring;
-    link.no_unit("a backup is of the whole controller")?;
+    link.no_unit("a backup contains the whole controller")?;
     let manifest: manifest::Manifest<Controller> = manifest::existing(folder)?;
     let saved = || manifest.files.iter().filter(|entry| entry.copy.is_some());
     only.check(&saved().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
@@ -47,7 +47,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
     }
     if jobs.is_empty() {
         return Err(Failure::usage("there is nothing to write in these parts")
-            .hint("parameters and settings are written with --machine only, and info never"));
+            .hint("add --machine to write parameters and settings; info is never written"));
     }
     if link.is_dry() {
         plan_items(link, saved().map(|entry| entry.name.as_str()), &jobs, *machine);
@@ -65,7 +65,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
     Ok(Restored::new(folder, Items::new(items)))
 }
 
-/// Writes what differs, once it is confirmed; `by` names what it comes from.
+/// Writes the differing values after confirmation; `by` names their source.
 pub async fn carry_out(
     (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
     jobs: &[Job],
@@ -74,7 +74,7 @@ pub async fn carry_out(
     by: &str,
 ) -> Result<(), Failure> {
     authority.confirm(&found.change(by)).await?;
-    // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+    // Ctrl-C ends the work here, before the caller handles it, so that the result is reported.
     match interruptible(write_all(link, screen, jobs, found, items)).await {
         Ok(outcome) => outcome,
         Err(failure) => {
@@ -85,13 +85,13 @@ pub async fn carry_out(
     }
 }
 
-/// What a dry run says of each part of the backup.
+/// Notes each part of the backup in a dry run.
 fn plan_items<'m>(link: &mut Link, saved: impl Iterator<Item = &'m str>, jobs: &[Job], machine: bool) {
     let parts: Vec<Part> = Part::in_order_of_writing().collect();
     for name in saved {
         let part = parts.iter().find(|part| part.to_string() == name);
         let why = match part {
-            None | Some(Part::Info) => "tells of the controller; nothing of it is written",
+            None | Some(Part::Info) => "information about the controller; it is not written",
             Some(part) if part.is_machine() && !machine => NOT_MACHINE,
             Some(_) => NOT_CHOSEN,
         };
@@ -102,18 +102,18 @@ fn plan_items<'m>(link: &mut Link, saved: impl Iterator<Item = &'m str>, jobs: &
     }
 }
 
-/// Whether the backup may be written to this controller, and now.
+/// Checks whether the backup can be written to this controller now.
 async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Result<(), Failure> {
     let image = link.look().await?;
     if output::PROGRAM_RUNNING.is_on(&image) {
-        return Err(Failure::new(Kind::Rejected, "the robot program runs, and may use what would be written")
-            .hint("stop it first (`yrcx stop`), then restore"));
+        return Err(Failure::new(Kind::Rejected, "the robot program is running and may use the data to be written")
+            .hint("stop the program (`yrcx stop`), then restore"));
     }
     let found = Controller::ask(link).await?;
     if found.robots != backup.robots && !force {
         let message = format!("the backup is of robot type {}, the controller has {}", backup.types(), found.types());
         return Err(Failure::new(Kind::Rejected, message)
-            .hint("take the backup of this controller; --force writes it all the same"));
+            .hint("use a backup of this controller, or add --force to write it anyway"));
     }
     Ok(())
 }
@@ -122,19 +122,19 @@ fn pending(part: Part) -> Item {
     Item { file: Some(part.file()), written: Some(0), unchanged: Some(0), ..Item::pending(part) }
 }
 
-/// What the controller has, beside what the backup has.
+/// Comparison of the controller with the backup.
 #[derive(Default)]
 pub struct Comparison {
-    /// Of each part, which stores are to be written.
+    /// Indexes of the values to be written, for each part.
     pub differ: Vec<Vec<usize>>,
-    /// What is overwritten: which, old and new.
+    /// Overwritten values: name, old, new.
     pub replaced: Vec<(String, String, String)>,
-    /// Values that the controller has nothing for yet.
+    /// Number of values that are new to the controller.
     pub added: usize,
 }
 
 impl Comparison {
-    /// Reads what a part has a value for.
+    /// Reads the current values of a part.
     async fn compare(
         &mut self,
         link: &mut Link,
@@ -155,7 +155,7 @@ impl Comparison {
         Ok(())
     }
 
-    /// Says whether a value is to be written, and counts it.
+    /// Decides whether a value must be written, and counts it.
     pub fn sort(&mut self, part: Part, store: &Store, there: Option<&Values>, item: &mut Item) -> bool {
         match there {
             Some(values) if store.is_there(values) => {
@@ -171,23 +171,23 @@ impl Comparison {
         true
     }
 
-    /// What is asked for.
+    /// Content of the confirmation.
     fn change(&self, folder: &str) -> Change {
         let count = match self.replaced.len() {
             0 => return Change::nothing(),
             1 => "1 value".to_owned(),
             many => format!("{many} values"),
         };
-        let change = Change::new(format!("overwrite {count} by those of {folder}"));
+        let change = Change::new(format!("overwrite {count} with those of {folder}"));
         let change = self.replaced.iter().fold(change, |change, (what, old, new)| change.replaces(what, old, new));
         match self.added {
             0 => change,
-            added => change.note(format!("Values that the controller has not yet are written as well: {added}.")),
+            added => change.note(format!("New values are added: {added}.")),
         }
     }
 }
 
-/// Writes what differs.
+/// Writes the differing values.
 async fn write_all(
     link: &mut Link,
     screen: &Screen,
@@ -207,7 +207,7 @@ async fn write_all(
     Ok(())
 }
 
-/// Writes what differs of a part. What the controller refuses is noted, and the rest goes on.
+/// Writes the differing values of a part. A refusal is noted, and the other values are still written.
 async fn write(
     link: &mut Link,
     screen: &Screen,
@@ -232,7 +232,7 @@ async fn write(
     refusal.map_or(Ok(()), Err)
 }
 
-/// The failure of one value.
+/// Failure with the name of the value.
 pub fn named(store: &Store, failure: Failure) -> Failure {
     Failure { message: format!("{}: {}", store.key, failure.message), ..failure }
 }
@@ -257,5 +257,5 @@ fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
     Err(unknown())
 }
 
-/// On what it depends whether a value is written.
-pub const IF_IT_DIFFERS: &str = "the comparison: it is written if it differs";
+/// Condition for writing a value, for dry runs.
+pub const IF_IT_DIFFERS: &str = "the comparison: written if different";

@@ -1,8 +1,8 @@
-//! The files of a backup: a line a record under named columns, as CSV.
+//! CSV files of a backup: one record per line under named columns.
 
 use std::fmt::Write as _;
 
-/// A line: texts under the columns.
+/// Cells of a line.
 pub type Row = Vec<String>;
 
 /// Columns and rows as CSV.
@@ -23,7 +23,7 @@ pub fn write(columns: &[&str], rows: &[Row]) -> String {
     text
 }
 
-/// The rows of a CSV file that has these columns, each with the number of its line.
+/// Rows of a CSV file with these columns, each with its line number.
 pub fn read(columns: &[&str], text: &str) -> Result<Vec<(usize, Row)>, String> {
     let mut lines = (1..).zip(text.lines());
     match lines.next() {
@@ -35,15 +35,15 @@ pub fn read(columns: &[&str], text: &str) -> Result<Vec<(usize, Row)>, String> {
         match cells(line) {
             Some(row) if row.len() == columns.len() => rows.push((number, row)),
             Some(row) => {
-                return Err(format!("line {number}: {} cells under {} columns", row.len(), columns.len()));
+                return Err(format!("line {number}: {} cells for {} columns", row.len(), columns.len()));
             }
-            None => return Err(format!("line {number}: a quotation mark has no other end")),
+            None => return Err(format!("line {number}: a closing quotation mark is missing")),
         }
     }
     Ok(rows)
 }
 
-/// The cells of a line; `None` if a quoted one does not end.
+/// Cells of a line; `None` if a quotation is not closed.
 pub fn cells(line: &str) -> Option<Row> {
     let mut cells = vec![String::new()];
     let (mut is_quoted, mut chars) = (false, line.chars().peekable());
@@ -81,8 +81,8 @@ mod tests {
         for (text, why) in [
             ("", "line 1: the columns are a,b"),
             ("a\n", "line 1: the columns are a,b"),
-            ("a,b\n1,2\n3\n", "line 3: 1 cells under 2 columns"),
-            ("a,b\n1,\"2\n", "line 2: a quotation mark has no other end"),
+            ("a,b\n1,2\n3\n", "line 3: 1 cells for 2 columns"),
+            ("a,b\n1,\"2\n", "line 2: a closing quotation mark is missing"),
         ] {
             assert_eq!(read(&["a", "b"], text).unwrap_err(), why);
         }

@@ -20,13 +20,13 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// Saves points, pallets, shifts, hands, variables, parameters in a folder of text files.
+/// Saves points, pallets, shifts, hands, variables and parameters in a folder of text files.
 #[derive(Debug, Args)]
-#[command(after_help = "Programs are out of reach of remote commands: keep them with the controller's own tools.\n\n\
-                  A point takes as long as a remote command: 60 ms and more at an RPI of 20 ms. Without --points they \
-                  are read from 0 on until 100 in a row are not defined; besides, the points of pallets. manifest.json \
-                  says which were read. A controller refuses what is not defined, and may note that in its history of \
-                  alarms.")]
+#[command(after_help = "Remote commands cannot read programs. Save programs with the controller's own tools.\n\nEach \
+                        point takes one remote command: 60 ms or more at an RPI of 20 ms. Without --points, points are \
+                        read from 0 until 100 in a row are not defined. The points of pallets are always read. \
+                        manifest.json lists the points that were read. A controller refuses undefined points and may \
+                        record this in its alarm history.")]
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
@@ -35,12 +35,12 @@ pub struct Backup {
     points: Vec<String>,
 }
 
-/// Points that can be asked for, as typed.
+/// Points to read, as typed.
 pub fn points(text: &str) -> Result<String, String> {
     POINTS.parse(text).map(|_| text.to_owned())
 }
 
-/// Before numbers of points, in the scope of a backup.
+/// Prefix of the points in the scope of a backup.
 const OF_POINTS: &str = "points ";
 
 impl Command for Backup {
@@ -57,7 +57,7 @@ impl Command for Backup {
 /// Makes a backup.
 pub async fn back_up(context: Context<'_, Yrcx>, making: Making) -> Result<BackedUp, Failure> {
     let Context { link, screen, robot, several, .. } = context;
-    link.no_unit("a backup is of the whole controller")?;
+    link.no_unit("a backup contains the whole controller")?;
     let task = Task::new(making, robot, several)?;
     let asked = Asked::of(&task.scope)?;
     if link.is_dry() {
@@ -66,10 +66,10 @@ pub async fn back_up(context: Context<'_, Yrcx>, making: Making) -> Result<Backe
     cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task, asked))).await
 }
 
-/// What is asked for.
+/// Requested points.
 struct Asked {
     only: Only,
-    /// These points; `None` for all up to a gap.
+    /// Selected points; `None` searches until a gap.
     points: Option<BTreeSet<i32>>,
 }
 
@@ -115,12 +115,12 @@ async fn save(
     let rest = Part::single().into_iter().chain([Part::Points(0), Part::Comments(0)]).filter(|_| !goes_on);
     let rest = rest.filter(|part| asked.has(*part) && !tried.contains(&part.to_string()));
     let mut made = list.end(rest.map(Item::pending))?;
-    // What the controller refused is in the list alone.
+    // Refusals appear only in the list of items.
     made.items.files.iter_mut().filter(|item| item.state == State::Kept).for_each(|item| item.left_out.clear());
     Ok(made)
 }
 
-/// A controller that is read into a folder.
+/// A backup in progress.
 struct Reading<'a> {
     link: &'a mut Link,
     screen: &'a Screen,
@@ -177,7 +177,7 @@ impl Reading<'_> {
         self.list.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some())
     }
 
-    /// Reads a part into its file, unless it is there; `false` if the next one cannot be tried.
+    /// Reads a part into its file, unless the file exists; `false` if the next part cannot be read.
     async fn part(&mut self, part: Part, wanted: Option<Wanted>) -> Result<bool, Failure> {
         let Self { link, screen, controller, list, .. } = self;
         let entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
@@ -214,7 +214,8 @@ async fn read(
     content::read_records(link, screen, records, &wanted).await
 }
 
-/// How many in a row are not defined at the end of a range, after `gap` before it; at least [`GAP`] if so many came in it.
+/// Number of consecutive undefined points at the end of a range, with `gap` before it; at least [`GAP`] if that many
+/// occurred inside the range.
 fn gap_after(gap: usize, within: Range<i32>, defined: &[i32]) -> usize {
     let mut next = within.start;
     let mut gap = gap;

@@ -1,4 +1,4 @@
-//! `yrcx point dump` and `restore`: points with their comments as a table for a spreadsheet.
+//! `yrcx point dump` and `restore`: points and their comments as a spreadsheet table.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -27,13 +27,12 @@ use crate::failure::Failure;
 use crate::gate::Confirmation;
 use crate::output::view::{Section, View};
 
-/// Which points, and where to.
+/// Arguments of `point dump`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The columns are point, unit (mm or pulse), axis_1 to axis_4, hand_system and comment, which is the one on \
-                  the controller; `point restore` writes them back. Points that are not defined are left out. With \
-                  --update, a file that is there keeps its own columns (comment_… and the like), its order and the points \
-                  that are not read."
+    after_help = "The columns are point, unit (mm or pulse), axis_1 to axis_4, hand_system and comment (the comment on \
+                  the controller). `point restore` writes them back. Undefined points are left out. With --update, an \
+                  existing file keeps its own columns (such as comment_…), its order and the points that are not read."
 )]
 pub struct Dump {
     /// A new CSV file
@@ -45,16 +44,16 @@ pub struct Dump {
     manner: SheetManner,
 }
 
-/// What to write.
+/// Arguments of `point restore`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Cells are parted by commas, semicolons or tabs, and numbers may have a decimal comma unless commas part the \
-                  cells. What the file has no column for stays as it is on the controller; a comment stays as well where \
-                  the cell is empty. All of the file is checked before anything is sent. Columns whose names begin with \
-                  comment_ are yours."
+    after_help = "Commas, semicolons or tabs separate cells. Decimal commas are allowed unless commas separate the \
+                  cells. Values without a column stay unchanged on the controller. A comment also stays unchanged if \
+                  its cell is empty. The whole file is checked before anything is sent. Columns whose names begin with \
+                  comment_ are free for your use."
 )]
 pub struct Restore {
-    /// What `point dump` wrote, or a table like it; - is stdin
+    /// File from `point dump` or with the same columns; - is stdin
     file: PathBuf,
 }
 
@@ -64,7 +63,7 @@ const HAND: &str = "hand_system";
 const COMMENT: &str = "comment";
 const EXPECTED: &str = "the columns are point, unit, axis_1 to axis_4, hand_system and comment";
 
-/// Those of points in their order, and the comment.
+/// Columns of points in their order, and the comment.
 fn columns() -> Vec<Column> {
     let axes = AXES.into_iter().map(Column::number);
     let before = [Column::number("point"), Column::text(UNIT)].into_iter();
@@ -78,7 +77,7 @@ impl Command for Dump {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Dumped, Failure> {
         let Context { link, screen, several, .. } = context;
-        link.no_unit("points are of the whole controller")?;
+        link.no_unit("points belong to the whole controller")?;
         let target = self.manner.target(self.file.clone(), several)?;
         let numbers = Numbers::of(&self.points);
         if link.is_dry() {
@@ -111,13 +110,13 @@ fn plan_reads(link: &mut Link, number: i32) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Where points went.
+/// Result of `point dump`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Dumped {
     file: String,
-    /// How many it holds.
+    /// Number of points in the file.
     points: usize,
-    /// Points that were asked for and are refused, mostly as they are not defined, as in `3, 7..9`.
+    /// Requested points that the controller refused, usually because they are not defined, as in `3, 7..9`.
     not_defined: String,
 }
 
@@ -131,7 +130,7 @@ impl Report for Dumped {
     }
 }
 
-/// A point of a file: what its cells say, by their columns.
+/// A point of a file: its cells by column.
 #[derive(Debug, PartialEq)]
 struct Point {
     number: i32,
@@ -160,7 +159,7 @@ fn read(bytes: &[u8]) -> Result<Vec<Point>, Vec<Finding>> {
             match point(&sheet, row, &given) {
                 Ok(point) => {
                     if let Some(other) = seen.insert(point.number, row.line) {
-                        let message = format!("point {} is there already, in line {other}", point.number);
+                        let message = format!("point {} is already in line {other}", point.number);
                         findings.error(row.place(usize::MAX), message, None);
                     }
                     points.push(point);
@@ -172,7 +171,7 @@ fn read(bytes: &[u8]) -> Result<Vec<Point>, Vec<Finding>> {
     if findings.errors() == 0 { Ok(points) } else { Err(findings.into_errors()) }
 }
 
-/// A row. An error comes with the cell that it is in.
+/// Parses a row. An error includes the column of the cell.
 fn point(sheet: &Sheet, row: &Row, given: &[(&'static str, usize)]) -> Result<Point, (usize, String)> {
     let mut point = Point { number: 0, line: row.line, cells: HashMap::new(), comment: None };
     for &(name, at) in given {
@@ -185,7 +184,7 @@ fn point(sheet: &Sheet, row: &Row, given: &[(&'static str, usize)]) -> Result<Po
             COMMENT => point.comment = Some(row.string(at).to_owned()).filter(|text| !text.is_empty()),
             HAND => drop(point.cells.insert(name, text.to_owned())),
             _ if text.is_empty() => {
-                return Err((at, format!("{name} is empty; without its column, it stays as it is")));
+                return Err((at, format!("{name} is empty; remove the column to keep the value")));
             }
             UNIT => drop(point.cells.insert(name, text.to_owned())),
             _ => {
@@ -199,7 +198,7 @@ fn point(sheet: &Sheet, row: &Row, given: &[(&'static str, usize)]) -> Result<Po
 }
 
 impl Point {
-    /// The row that is to be there: what the file says, over what is there.
+    /// The new row: the cells of the file over the current point.
     fn over(&self, old: Option<&Cells>) -> Result<Option<Store>, String> {
         if self.cells.is_empty() {
             return Ok(None);
@@ -217,7 +216,7 @@ impl Point {
                 (None, None) if name == HAND => String::new(),
                 (None, None) => {
                     return Err(format!(
-                        "the controller has no point in {} to keep {name} of; give it",
+                        "the controller has no point in {}, so {name} is needed",
                         unit.map_or("it", |unit| unit)
                     ));
                 }
@@ -229,7 +228,7 @@ impl Point {
 }
 
 impl Point {
-    /// Two points that agree in nothing but the unit, for a dry run.
+    /// Two current points that differ in every column but the unit, for a dry run.
     fn sketch(&self) -> [Cells; 2] {
         let unit = self.cells.get(UNIT).map_or("mm", String::as_str);
         let axes = if unit == "mm" { ["0", "-0.001"] } else { ["0", "-1"] };
@@ -249,16 +248,18 @@ impl Command for Restore {
     type Report = Restored;
     const ID: &'static str = "yrcx.point.restore";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite points by those of a file";
+    const INTENT: &'static str = "overwrite points with those of a file";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Restored, Failure> {
         let Context { link, screen, authority, .. } = context;
-        link.no_unit("points are of the whole controller")?;
+        link.no_unit("points belong to the whole controller")?;
         let name = text_files::shown(&self.file);
         let points = read(&text_files::read(&self.file)?).map_err(|errors| text_files::faulty(&name, &errors))?;
         if points.is_empty() {
-            return Err(Failure::usage(format!("{name} has no points")).hint("`yrcx point dump` writes such a file"));
+            return Err(
+                Failure::usage(format!("{name} has no points")).hint("`yrcx point dump` writes a file with points")
+            );
         }
         let wrong = |point: &Point, why: &str| {
             Failure::usage(format!("{name}:{}: point {}: {why}", point.line, point.number))
@@ -300,7 +301,7 @@ impl Command for Restore {
     }
 }
 
-/// Takes a value among those to be written, unless it is there.
+/// Adds a value to those to be written, unless it is equal.
 fn add(
     jobs: &mut [Job],
     found: &mut Comparison,
@@ -329,9 +330,9 @@ fn dry_run(link: &mut Link, points: &[Point], wrong: impl Fn(&Point, &str) -> Fa
         }
     }
     for point in points {
-        let about = format!("point {}; what the file has no column for stays as it is", point.number);
+        let about = format!("point {}; values without a column stay unchanged", point.number);
         let reason = Reason::about(&about).depending_on(IF_IT_DIFFERS);
-        // All that the file leaves to the controller is not known before.
+        // Values that the file does not contain are unknown before the controller is read.
         let [one, other] = point.sketch().map(|old| point.over(Some(&old)).map_err(|why| wrong(point, &why)));
         if let (Some(one), Some(other)) = (one?, other?) {
             link.plan_depending(&one.write, &other.write, reason);
@@ -345,7 +346,7 @@ fn dry_run(link: &mut Link, points: &[Point], wrong: impl Fn(&Point, &str) -> Fa
     Err(unknown())
 }
 
-/// What became of the points of a file.
+/// Result of `point restore`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Restored {
     file: String,
@@ -359,7 +360,7 @@ impl Report for Restored {
     }
 
     fn failure(&self) -> Option<Failure> {
-        self.items.failure("the same command goes on: what is the same already is not written again")
+        self.items.failure("run the same command again to continue; equal values are not written again")
     }
 }
 
@@ -388,6 +389,6 @@ mod tests {
         assert!(error("point,axis_1\n1,2\n").contains("column unit is missing"));
         assert!(error("point,unit,axis_1\n1,mm,\n").contains("axis_1 is empty"));
         assert!(error("point,unit\n30000,mm\n").contains("allowed: 0 to 29999"));
-        assert!(error("point,unit\n1,mm\n1,mm\n").contains("point 1 is there already, in line 2"));
+        assert!(error("point,unit\n1,mm\n1,mm\n").contains("point 1 is already in line 2"));
     }
 }

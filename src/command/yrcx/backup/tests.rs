@@ -14,7 +14,7 @@ use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
 
-/// A simulated controller that lasts for several command lines, in virtual time, and a folder for backups.
+/// Simulated controller for several command lines in virtual time, with a folder for backups.
 struct Desk {
     folder: TempDir,
     runtime: tokio::runtime::Runtime,
@@ -23,7 +23,7 @@ struct Desk {
 }
 
 impl Desk {
-    /// A controller in the built-in start state, or in this one.
+    /// Controller in the built-in start state, or in this state.
     fn new(state: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().unwrap();
@@ -44,7 +44,7 @@ impl Desk {
         self.folder.path().join(name)
     }
 
-    /// Runs a line, in which `@` stands for the folder.
+    /// Runs a line; `@` is replaced by the folder.
     fn run(&mut self, line: &str) -> Result<(Value, Option<Failure>), Failure> {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>())?;
@@ -68,7 +68,7 @@ impl Desk {
         }
     }
 
-    /// Lets a line run for so long, and drops it then.
+    /// Runs a line for this time, then drops it.
     fn cut(&mut self, line: &str, after: Duration) {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
@@ -79,7 +79,7 @@ impl Desk {
     }
 }
 
-/// The files of a folder, without the list.
+/// Files of a folder, without the manifest.
 fn files(folder: &Path) -> BTreeMap<String, String> {
     let named = |path: PathBuf| {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
@@ -99,7 +99,7 @@ fn item<'d>(data: &'d Value, name: &str) -> &'d Value {
     data["files"].as_array().unwrap().iter().find(|item| item["name"] == name).unwrap()
 }
 
-/// Changes something in every part.
+/// Lines that change every part.
 const CHANGES: [&str; 9] = [
     "point set 19 --pulse 1,2,3,4",
     "point set 50 --mm 1,2,3,4 --hand left",
@@ -155,7 +155,7 @@ fn what_is_restored_is_what_was_saved() {
     assert_eq!((&restored["files"][0]["written"], &restored["files"][1]["written"]), (&json!(0), &json!(1)));
     desk.data("backup @/second");
     assert_eq!(files(&desk.path("second")), first);
-    // What is there is not written again.
+    // Equal values are not written again.
     let again = desk.data("restore @/first --machine");
     assert!(again["files"].as_array().unwrap().iter().all(|item| item["written"] == 0), "{again}");
 }
@@ -168,14 +168,14 @@ fn a_backup_that_was_cut_off_goes_on() {
     let saved = list["files"].as_array().unwrap().len();
     assert!(saved > 2 && saved < 9 && list["complete"] == false, "{saved}");
     let failure = desk.failure("backup @/cut");
-    assert!(failure.message.contains("holds a backup that is not whole"), "{failure}");
+    assert!(failure.message.contains("holds an incomplete backup"), "{failure}");
     let other = desk.failure("backup @/cut --resume --points 0..9");
     assert_eq!(other.kind, Kind::Usage, "{other}");
     let data = desk.data("backup @/cut --resume");
     assert_eq!((&data["complete"], &item(&data, "info")["state"]), (&json!(true), &json!("kept")));
     desk.data("backup @/whole");
     assert_eq!(files(&desk.path("cut")), files(&desk.path("whole")));
-    // A file that was spoilt since is read again.
+    // A file that changed after the backup is read again.
     std::fs::write(desk.path("cut/variables.csv"), "x").unwrap();
     let data = desk.data("backup @/cut --resume");
     assert_eq!((&item(&data, "variables")["state"], &item(&data, "hands")["state"]), (&json!("done"), &json!("kept")));
@@ -195,7 +195,7 @@ fn points_end_at_a_gap_unless_they_are_named_and_those_of_pallets_come_anyway() 
     desk.data("backup @/named --points 299..301 --only points*");
     assert_eq!(manifest(&desk.path("named"))["scope"], json!(["points 299..301", "only points*"]));
     assert!(files(&desk.path("named"))["points-00000.csv"].ends_with("\n300,pulse,1,2,3,4,\n"));
-    // Resumed, it goes on with what was asked for then.
+    // With --resume, the earlier selection continues.
     std::fs::remove_file(desk.path("named/points-00000.csv")).unwrap();
     desk.data("backup @/named --resume");
     assert_eq!(files(&desk.path("named")).len(), 1);
@@ -209,7 +209,7 @@ fn a_folder_that_was_tampered_with_is_not_written_back() {
     let text = std::fs::read_to_string(&points).unwrap();
     std::fs::write(&points, text.replace("150.000", "151.000")).unwrap();
     let failure = desk.failure("restore @/saved");
-    assert!(failure.message.ends_with("its content was changed (SHA-256)"), "{failure}");
+    assert!(failure.message.ends_with("content changed (SHA-256)"), "{failure}");
     let dry = frames(&["restore", desk.path("saved").to_str().unwrap(), "--force"]).unwrap_err();
     assert_eq!(dry.kind, Kind::Local, "a dry run says so as well");
     desk.data("restore @/saved --only shifts");
@@ -242,7 +242,7 @@ fn nothing_is_written_while_the_program_runs() {
     desk.data("run");
     let failure = desk.failure("restore @/saved");
     assert_eq!(failure.kind, Kind::Rejected);
-    assert_eq!(failure.message, "the robot program runs, and may use what would be written");
+    assert_eq!(failure.message, "the robot program is running and may use the data to be written");
 }
 
 #[test]
@@ -253,11 +253,11 @@ fn dry_runs_show_what_would_be_read_and_written() {
     assert!(!desk.path("new").exists());
     desk.data("backup @/saved --only pallets");
     let sent = frames(&["restore", desk.path("saved").to_str().unwrap(), "--force"]).unwrap();
-    // All is read before the first is written.
+    // All reads come before the first write.
     let last: Vec<_> = sent[sent.len() - 6..].iter().map(|frame| (&frame["about"], &frame["wi"][0])).collect();
     assert_eq!(last[2], (&json!("pallets 10, to compare"), &json!("0x0109")));
     assert_eq!(last[5], (&json!("pallets 10"), &json!("0x0108")));
-    assert_eq!(sent.last().unwrap()["depends_on"], "the comparison: it is written if it differs");
+    assert_eq!(sent.last().unwrap()["depends_on"], "the comparison: written if different");
     assert_eq!((risk(&["backup", "x"]), risk(&["restore", "x"])), (Risk::Read, Risk::Destroy));
     assert_eq!(words(&["backup", "x", "--unit", "2"]).unwrap_err().kind, Kind::Usage);
 }

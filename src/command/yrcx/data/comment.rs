@@ -11,7 +11,7 @@ use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 
 commands! {
-    /// What can be done with comments of points.
+    /// Commands for point comments.
     pub enum Comment {
         /// Read the comments of points: 100, 0..29
         Get(Get<Numbered<Comments>>),

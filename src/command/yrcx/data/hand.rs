@@ -14,15 +14,15 @@ use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 
 commands! {
-    /// What can be done with hands.
+    /// Commands for hands.
     pub enum HandData {
         /// Read hands: 1, 0..31
         Get(Get<Numbered<Hands>>),
-        /// List those that are defined
+        /// List the defined hands
         List(List<Numbered<Hands>>),
         /// Define a hand: 1 --data-1 10000 --data-2 -2 --data-3 5
         Set(Set),
-        /// Copy one to others
+        /// Copy a hand to other hands
         Copy(Copy<Numbered<Hands>>),
         /// Save to a CSV file
         Dump(Dump<Numbered<Hands>>),
@@ -31,9 +31,9 @@ commands! {
     }
 }
 
-/// Said of the one number that has no unit.
-const DATA_1: &str = "Data 1 is shown and given as it travels, since the manual measures it in two ways: its example of a \
-                      Cartesian robot has 10000 for 10.000 mm, its text a whole number.";
+/// Note on data 1, the only number without a unit.
+const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about its unit. Its \
+                      example for a Cartesian robot uses 10000 for 10.000 mm, its text uses a whole number.";
 
 /// The hands of the controller.
 #[derive(Debug)]
@@ -70,9 +70,9 @@ impl Kind for Hands {
 /// A hand.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Data {
-    /// The robot that has it.
+    /// Robot that the hand belongs to.
     robot: i32,
-    /// As it travels: the manual does not tell its unit for certain.
+    /// Raw value of the protocol: the manual does not define its unit clearly.
     data_1: i32,
     data_2_mm: f64,
     data_3_mm: f64,
@@ -87,7 +87,7 @@ one_row! {
         /// Hand, 0 to 31
         #[arg(value_name = "HAND", value_parser = |text: &str| single(table::Command::HandSet, Key::Hand, text))]
         hand: i32,
-        /// Data 1, a whole number as it travels
+        /// Data 1, a whole number (raw protocol value)
         #[arg(long = "data-1", value_name = "NUMBER", allow_negative_numbers = true)]
         first: String,
         /// Data 2 in mm
@@ -96,7 +96,7 @@ one_row! {
         /// Data 3 in mm
         #[arg(long = "data-3", value_name = "MM", allow_negative_numbers = true)]
         third: String,
-        /// It is mounted on the R axis (data 4 is 1)
+        /// The hand is mounted on the R axis (data 4 is 1)
         #[arg(long)]
         on_r_axis: bool,
     }
@@ -138,6 +138,6 @@ mod tests {
         assert_eq!(words(&["hand-data", "get", "1", "--unit", "3"]).unwrap_err().kind, Kind::Usage);
         let first = |data| words(&["hand-data", "set", "1", "--data-1", data, "--data-2", "0", "--data-3", "0"]);
         assert!(first("10.5").unwrap_err().message.contains("data_1"));
-        assert!(first("10.000").is_err(), "nobody knows whether that is 10 or 10000");
+        assert!(first("10.000").is_err(), "ambiguous: 10 or 10000");
     }
 }

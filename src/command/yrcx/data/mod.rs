@@ -1,4 +1,4 @@
-//! What the controller stores by number: points and their comments, pallets, shifts, hands (4.3).
+//! Numbered data of the controller: points and their comments, pallets, shifts, hands (4.3).
 
 mod comment;
 mod hand;
@@ -22,7 +22,7 @@ struct Four([String; 4]);
 fn four(text: &str) -> Result<Four, String> {
     let numbers: Vec<String> = text.split(',').map(|number| number.trim().to_owned()).collect();
     let count = numbers.len();
-    let wrong = |_| format!("four numbers are wanted, one an axis, as in 10,-20,5,-18; {count} given");
+    let wrong = |_| format!("expected four numbers, one per axis, as in 10,-20,5,-18; {count} given");
     numbers.try_into().map(Four).map_err(wrong)
 }
 

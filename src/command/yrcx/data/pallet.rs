@@ -14,15 +14,15 @@ use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 
 commands! {
-    /// What can be done with pallets.
+    /// Commands for pallets.
     pub enum PalletData {
         /// Read pallets: 10, 0..39
         Get(Get<Numbered<Pallets>>),
-        /// List those that are defined
+        /// List the defined pallets
         List(List<Numbered<Pallets>>),
         /// Define a pallet: 10 --nx 10 --ny 15 --first-point 100
         Set(Set),
-        /// Copy one to others
+        /// Copy a pallet to other pallets
         Copy(Copy<Numbered<Pallets>>),
         /// Save to a CSV file
         Dump(Dump<Numbered<Pallets>>),
@@ -62,11 +62,11 @@ impl Kind for Pallets {
 /// A pallet.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Places {
-    /// Places in X.
+    /// Positions in X.
     nx: i32,
-    /// Places in Y.
+    /// Positions in Y.
     ny: i32,
-    /// Places in Z.
+    /// Positions in Z.
     nz: i32,
     /// The first of the five points that define it.
     first_point: i32,
@@ -75,20 +75,20 @@ pub struct Places {
 one_row! {
     /// Defines a pallet.
     #[command(
-        after_help = "The controller keeps the corners of a pallet in five points, from the first one on; `yrcx point \
-        set` or `yrcx teach` defines those."
+after_help = "The controller stores the corners of a pallet in five points, starting with the first point. Set them \
+              with `yrcx point set` or `yrcx teach`."
     )]
     Set(self) "yrcx.pallet-data.set" -> Stored {
         /// Pallet, 0 to 39
         #[arg(value_name = "PALLET", value_parser = |text: &str| single(table::Command::PalletSet, Key::Pallet, text))]
         pallet: i32,
-        /// Places in X; at most 32767 places in all
+        /// Positions in X; at most 32767 positions in total
         #[arg(long, value_name = "COUNT")]
         nx: String,
-        /// Places in Y
+        /// Positions in Y
         #[arg(long, value_name = "COUNT")]
         ny: String,
-        /// Places in Z
+        /// Positions in Z
         #[arg(long, value_name = "COUNT", default_value = "1")]
         nz: String,
         /// First of its five points, 0 to 29995
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn a_pallet_has_so_many_places_and_no_more() {
         for (line, part) in [
-            ("1 --nx 256 --ny 128 --first-point 1", "X times Y times Z is 32768; 1 to 32767"),
+            ("1 --nx 256 --ny 128 --first-point 1", "X times Y times Z is 32768; a pallet has 1 to 32767"),
             ("1 --nx 0 --ny 1 --first-point 1", "X times Y times Z is 0"),
             ("1 --nx 1 --ny 1 --first-point 29996", "allowed: 0 to 29995"),
         ] {

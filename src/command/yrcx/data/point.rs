@@ -23,11 +23,11 @@ use crate::gate::Confirmation;
 use clap::ArgGroup;
 
 commands! {
-    /// What can be done with points.
+    /// Commands for points.
     pub enum Point {
         /// Read points: 100, 0..29
         Get(Get<Numbered<Points>>),
-        /// List the points of a range that are defined
+        /// List the defined points of a range
         List(List<Numbered<Points>>),
         /// Define a point: 100 --mm 10,-20,5,-18
         Set(Set),
@@ -51,7 +51,7 @@ impl Kind for Points {
         placeholder: "POINT",
         range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",
         reading: Some(
-            "The controller refuses a point that is not defined; the others are reported all the same (exit code 9). \
+            "The controller refuses a point that is not defined. The other points are still reported (exit code 9). \
              `-o csv` prints a table for a spreadsheet.",
         ),
         writing: None,
@@ -69,19 +69,20 @@ impl Kind for Points {
 /// Defines a point.
 #[derive(Debug, clap::Args)]
 #[command(group = ArgGroup::new("coordinates").required(true),
-    after_help = "Give 0 for an axis that the robot has not. `yrcx teach 19`, also spelled `yrcx point set 19 here`, stores \
-        where the robot is; `yrcx point set 19 @FILE` what `yrcx position --json` printed, @- what stands on stdin.")]
+    after_help = "Give 0 for an axis that the robot does not have. `yrcx teach 19` (or `yrcx point set 19 here`) \
+                  stores the current position. `yrcx point set 19 @FILE` stores the output of `yrcx position --json` \
+                  from FILE; @- reads stdin.")]
 pub struct Set {
     /// Point, 0 to 29999
     #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::PointSet, Key::Point, text))]
     point: i32,
-    /// Coordinates of axes 1 to 4 in mm, degrees of what turns
+    /// Coordinates of axes 1 to 4 in mm, or degrees for rotary axes
     #[arg(long, value_name = "MM,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
     mm: Option<Four>,
     /// Coordinates of axes 1 to 4 in pulses
     #[arg(long, value_name = "PULSES,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
     pulse: Option<Four>,
-    /// Coordinates and hand system as `position --json` printed them into this file; - is stdin
+    /// File with coordinates and hand system from `position --json`; - is stdin
     #[arg(long, value_name = "FILE", group = "coordinates")]
     position: Option<PathBuf>,
     /// Hand system of coordinates in mm
@@ -115,7 +116,7 @@ impl Command for Set {
     }
 }
 
-/// Coordinates to define a point by.
+/// Coordinates of a new point.
 struct Given {
     unit: &'static str,
     four: Four,
@@ -132,7 +133,7 @@ impl Set {
     }
 }
 
-/// The point in what `position --json` or `point get --json` printed.
+/// Point in the output of `position --json` or `point get --json`.
 fn printed_point(file: &Path) -> Result<Given, Failure> {
     let text = printed_position(file)?;
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -141,11 +142,11 @@ fn printed_point(file: &Path) -> Result<Given, Failure> {
         ["--mm", axes, "--hand", hand] => ("mm", axes, Some(hand.to_owned())),
         ["--pulse", axes] => ("pulse", axes, None),
         _ => {
-            return Err(Failure::usage(format!("{}: not a position of a YRCX: {text}", file.display()))
+            return Err(Failure::usage(format!("{}: not a YRCX position: {text}", file.display()))
                 .hint("write the file with `yrcx position --json` or `yrcx point get --json`"));
         }
     };
-    let four = four(axes).map_err(|error| Failure::usage(error).hint("four numbers with commas between"))?;
+    let four = four(axes).map_err(|error| Failure::usage(error).hint("give four numbers separated by commas"))?;
     Ok(Given { unit, four, hand })
 }
 
@@ -180,7 +181,7 @@ mod tests {
         assert_eq!(sent[0][..8], ["0x0100", "0x0005", "0x0000", "0x0000", "0x03E8", "0x0000", "0xF63C", "0xFFFF"]);
         for (line, part) in [
             ("point set 1", "--mm"),
-            ("point set 1 --mm 1,2,3", "four numbers are wanted, one an axis, as in 10,-20,5,-18; 3 given"),
+            ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, as in 10,-20,5,-18; 3 given"),
             ("point set 1 --mm 1,2,3,4 --pulse 1,2,3,4", "cannot be used with"),
             ("point set 1 --pulse 1,2,3,4 --hand left", "cannot be used with"),
             ("point set 30000 --mm 1,2,3,4", "allowed: 0 to 29999"),
@@ -234,7 +235,7 @@ mod tests {
         let (read, failure, peer) = report_on(Scripted::new([answer(3), refusal(12, 76)]), &line);
         let failure = failure.unwrap();
         assert_eq!((failure.kind.exit(), failure.code.as_deref(), peer.taken.len()), (9, Some("12.76"), 2));
-        assert!(failure.message.ends_with("; 29995 were not asked for"), "{failure}");
+        assert!(failure.message.ends_with("; 29995 were not read"), "{failure}");
         assert_eq!((&read["items"][0]["ok"], &read["items"][29_996]["ok"]), (&json!(true), &json!(false)));
         let (outcome, peer) = run_on(Scripted::new([refusal(12, 76)]), &line);
         assert_eq!((outcome.unwrap_err().kind, peer.taken.len()), (Kind::Refused, 1));

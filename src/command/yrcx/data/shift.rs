@@ -15,15 +15,15 @@ use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 
 commands! {
-    /// What can be done with shifts.
+    /// Commands for shifts.
     pub enum ShiftData {
         /// Read shifts: 5, 0..39
         Get(Get<Numbered<Shifts>>),
-        /// List those that are defined
+        /// List the defined shifts
         List(List<Numbered<Shifts>>),
         /// Define a shift: 5 --mm 10,-20,5,-18
         Set(Set),
-        /// Copy one to others
+        /// Copy a shift to other shifts
         Copy(Copy<Numbered<Shifts>>),
         /// Save to a CSV file
         Dump(Dump<Numbered<Shifts>>),
@@ -61,7 +61,7 @@ impl Kind for Shifts {
 /// A shift.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Shift {
-    /// Of axes 1 to 4; degrees of what turns.
+    /// Shift of axes 1 to 4 in mm, or degrees for rotary axes.
     shift_mm: [f64; 4],
 }
 
@@ -71,7 +71,7 @@ one_row! {
         /// Shift, 0 to 39
         #[arg(value_name = "SHIFT", value_parser = |text: &str| single(table::Command::ShiftSet, Key::Shift, text))]
         shift: i32,
-        /// Shift of axes 1 to 4 in mm, degrees of what turns
+        /// Shift of axes 1 to 4 in mm, or degrees for rotary axes
         #[arg(long, value_name = "MM,…", required = true, allow_hyphen_values = true, value_parser = four)]
         mm: Four,
     }

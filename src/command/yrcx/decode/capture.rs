@@ -1,4 +1,4 @@
-//! A capture: what each fieldbus finds in it.
+//! Capture decoder that combines the decoders of all fieldbuses.
 
 use super::images::{BusDecoder, Images};
 use crate::command::decode::capture::{CaptureDecoder, DecodedCapture};
@@ -7,7 +7,7 @@ use crate::controller::yrcx::describe::FieldNote;
 use crate::controller::yrcx::image::Image;
 use crate::transport::capture::{Carrier, Message};
 
-/// All that is decoded.
+/// Decoder for the images of all fieldbuses.
 #[derive(Debug)]
 pub struct ImageDecoder {
     images: Images,
@@ -15,7 +15,7 @@ pub struct ImageDecoder {
 }
 
 impl ImageDecoder {
-    /// Begins; `all` lists every image.
+    /// Creates a decoder; `all` lists every image.
     pub fn new(all: bool) -> Self {
         let images = Images::new(all);
         Self { images, buses: BUSES.iter().map(|bus| (bus.decoder)()).collect() }

@@ -1,4 +1,4 @@
-//! Images and remote commands in a capture, with the messages of their fieldbus around them.
+//! Images and remote commands in a capture, with the fieldbus messages around them.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -15,38 +15,38 @@ use crate::output::view::Cell;
 use crate::transport::capture::Message;
 use crate::transport::tap::Direction;
 
-/// Most connections, requests and the like that are remembered: no plant has so many.
+/// Maximum number of connections and pending requests to remember. No plant has that many.
 pub const MOST: usize = 1 << 16;
 
-/// Finds the images of one fieldbus in a capture, and the messages around them.
+/// Decoder of one fieldbus.
 pub trait BusDecoder: fmt::Debug {
-    /// Takes a packet that may be one of this fieldbus.
+    /// Handles a packet that may belong to this fieldbus.
     fn take(&mut self, message: &Message<'_>, images: &mut Images);
 
-    /// Takes note of what is missing, at the end.
+    /// Adds notes on missing data at the end.
     fn finish(&mut self, images: &mut Images);
 }
 
-/// Images, and what was said around them.
+/// Decoded images and messages.
 #[derive(Debug, Default)]
 pub struct Images {
     decoded: DecodedCapture<FieldNote>,
-    /// Whether images that say nothing new are listed, too.
+    /// Whether images without new content are listed.
     all: bool,
     shown: HashMap<(String, String), Shown>,
 }
 
-/// What both ends of a connection showed last.
+/// Last images of a connection.
 #[derive(Debug, Default)]
 struct Shown {
-    /// Of the client, and of the controller.
+    /// Last image of the client and of the controller.
     images: [Option<Image>; 2],
-    /// The command that runs, or ran last.
+    /// Command in progress, or the last one.
     command: Option<(u64, Words)>,
 }
 
 impl Images {
-    /// Begins; `all` lists every image.
+    /// Creates an empty result; `all` lists every image.
     pub fn new(all: bool) -> Self {
         Self { all, ..Self::default() }
     }
@@ -56,12 +56,12 @@ impl Images {
         self.all
     }
 
-    /// All that was decoded.
+    /// Decoded messages.
     pub fn decoded(&mut self) -> &mut DecodedCapture<FieldNote> {
         &mut self.decoded
     }
 
-    /// A packet is one of the fieldbus.
+    /// Counts a packet of the fieldbus.
     pub fn count(&mut self) {
         self.decoded.packets += 1;
     }
@@ -71,12 +71,12 @@ impl Images {
         self.decoded.messages.push(message);
     }
 
-    /// Says something of the whole capture.
+    /// Adds a note on the whole capture.
     pub fn note(&mut self, text: String) {
         note(&mut self.decoded.notes, text);
     }
 
-    /// An image that one end showed.
+    /// Handles an image from one end.
     pub fn image(&mut self, message: &Message<'_>, direction: Direction, link: &(String, String), image: &Image) {
         if self.shown.len() >= MOST {
             self.shown.clear();
@@ -100,7 +100,7 @@ impl Images {
                     if words[0] != 0 && (words[0] != was || shown.command.is_none()) {
                         shown.command = Some((message.number, *words));
                     }
-                    // Without a command, words are data of the next one, and no problem yet.
+                    // Without a command, the words are data of the next command and not yet a problem.
                     if words[0] != 0 {
                         describe(&mut decoded, command(words));
                     }

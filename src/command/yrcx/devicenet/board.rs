@@ -164,7 +164,11 @@ impl Board {
     /// Failure for a missing node, with the nodes that are present.
     pub fn absent(&self, nodes: &[Node]) -> Failure {
         let others: Vec<String> = nodes.iter().map(|node| node.mac.to_string()).collect();
-        let others = if others.is_empty() { "nobody does".to_owned() } else { format!("MAC {} do", others.join(", ")) };
+        let others = if others.is_empty() {
+            "no other node answers".to_owned()
+        } else {
+            format!("MAC {} answer", others.join(", "))
+        };
         Failure::new(Kind::NoAnswer, format!("MAC {} does not answer; {others}", self.node.mac))
             .hint("check mac of the URL, and the number that is set at the controller")
     }
@@ -185,11 +189,11 @@ impl fieldbus::Board for Board {
 pub struct Node {
     /// Its MAC ID.
     pub mac: u8,
-    /// Number of its maker; 636 has the YRCX.
+    /// Vendor id; YRCX has 636.
     pub vendor: u16,
     /// As in `0x00C0FFEE`.
     pub serial: String,
-    /// Whether it answered; else it was only heard going on line.
+    /// Whether the node answered; false if it only announced that it is going on line.
     pub on_line: bool,
 }
 
@@ -204,22 +208,22 @@ impl From<Found> for Node {
     }
 }
 
-/// Who a node is; what it does not tell is null. Its name is untrusted.
+/// Identity of a node; attributes that the node does not report are null. The name is untrusted.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Identity {
     /// Its MAC ID.
     pub mac: u8,
-    /// Number of the maker; 636 has the YRCX.
+    /// Vendor id; YRCX has 636.
     pub vendor: Option<u16>,
-    /// Number of the kind of device.
+    /// Device type.
     pub device_type: Option<u16>,
-    /// Number of the product.
+    /// Product code.
     pub product: Option<u16>,
     /// Major and minor.
     pub revision: Option<String>,
     /// As in `0x00C0FFEE`.
     pub serial: Option<String>,
-    /// As the node tells it.
+    /// Product name that the node reports.
     pub name: Option<String>,
 }
 

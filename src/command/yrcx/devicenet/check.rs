@@ -32,8 +32,8 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     let advice = "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm)";
     match health.state {
         BusState::Off => layers.wrong("bus", "the adapter is bus-off", advice),
-        BusState::Passive => layers.wrong("bus", "nobody acknowledges what is sent (adapter error passive)", advice),
-        _ if nodes.is_empty() && frames == 0 => layers.wrong("bus", "not a frame was heard", advice),
+        BusState::Passive => layers.wrong("bus", "no other node acknowledges frames (adapter error passive)", advice),
+        _ if nodes.is_empty() && frames == 0 => layers.wrong("bus", "no traffic", advice),
         _ => layers.ok("bus", count(nodes.len())),
     }
     if !nodes.iter().any(|found| found.mac == node.mac.number()) {
@@ -52,11 +52,11 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         }
         Ok(identity) => identity,
     };
-    layers.ok("owner", "no master commands it");
+    layers.ok("owner", "no master");
     let name = identity.name.as_deref().unwrap_or("without a name");
     let vendor = identity.vendor.map_or_else(|| "?".to_owned(), |vendor| vendor.to_string());
     let told = format!("{name}, vendor {vendor}");
-    layers.judge("identity", identity.vendor == Some(MAKER), (&told, &told), "not the maker's number, which is 636");
+    layers.judge("identity", identity.vendor == Some(MAKER), (&told, &told), "the vendor id of a YRCX is 636");
     match board.sizes().await {
         Err(failure) => layers.fail("sizes", &failure),
         Ok(sizes) => match profile(sizes) {
@@ -68,24 +68,24 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     board.release().await;
     match image {
         Err(failure) => layers.fail("inputs", &failure),
-        Ok(None) => layers.warn("inputs", "shown in polls only", "`armctl session open` polls it"),
+        Ok(None) => layers.warn("inputs", "sent only in polls", "`armctl session open` polls it"),
         Ok(Some(image)) => {
-            layers.ok("inputs", "they can be read");
+            layers.ok("inputs", "readable");
             return Some(image);
         }
     }
     None
 }
 
-const OWNED: &str = "commands want its scan stopped first; what only looks works beside it";
+const OWNED: &str = "to send commands, stop the scan of that master; read-only commands work in parallel";
 
 /// With another master on the bus, only listening is possible.
 async fn overheard(board: &mut Board, layers: &mut Layers) -> Option<Image> {
     match board.overheard().await {
         Err(failure) => layers.fail("inputs", &failure),
-        Ok(None) => layers.warn("inputs", "its master does not poll it", "look at the PLC"),
+        Ok(None) => layers.warn("inputs", "the master does not poll the controller", "check the PLC"),
         Ok(Some(image)) => {
-            layers.ok("inputs", "heard in the answers to its master");
+            layers.ok("inputs", "received from its answers to the master");
             return Some(image);
         }
     }

@@ -60,8 +60,8 @@ async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
     }
 }
 
-const NOT_SHOWN: &str = "nobody polls the controller, and it shows its signals to nobody who only looks: open a session, \
-     `armctl session open`, and look through that";
+const NOT_SHOWN: &str = "no master polls the controller, and it sends its signals only to its master: open a session \
+                         with `armctl session open`, then read through that session";
 
 /// The adapter, with this program as master.
 pub(super) fn adapter(node: &DeviceNet) -> Adapter {

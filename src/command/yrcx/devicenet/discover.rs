@@ -17,7 +17,7 @@ use crate::transport::devicenet::network::Network;
 use crate::transport::image::LinkError;
 use crate::transport::image::tap::Tap;
 
-/// Behind which adapter to look.
+/// Adapters to search.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {

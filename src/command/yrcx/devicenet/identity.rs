@@ -11,7 +11,7 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
 
-/// Asks the node who it is. Its connections are allocated for that, and released; nothing is polled.
+/// Reads the identity of the node. Its connections are allocated for the request and released; no polls are sent.
 #[derive(Debug, Args)]
 pub struct Identify {}
 
@@ -23,12 +23,12 @@ impl Command for Identify {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        context.link.then("messages that ask the node who it is");
+        context.link.then("messages that read the identity of the node");
         Ok(Identified { identity: board_of(context.link)?.identity().await? })
     }
 }
 
-/// Who answers.
+/// Identity of the node.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Identified {
     #[serde(flatten)]

@@ -24,16 +24,16 @@ fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
 }
 
 /// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the node is that of the whole controller";
+const NO_UNIT: &str = "the node belongs to the whole controller";
 
 commands! {
-    /// What can be asked on the bus.
+    /// Commands on the bus.
     pub enum DeviceNet {
-        /// Who is on the bus, without owning anybody
+        /// List the nodes on the bus; no node is allocated
         Scan(scan::Scan),
-        /// Who the controller's node is
+        /// Identity of the controller's node
         Identity(identity::Identify),
-        /// Sizes of the images, and who owns the node
+        /// Image sizes and owner of the node
         Probe(probe::Probe),
     }
 }

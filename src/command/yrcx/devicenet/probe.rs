@@ -12,8 +12,8 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, View};
 
-/// Asks the node for the sizes of its images, which tell how its unit is set. Its connections are allocated for that, and
-/// released; nothing is polled.
+/// Reads the image sizes from the node; they show how the unit is set. Its connections are allocated for the request
+/// and released; no polls are sent.
 #[derive(Debug, Args)]
 pub struct Probe {}
 
@@ -25,7 +25,7 @@ impl Command for Probe {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        context.link.then("messages that ask the node who it is, and for the sizes of its images");
+        context.link.then("messages that read the identity and the image sizes of the node");
         let board = board_of(context.link)?;
         let identity = match board.identity().await {
             Ok(identity) => Some(identity),
@@ -39,25 +39,25 @@ impl Command for Probe {
     }
 }
 
-/// What a node has.
+/// Result of the probe.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Probed {
-    /// Null where another master has its connections, beside which nothing can be asked.
+    /// Null if another master owns the connections, because no other client can then read.
     identity: Option<Identity>,
-    /// Whether another master has its connections.
+    /// Whether another master owns the connections of the node.
     owned: bool,
     /// Bytes from the controller.
     in_size: Option<u16>,
     /// Bytes to the controller.
     out_size: Option<u16>,
-    /// What the sizes mean.
+    /// Meaning of the sizes.
     profile: Option<&'static str>,
 }
 
 impl Report for Probed {
     fn view(&self) -> View {
         let mut fields = self.identity.as_ref().map(Identity::fields).unwrap_or_default();
-        let owner = if self.owned { "another master, at present" } else { "free" };
+        let owner = if self.owned { "another master" } else { "free" };
         fields.push(("owner", owner.into()));
         fields.push(("from the controller", Cell::maybe(self.in_size.map(|size| format!("{size} bytes")))));
         fields.push(("to the controller", Cell::maybe(self.out_size.map(|size| format!("{size} bytes")))));
@@ -67,8 +67,8 @@ impl Report for Probed {
 
     fn failure(&self) -> Option<Failure> {
         (!self.owned && self.profile.is_none()).then(|| {
-            Failure::new(Kind::ConditionNotMet, "these are not the sizes of a YRCX")
-                .hint("set the I/O size of the controller's unit to Normal (48 bytes) or Compact (4)")
+            Failure::new(Kind::ConditionNotMet, "the image sizes are not those of a YRCX")
+                .hint("set the I/O size of the controller to Normal (48 bytes) or Compact (4)")
         })
     }
 }

@@ -11,7 +11,7 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, Table, View};
 
-/// Lists the nodes of the bus: each is asked whether its MAC ID is free, and says that it is not. Nobody is owned.
+/// Lists the nodes of the bus with a duplicate MAC ID check for each MAC ID. No node is allocated.
 #[derive(Debug, Args)]
 pub struct Scan {}
 
@@ -23,21 +23,21 @@ impl Command for Scan {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Scanned, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        context.link.then("the question to every MAC ID whether it is free");
+        context.link.then("a duplicate MAC ID check for every MAC ID");
         Ok(Scanned { nodes: board_of(context.link)?.nodes().await? })
     }
 }
 
-/// Who answers.
+/// Nodes that answered.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Scanned {
-    /// By MAC ID.
+    /// Nodes in the order of their MAC IDs.
     nodes: Vec<Node>,
 }
 
 impl Report for Scanned {
     fn view(&self) -> View {
-        let mut table = Table::new(&["MAC ID", "vendor", "serial", "state"], "no node answers");
+        let mut table = Table::new(&["MAC ID", "vendor", "serial", "state"], "no node answered");
         for node in &self.nodes {
             let state = if node.on_line { "on line" } else { "going on line" };
             table.row([u32::from(node.mac).into(), node.vendor.into(), node.serial.as_str().into(), state.into()]);
@@ -47,7 +47,7 @@ impl Report for Scanned {
 
     fn failure(&self) -> Option<Failure> {
         self.nodes.is_empty().then(|| {
-            Failure::new(Kind::NoAnswer, "no node answers on the bus")
+            Failure::new(Kind::NoAnswer, "no node answered on the bus")
                 .hint("check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm)")
         })
     }

@@ -20,7 +20,7 @@ use crate::transport::devicenet::hub::{Hub, Listen};
 use crate::transport::devicenet::wire::Mac;
 use crate::transport::fault::FaultSpec;
 
-/// Where the adapters are, and what to do wrong.
+/// SLCAN adapters and faults of the simulator.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
@@ -33,10 +33,10 @@ pub struct ServeArgs {
     /// DeviceNet: bit rate of the bus
     #[arg(long, value_name = "RATE", default_value = "500k", value_parser = bitrate)]
     bitrate: Bitrate,
-    /// DeviceNet: faults of frames on their way, such as drop=1%,delay=0..5ms,seed=7
+    /// DeviceNet: faults of frames, such as drop=1%,delay=0..5ms,seed=7
     #[arg(long, value_name = "FAULTS", value_parser = faults)]
     frame_fault: Option<FaultSpec>,
-    /// DeviceNet: what the controller's node does wrong: no-acknowledge, lost-fragment, wrong-count, other-size,
+    /// DeviceNet: fault of the controller's node: no-acknowledge, lost-fragment, wrong-count, other-size,
     /// foreign-owner, duplicate-mac, silence, bus-off
     #[arg(long, value_name = "WHAT", value_parser = fault)]
     node_fault: Option<DeviceFault>,
@@ -101,12 +101,12 @@ fn console(hub: &Hub<Controller>, line: &str) -> Result<String, String> {
         None => device.application().0.0.console(now, line),
         Some("off") => {
             device.misbehave(None);
-            Ok("the node does as it should".to_owned())
+            Ok("the node works normally".to_owned())
         }
         Some(name) => {
             device.misbehave(Some(fault(name)?));
             Ok(format!("mischief: {name}"))
         }
     });
-    answer.unwrap_or_else(|| Err("there is no controller".to_owned()))
+    answer.unwrap_or_else(|| Err("no controller is connected".to_owned()))
 }

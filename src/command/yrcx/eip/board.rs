@@ -95,9 +95,9 @@ impl Board {
                 return Err(self.failure(error));
             }
             Err(error) => {
-                let message = format!("{}: sent once, and whether it was done is unknown: {error}", self.label);
+                let message = format!("{}: sent once; the result is unknown: {error}", self.label);
                 return Err(Failure::new(Kind::OutcomeUnknown, message)
-                    .hint(format!("`yrcx eip get {}` tells", object.arguments())));
+                    .hint(format!("read the value with `yrcx eip get {}`", object.arguments())));
             }
         };
         if answer.status.is_ok() { Ok(()) } else { Err(self.refused(SETTING, object, &answer)) }
@@ -156,7 +156,7 @@ impl Board {
             .code(format!("{:#04x}", answer.status.general));
         match status::meaning(&answer.status) {
             Some(code) => failure.hint(as_advice(code.remedy)),
-            None => failure.hint("the manual of the board may know this status"),
+            None => failure.hint("look up this status in the manual of the board"),
         }
     }
 }
@@ -248,28 +248,28 @@ const CLASSES: [(u32, &str); 7] = [
 /// Vendor id of the manufacturer of YRCX.
 pub const MAKER: u16 = 636;
 
-/// Who a board is. Its name is untrusted.
+/// Identity of a board. The name is untrusted.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Identity {
-    /// Number of the maker; 636 has the YRCX.
+    /// Vendor id; YRCX has 636.
     pub vendor: u16,
-    /// Number of the kind of device; 43 is a generic one.
+    /// Device type; 43 is generic.
     pub device_type: u16,
-    /// Number of the product.
+    /// Product code.
     pub product: u16,
     /// Major and minor.
     pub revision: String,
     /// As in `0x0001E240`.
     pub serial: String,
-    /// As the board tells it.
+    /// Product name that the board reports.
     pub name: String,
     /// Status word, as in `0x0030`.
     pub status: String,
-    /// What the status says.
+    /// Meaning of the status word.
     pub status_text: Vec<&'static str>,
-    /// A master owns the outputs.
+    /// Whether a master owns the outputs.
     pub owned: bool,
-    /// `operational`, `standby` and the like; null where the board does not tell.
+    /// `operational`, `standby` and so on; null if the board does not report it.
     pub state: Option<&'static str>,
 }
 
@@ -330,30 +330,30 @@ impl Identity {
     }
 }
 
-/// What was found about connections.
+/// Connection parameters that were found.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Probed {
     /// Assemblies that can be read.
     pub assemblies: Vec<Assembly>,
-    /// With `--try`: connections that were asked for with sizes that none has, so that none is opened.
+    /// With `--try`: connection requests with invalid sizes, so that none opens.
     pub attempts: Vec<Attempt>,
-    /// What a connection would be made of; without `--try`, by the assemblies that can be read. Null if nothing fits.
+    /// Parameters of a possible connection; without `--try`, derived from the readable assemblies. Null if none fits.
     pub connectable: Option<Connectable>,
-    /// Another master owns the outputs now: the board says so of itself, or, with `--try`, refuses another owner. Some
-    /// boards do but one of them.
+    /// Whether another master owns the outputs: the board reports it in its status, or refuses a second owner with
+    /// `--try`. Some boards do only one of the two.
     pub owned: bool,
 }
 
 /// An assembly.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Assembly {
-    /// Its number.
+    /// Instance number.
     pub instance: u32,
-    /// Null where the board does not tell.
+    /// Size; null if the board does not report it.
     pub bytes: Option<u16>,
 }
 
-/// A connection that was asked for.
+/// A connection request.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Attempt {
     /// Assembly from the controller.
@@ -364,19 +364,19 @@ pub struct Attempt {
     pub output: u32,
     /// Assembly of the configuration; null for none.
     pub config: Option<u32>,
-    /// Bytes from the controller that were asked for.
+    /// Requested bytes from the controller.
     pub in_size: u16,
-    /// Bytes to it, likewise.
+    /// Requested bytes to the controller.
     pub out_size: u16,
-    /// As in `0x01/0x0109`.
+    /// Status code, as in `0x01/0x0109`.
     pub code: String,
-    /// In words.
+    /// Meaning of the status code.
     pub answer: String,
-    /// What to do about it.
+    /// Advice for this status.
     pub advice: Option<&'static str>,
 }
 
-/// What a connection is made of.
+/// Parameters of a connection.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Connectable {
     /// Assembly from the controller.
@@ -387,11 +387,11 @@ pub struct Connectable {
     pub output: u32,
     /// Assembly of the configuration; null for none.
     pub config: Option<u32>,
-    /// Bytes from the controller; null where the board does not tell.
+    /// Bytes from the controller; null if the board does not report it.
     pub in_size: Option<u16>,
-    /// Bytes to the controller, likewise.
+    /// Bytes to the controller; null if the board does not report it.
     pub out_size: Option<u16>,
-    /// The URL that says so.
+    /// URL with these parameters.
     pub target: String,
 }
 
@@ -450,7 +450,7 @@ pub fn shown(bytes: &[u8]) -> String {
     digits.join(" ")
 }
 
-/// A cell with a warning tone.
+/// Cell in the warning color.
 pub fn warned(text: &str) -> Cell {
     Cell::from(text).tone(Tone::Warning)
 }

@@ -17,9 +17,17 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
             layers.fail("board", &failure);
             return None;
         }
-        Ok(None) => layers.warn("board", "it takes sessions, but tells no services", "it may be no board of a robot"),
+        Ok(None) => layers.warn(
+            "board",
+            "it accepts sessions but lists no services",
+            "check that the address is that of a robot's network board",
+        ),
         Ok(Some(services)) if services.len() == 2 => layers.ok("board", services.join(", ")),
-        Ok(Some(_)) => layers.warn("board", "it says that it has no images", "it may be no board of a robot"),
+        Ok(Some(_)) => layers.warn(
+            "board",
+            "it does not support cyclic images",
+            "check that the address is that of a robot's network board",
+        ),
     }
     let identity = match board.identity().await {
         Err(failure) => {
@@ -31,9 +39,9 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     match &identity {
         Some(identity) => {
             let told = format!("{}, vendor {}, revision {}", identity.name, identity.vendor, identity.revision);
-            layers.judge("identity", identity.vendor == MAKER, (&told, &told), "not the maker's number, which is 636");
+            layers.judge("identity", identity.vendor == MAKER, (&told, &told), "the vendor id of a YRCX is 636");
         }
-        None => layers.warn("identity", "it does not say who it is", "check the address"),
+        None => layers.warn("identity", "the board has no identity", "check the address"),
     }
     match board.assemblies().await {
         Err(failure) => layers.fail("connection", &failure),
@@ -43,8 +51,8 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     layers.judge(
         "owner",
         !owned,
-        ("no master commands it", "another master, such as a PLC or a session, commands it"),
-        "commands want that connection stopped first; what only looks works beside it",
+        ("no master", "another master, such as a PLC or a session, commands it"),
+        "to send commands, stop that connection; read-only commands work in parallel",
     );
     match board.image().await {
         Err(failure) => {
@@ -52,7 +60,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
             None
         }
         Ok(image) => {
-            layers.ok("inputs", format!("assembly {} can be read", board.settings().input));
+            layers.ok("inputs", format!("assembly {} is readable", board.settings().input));
             Some(image)
         }
     }
@@ -63,7 +71,7 @@ fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) 
     let layer = "connection";
     if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == Presence::Absent) {
         let what = format!("the board has no assembly {instance}");
-        return layers.wrong(layer, what, "`yrcx eip probe` finds in and out of the board");
+        return layers.wrong(layer, what, "find in and out with `yrcx eip probe`");
     }
     let [(input, from), (output, to)] = found.map(|(instance, presence)| match presence {
         Presence::Readable(assembly) => (instance, assembly.size),
@@ -73,13 +81,13 @@ fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) 
     if differs(from, settings.input_size) || differs(to, settings.output_size) {
         let size = |size: Option<u16>| size.map_or_else(|| "?".to_owned(), |size| size.to_string());
         let (from, to) = (size(from), size(to));
-        let what = format!("the board has {from} bytes from it and {to} to it, the URL others");
+        let what = format!("the board has {from} bytes from it and {to} bytes to it; the URL has other sizes");
         return layers.wrong(layer, what, format!("set in_size={from} and out_size={to} in the URL"));
     }
     let instances = format!("in {input}, out {output}");
     if from.is_none() || to.is_none() {
-        let advice = "`yrcx eip probe --try` asks for a connection, which may take command";
-        return layers.warn(layer, format!("{instances}: the board does not tell their sizes"), advice);
+        let advice = "`yrcx eip probe --try` requests a connection, which may take control";
+        return layers.warn(layer, format!("{instances}: the board does not report their sizes"), advice);
     }
     layers.ok(layer, format!("{instances}, {} and {} bytes fit", settings.input_size, settings.output_size));
 }

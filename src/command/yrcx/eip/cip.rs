@@ -63,7 +63,7 @@ pub fn may_be_message(bytes: &[u8]) -> bool {
 pub fn explain(bytes: &[u8]) -> EncapsulatedMessage {
     let frame = match Frame::parse(bytes) {
         Ok(frame) => frame,
-        Err(error) => return broken("a message that is no whole one", false, &error),
+        Err(error) => return broken("incomplete message", false, &error),
     };
     let name = command_name(frame.command).unwrap_or("SendUnitData");
     let head = vec![
@@ -230,10 +230,10 @@ fn interval(micros: u32) -> String {
 
 fn flow_text(flow: &Flow) -> String {
     let net = match flow.net {
-        Net::Null => ", not at all",
+        Net::Null => ", no connection",
         Net::Multicast => ", multicast",
         Net::PointToPoint => "",
-        Net::Reserved => ", in a reserved way",
+        Net::Reserved => ", reserved type",
     };
     format!("{} bytes {}{net}", flow.size, interval(flow.rpi_us))
 }

@@ -56,9 +56,9 @@ async fn look(at: &At<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
             opened => return Ok(ImageLink::over(opened?)),
         }
     }
-    let cause = Cause::new(format!("the board shows its inputs to nobody who only looks: {refused}"));
+    let cause = Cause::new(format!("the board refuses to send its inputs to a read-only client: {refused}"));
     Err(LinkError::Refused(cause.advice(
-        "check in of the URL; or add role=input_only and out= with the instance for heartbeats from the EDS file of the board",
+        "check in of the URL, or add role=input_only and out= with the heartbeat instance from the board's EDS file",
     )))
 }
 

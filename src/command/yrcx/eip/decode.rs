@@ -161,7 +161,7 @@ impl Decoder {
             && before != header
             && (before.is_some() || !run)
         {
-            let text = if run { "run: outputs count" } else { "idle: outputs do not count" };
+            let text = if run { "run: outputs are valid" } else { "idle: outputs are ignored" };
             images.message(decoded(message, direction, link.clone(), text.to_owned()));
         }
         images.image(message, direction, &link, &image);

@@ -16,7 +16,7 @@ use crate::transport::eip::PORT;
 use crate::transport::eip::discovery::{self, list_identity};
 use crate::transport::image::tap::Tap;
 
-/// Whom to ask.
+/// Addresses to search.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
@@ -64,8 +64,8 @@ impl fieldbus::Search for Search {
                 }
             }
             let found = asked.map_err(|error| {
-                Failure::new(Kind::NoAnswer, format!("the network cannot be asked: {}", plain(&error)))
-                    .hint("choose the card with --bind, or the network with --broadcast, as in 192.168.0.255")
+                Failure::new(Kind::NoAnswer, format!("the network cannot be searched: {}", plain(&error)))
+                    .hint("select the network card with --bind or the network with --broadcast, as in 192.168.0.255")
             })?;
             found.into_iter().map(found_board).collect()
         }

@@ -11,7 +11,7 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 
-/// Asks the board who it is and what it can do (ListIdentity, ListServices).
+/// Reads the identity and the services of the board (ListIdentity, ListServices).
 #[derive(Debug, Args)]
 pub struct Identify {}
 
@@ -23,25 +23,25 @@ impl Command for Identify {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        context.link.then("messages that ask the board who it is, and what it can do");
+        context.link.then("messages that read the identity and the services of the board");
         let board = board_of(context.link)?;
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {
-            return Err(Failure::new(Kind::Malformed, format!("{}: it does not say who it is", context.robot.label()))
+            return Err(Failure::new(Kind::Malformed, format!("{}: the board has no identity", context.robot.label()))
                 .hint("check that the address is that of an EtherNet/IP board"));
         };
         Ok(Identified { address, identity, services: board.services().await? })
     }
 }
 
-/// Who answers.
+/// Identity and services of the board.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Identified {
-    /// Where it answered, with the TCP port.
+    /// TCP address of the board.
     address: String,
     #[serde(flatten)]
     identity: board::Identity,
-    /// What it says that it can do; null where it does not say.
+    /// Services that the board lists; null if it lists none.
     services: Option<Vec<&'static str>>,
 }
 

@@ -17,12 +17,12 @@ use crate::controller::typed;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, View};
 
-/// Reads an attribute of an object, or all of them (Get_Attribute_Single, Get_Attributes_All).
+/// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).
 #[derive(Debug, Args)]
 #[command(
     after_help = "Class 1 is the identity, 4 the assemblies (attribute 3 the data, 4 the size), 0xF5 the TCP/IP \
-                        interface, 0xF6 the Ethernet link. Instance 0 is the class itself. Which there are depends on the \
-                        board; no manual of the controller lists them."
+                  interface, 0xF6 the Ethernet link. Instance 0 is the class itself. The objects depend on the board; \
+                  the manuals of the controller do not list them."
 )]
 pub struct Get {
     /// Number of the class, as in 4 or 0xF5
@@ -31,7 +31,7 @@ pub struct Get {
     /// Number of the instance
     #[arg(value_parser = number)]
     instance: u32,
-    /// Number of the attribute; all attributes unless given
+    /// Number of the attribute; default: all attributes
     #[arg(value_parser = number)]
     attribute: Option<u32>,
 }
@@ -54,11 +54,11 @@ impl Command for Get {
     }
 }
 
-/// Changes an attribute of an object (Set_Attribute_Single).
+/// Writes an attribute of an object (Set_Attribute_Single).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The bytes go out as they are: low byte first, and of a text its length before it. What the output \
-                        assembly is set to is what the controller is shown, and can move the robot; that asks first."
+    after_help = "The bytes are sent unchanged: low byte first, and a text after its length. The output assembly \
+                  contains the inputs of the controller. Writing it can move the robot and needs a confirmation."
 )]
 pub struct Set {
     /// Number of the class, as in 4 or 0xF5
@@ -123,7 +123,7 @@ fn bytes(text: &str) -> Result<Bytes, String> {
     let digits: String = text.trim_start_matches("0x").split([' ', '_', ':']).collect();
     match text::unhex(&digits) {
         Some(bytes) if !bytes.is_empty() => Ok(Bytes(bytes)),
-        _ => Err(format!("'{text}' is not a valid row of bytes, such as 0A00")),
+        _ => Err(format!("'{text}' is not valid hexadecimal data, such as 0A00")),
     }
 }
 
@@ -134,18 +134,18 @@ fn number(text: &str) -> Result<u32, String> {
         .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, as in 4 or 0xF5"))
 }
 
-/// What an attribute holds.
+/// Value of an attribute.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Value {
     /// `class 0x04 (assembly), instance 100, attribute 3`.
     object: String,
-    /// The bytes, as they came.
+    /// The bytes, unchanged.
     hex: String,
-    /// How many there are.
+    /// Number of bytes.
     bytes: usize,
-    /// As a number without a sign, low byte first; null unless there are 1, 2, 4 or 8 bytes.
+    /// The bytes as an unsigned number, low byte first; null unless there are 1, 2, 4 or 8 bytes.
     number: Option<u64>,
-    /// As a text with its length before it; null where it is none. Untrusted.
+    /// The bytes as a text after its length; null if they are not a text. Untrusted.
     text: Option<String>,
 }
 
@@ -221,8 +221,8 @@ mod tests {
             (&["eip", "get", "4", "65536", "1"], "not a number from 0 to 65535"),
             (&["eip", "get", "+4", "1", "1"], "not a number"),
             (&["eip", "set", "4", "1", "3"], "HEX"),
-            (&["eip", "set", "4", "1", "3", "0"], "not a valid row of bytes"),
-            (&["eip", "set", "4", "1", "3", ""], "not a valid row of bytes"),
+            (&["eip", "set", "4", "1", "3", "0"], "not valid hexadecimal data"),
+            (&["eip", "set", "4", "1", "3", ""], "not valid hexadecimal data"),
         ] {
             let objection = objection(line);
             assert!(objection.contains(part), "{line:?}: {objection}");

@@ -25,10 +25,10 @@ fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
 }
 
 /// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the board is that of the whole controller";
+const NO_UNIT: &str = "the board belongs to the whole controller";
 
 commands! {
-    /// What the network board can be asked.
+    /// Commands for the network board.
     pub enum Eip {
         /// Identity of the network board
         Identity(identity::Identify),

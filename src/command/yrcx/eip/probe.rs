@@ -13,16 +13,16 @@ use crate::failure::{Failure, Kind};
 use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, View};
 
-/// Finds out what the board has: reads every assembly from 1 to 255. No connection is asked for.
+/// Finds the assemblies of the board: reads every assembly from 1 to 255. No connection is requested.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The target that comes out of it is for -t or `armctl robots add`.\n\nWith --try it also asks for owner \
-                        connections with sizes that no assembly has, beginning with the instances of the URL. The board \
-                        refuses them and says why, which tells instances and sizes. A board that accepts one is commanded \
-                        by this program until it is closed, and its end stops the robot."
+    after_help = "Use the resulting target with -t or `armctl robots add`.\n\nWith --try, armctl also requests owner \
+                  connections with invalid sizes, starting with the instances of the URL. The board refuses them with \
+                  a reason that identifies instances and sizes. If the board accepts one, armctl commands the \
+                  controller until the connection closes, and the close stops the robot."
 )]
 pub struct Probe {
-    /// Ask for connections until one would fit
+    /// Request connections to find fitting parameters
     #[arg(long = "try")]
     tries: bool,
 }
@@ -31,8 +31,8 @@ impl Command for Probe {
     type Family = Yrcx;
     type Report = ProbeReport;
     const ID: &'static str = "yrcx.eip.probe";
-    const INTENT: &'static str = "ask the board for owner connections that it should refuse; a board that accepts one is \
-                                  commanded by this program, and the end of the connection stops the robot";
+    const INTENT: &'static str = "request owner connections that the board should refuse; if the board accepts one, \
+                                  armctl commands the controller, and the end of the connection stops the robot";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
@@ -42,9 +42,9 @@ impl Command for Probe {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        context.link.then("messages that ask the board who it is, and for its assemblies");
+        context.link.then("messages that read the identity and the assemblies of the board");
         if self.tries {
-            context.link.then("requests for owner connections (ForwardOpen) with sizes that no assembly has");
+            context.link.then("requests for owner connections (ForwardOpen) with invalid sizes");
             context.link.authorize(Self::ID, self.risk())?;
         }
         let board = board_of(context.link)?;
@@ -55,10 +55,10 @@ impl Command for Probe {
     }
 }
 
-/// What a board has.
+/// Result of the probe.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProbeReport {
-    /// Null where it does not say.
+    /// Null if the board does not report it.
     identity: Option<board::Identity>,
     #[serde(flatten)]
     probed: Probed,
@@ -74,13 +74,13 @@ impl Report for ProbeReport {
     fn view(&self) -> View {
         let mut view = match &self.identity {
             Some(identity) => View::default().and(Section::Fields(identity.fields())),
-            None => View::text("the board does not say who it is"),
+            None => View::text("the board has no identity"),
         };
-        let mut assemblies = Table::new(&["assembly", "bytes"], "no assembly can be read");
+        let mut assemblies = Table::new(&["assembly", "bytes"], "no readable assembly");
         for assembly in &self.probed.assemblies {
             assemblies.row([assembly.instance.into(), Cell::maybe(assembly.bytes)]);
         }
-        let mut attempts = Table::new(&["in", "out", "config", "answer"], "no connection was asked for");
+        let mut attempts = Table::new(&["in", "out", "config", "answer"], "no connection was requested");
         for attempt in &self.probed.attempts {
             let config = Cell::maybe(attempt.config);
             attempts.row([attempt.input.into(), attempt.output.into(), config, attempt.answer.as_str().into()]);
@@ -91,7 +91,7 @@ impl Report for ProbeReport {
         }
         let Some(found) = &self.probed.connectable else { return view };
         let bytes = |size: Option<u16>| Cell::maybe(size.map(|size| format!("{size} bytes")));
-        let owner = if self.probed.owned { warned("another master, at present") } else { "free".into() };
+        let owner = if self.probed.owned { warned("another master") } else { "free".into() };
         view.and(Section::Fields(vec![
             ("from the controller", bytes(found.in_size)),
             ("to the controller", bytes(found.out_size)),
@@ -102,11 +102,11 @@ impl Report for ProbeReport {
 
     fn failure(&self) -> Option<Failure> {
         self.probed.connectable.is_none().then(|| {
-            let failure = Failure::new(Kind::ConditionNotMet, "no connection fits that board");
+            let failure = Failure::new(Kind::ConditionNotMet, "no connection parameters found for the board");
             if self.has_tried {
-                failure.hint("its EDS file names the instances; write them into the URL as in, out and config")
+                failure.hint("find the instances in the board's EDS file and set in, out and config in the URL")
             } else {
-                failure.hint("add --try to ask the board for connections, when nobody is in the cell")
+                failure.hint("when the cell is clear of people, add --try to request connections from the board")
             }
         })
     }

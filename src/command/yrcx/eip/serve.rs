@@ -17,21 +17,21 @@ use crate::transport::eip::adapter::server::{Listen, Server};
 use crate::transport::eip::{IO_PORT, PORT};
 use crate::transport::fault::FaultSpec;
 
-/// Where to listen, and what to do wrong.
+/// Address and faults of the simulator.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
     /// EtherNet/IP: address to listen on, with the TCP port of sessions; port 0 lets the system choose
     #[arg(long, alias = "listen", value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
-    /// EtherNet/IP: UDP port of images, 2222 unless given; any where the system chooses that of sessions
+    /// EtherNet/IP: UDP port of images; default: 2222, or a free port if the system chooses the session port
     #[arg(long, value_name = "PORT")]
     io_port: Option<u16>,
-    /// EtherNet/IP: faults of images on their way, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7
+    /// EtherNet/IP: faults of images, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7
     #[arg(long, value_name = "FAULTS", value_parser = faults)]
     fault: Option<FaultSpec>,
-    /// EtherNet/IP: what the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable,
-    /// reset, reset-set, mute, garbage, trailing, unowned
+    /// EtherNet/IP: fault of the adapter: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen,
+    /// unreadable, reset, reset-set, mute, garbage, trailing, unowned
     #[arg(long, value_name = "WHAT", value_parser = mischief)]
     mischief: Option<AdapterFault>,
 }
@@ -39,7 +39,7 @@ pub struct ServeArgs {
 fn listen(text: &str) -> Result<SocketAddrV4, String> {
     match address(text, PORT)? {
         std::net::SocketAddr::V4(address) => Ok(address),
-        std::net::SocketAddr::V6(_) => Err("EtherNet/IP has IPv4 addresses".to_owned()),
+        std::net::SocketAddr::V6(_) => Err("EtherNet/IP needs an IPv4 address".to_owned()),
     }
 }
 
@@ -49,7 +49,7 @@ impl Serve for ServeArgs {
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let server = simulated::serve(start, listen, self.fault.clone()).map_err(|error| {
             let on = format!("TCP and UDP {}, and UDP {}", self.bind, io_port);
-            cannot_listen(&on, &error).hint("another simulator may run; choose ports with --bind 127.0.0.1:0")
+            cannot_listen(&on, &error).hint("stop the other simulator, or choose free ports with --bind 127.0.0.1:0")
         })?;
         server.with(|adapter, _| adapter.misbehave(self.mischief));
         let address = server.address();
@@ -66,7 +66,7 @@ fn console(server: &Server<Controller>, line: &str) -> Result<String, String> {
         None => adapter.application().0.0.console(now, line),
         Some("off") => {
             adapter.misbehave(None);
-            Ok("the adapter does as it should".to_owned())
+            Ok("the adapter works normally".to_owned())
         }
         Some(name) => {
             adapter.misbehave(Some(mischief(name)?));

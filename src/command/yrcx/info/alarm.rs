@@ -1,4 +1,4 @@
-//! `yrcx info alarm` (4.7.17), and an alarm as answers have it.
+//! `yrcx info alarm` (4.7.17), and alarms in answers.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -19,7 +19,7 @@ one_row! {
     };
 }
 
-/// Where an alarm came up.
+/// Source of an alarm.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Part {
     /// Robot, controller or task.
@@ -34,7 +34,7 @@ impl Besides for Part {
     }
 }
 
-/// The alarm that an answer holds; none where its number is 0.0.
+/// Alarm in an answer; none if the number is 0.0.
 pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
     let number = |key| values.int(key).and_then(|number| u16::try_from(number).ok()).unwrap_or_default();
     let found = alarm::Alarm::new(number(Key::AlarmGroup), number(Key::AlarmCategory));
@@ -44,7 +44,7 @@ pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
     let place = |kind, count| {
         let kind = shown(Command::LatestAlarm, values, kind)?;
         match values.int(count) {
-            // No number: all of them, or a task that has none.
+            // No number means all, or a task without a number.
             Some(0) | None => Some(kind),
             Some(number) => Some(format!("{kind} {number}")),
         }
@@ -53,7 +53,7 @@ pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
     Some(AlarmEntry { alarm: Told { kind: Some(kind), ..told(found) }, own: part })
 }
 
-/// An alarm in this program's words, as far as it is known.
+/// Alarm text from the built-in table, if known.
 pub fn told(alarm: alarm::Alarm) -> Told {
     let known = alarm.known();
     let line = |lines: &[&str]| Some(lines.join("; ")).filter(|line| !line.is_empty());

@@ -15,9 +15,9 @@ use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::{Cell, View};
 
-/// Reads which hand system is selected, and which the arm has.
+/// Reads the selected and the current hand system.
 #[derive(Debug, Args)]
-#[command(after_help = "A robot without axes tells `right` for both. `yrcx arm select` selects.")]
+#[command(after_help = "A robot without axes reports `right` for both. `yrcx arm select` changes the selection.")]
 pub struct Arm {}
 
 impl Command for Arm {
@@ -50,11 +50,11 @@ impl Command for Arm {
 /// Hand systems.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Arms {
-    /// `right` or `left`: what motions shall use.
+    /// `right` or `left`: the system for motions.
     selected: Option<String>,
-    /// `right` or `left`: what the arm has.
+    /// `right` or `left`: the present system of the arm.
     current: Option<String>,
-    /// What was not told, and why.
+    /// Values that could not be read, and the reason.
     errors: Vec<ItemError>,
 }
 

@@ -1,4 +1,4 @@
-//! `yrcx info`: what remote commands tell about the controller (4.7).
+//! `yrcx info`: information from remote commands (4.7).
 
 mod alarm;
 mod arm;
@@ -13,7 +13,7 @@ mod torque;
 use crate::command::commands;
 
 commands! {
-    /// What the controller tells about itself.
+    /// Information commands.
     pub enum Info {
         /// Software versions
         Version(robot::Version),

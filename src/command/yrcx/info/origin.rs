@@ -12,7 +12,7 @@ use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 
-/// Reads whether the origin is known: of all robots together, or of each axis of the robot of --unit.
+/// Reads the origin return status: of all robots together, or of each axis of the robot of --unit.
 #[derive(Debug, Args)]
 pub struct Origin {
     /// Only axes of the robot of --unit with this type of motor
@@ -29,9 +29,7 @@ impl Command for Origin {
         let link = context.link;
         let draft = link.draft(table::Command::OriginStatus)?.with_some(Key::MotorType, self.motor.clone());
         let order = draft.build().map_err(|error| match error.place.key {
-            Some(Key::MotorType) => {
-                Failure::usage("--motor is for the axes of one robot").hint("name it, as in --unit 1")
-            }
+            Some(Key::MotorType) => Failure::usage("--motor needs one robot").hint("select the robot, as in --unit 1"),
             _ => error.into(),
         })?;
         let values = link.ask(&order).await?.values;
@@ -44,7 +42,7 @@ impl Command for Origin {
     }
 }
 
-/// Where the origin is known.
+/// Origin return status.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Origins {
     /// `complete` or `incomplete`, of all robots together; null with --unit.
@@ -53,13 +51,13 @@ pub struct Origins {
     axes: Vec<AxisOrigin>,
 }
 
-/// The origin of an axis.
+/// Origin return status of an axis.
 #[derive(Debug, Serialize, JsonSchema)]
 struct AxisOrigin {
     /// 1 to 4.
     #[serde(rename = "axis_number")]
     axis: usize,
-    /// `complete`, `incomplete`, or `not applicable` to this axis.
+    /// `complete`, `incomplete`, or `not applicable`.
     state: String,
 }
 

@@ -18,20 +18,21 @@ use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
 use crate::settings::duration;
 
-/// Reads the position, once or as it changes.
+/// Reads the position, once or continuously.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "With --continuous the controller shows the position as long as the command lasts and takes no \
-    other remote command; a program may move the robot meanwhile. `-o csv` and `-o jsonl` write a line each time."
+    after_help = "With --continuous, the controller sends the position until the command ends and accepts no other \
+                  remote command. A program can move the robot during this time. `-o csv` and `-o jsonl` write one \
+                  line per position."
 )]
 pub struct Where {
     /// Unit of the position
     #[arg(long, value_name = "UNIT", default_value = "mm")]
     report: Unit,
-    /// Tell each new position until Ctrl-C, --count or --for
+    /// Print each new position until Ctrl-C, --count or --for
     #[arg(long)]
     continuous: bool,
-    /// How long to go on
+    /// How long to continue
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse)]
     within: Option<Duration>,
     #[arg(from_global)]
@@ -54,9 +55,7 @@ impl Command for Where {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Place, Failure> {
         if self.within.is_some() && !self.continuous && self.until.is_none() {
-            return Err(
-                Failure::usage("--for goes with --continuous or --until").hint("add one of them, or leave --for away")
-            );
+            return Err(Failure::usage("--for needs --continuous or --until").hint("add one of them, or remove --for"));
         }
         let link = context.link;
         let command = match self.report {
@@ -75,12 +74,12 @@ fn milliseconds(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }
 
-/// Where a robot is.
+/// Position of a robot.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Place {
     #[serde(flatten)]
     positions: Positions,
-    /// Since the output began; null unless it is continuous.
+    /// Time since the start of the output; null unless the output is continuous.
     elapsed_ms: Option<u64>,
 }
 
@@ -93,7 +92,7 @@ impl Alike for Place {
 }
 
 impl Place {
-    /// One of many: a line.
+    /// Line of continuous output.
     fn line(&self, elapsed_ms: u64) -> Table {
         let mut table = Table::new(&["elapsed (ms)", "axis 1", "axis 2", "axis 3", "axis 4", "unit"], "");
         let joints: Vec<&Joint> = self.positions.read().flat_map(|position| &position.joints).collect();
@@ -134,7 +133,7 @@ mod tests {
 
     const CONTINUOUS: [&str; 2] = ["position", "--continuous"];
 
-    /// The words of continuous output with the first axis there.
+    /// Words of continuous output with this position of the first axis.
     fn output(position: u16) -> [u16; 16] {
         let mut words = [0; 16];
         (words[0], words[4]) = (0x0100, position);

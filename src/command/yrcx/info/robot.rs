@@ -1,4 +1,4 @@
-//! What one answer tells of a robot: `yrcx info version` (4.7.1), `system` (4.7.2), `speed` (4.7.8), `inch` (4.7.16).
+//! Reports from a single answer: `yrcx info version` (4.7.1), `system` (4.7.2), `speed` (4.7.8), `inch` (4.7.16).
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -27,7 +27,7 @@ one_row! {
     System(self) "yrcx.info.system" -> Models {}
     gives Command::System,
     done as answer => {
-        // 0 is what is not there.
+        // 0 means not present.
         let model = |key| answer.values.int(key).filter(|number| *number != 0);
         Models { robot_type: model(Key::RobotType), axis_types: Key::AXES.map(model) }
     };
@@ -36,7 +36,7 @@ one_row! {
     Speed(self) "yrcx.info.speed" -> Speeds {}
     gives Command::SpeedStatus,
     done as answer => {
-        // 0 is that of a robot without axes.
+        // A robot without axes reports 0.
         let speed = |key| answer.values.int(key).filter(|percent| *percent != 0);
         Speeds {
             manual_speed_percent: speed(Key::ManualSpeed),
@@ -56,14 +56,14 @@ one_row! {
 
 const DRIVERS: [Key; 4] = [Key::DriverVersion1, Key::DriverVersion2, Key::DriverVersion3, Key::DriverVersion4];
 
-/// Versions as people write them. The manual leaves open whether the digits after the point are decimal.
+/// Versions in normal notation. The manual does not say whether the digits after the point are decimal.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Versions {
     host_version: Option<String>,
     host_revision: Option<String>,
-    /// Of the driver's FPGA.
+    /// FPGA of the driver.
     fpga_version: Option<String>,
-    /// Of the drivers of axes 1 to 4.
+    /// Drivers of axes 1 to 4.
     driver_versions: [Option<String>; 4],
 }
 
@@ -83,11 +83,11 @@ impl Report for Versions {
     }
 }
 
-/// Model numbers; null for what is not there.
+/// Model numbers; null if not present.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Models {
     robot_type: Option<i32>,
-    /// Of axes 1 to 4.
+    /// Axes 1 to 4.
     axis_types: [Option<i32>; 4],
 }
 
@@ -124,12 +124,12 @@ impl Report for Speeds {
     }
 }
 
-/// How far inching goes: one number, in the unit of the inching command.
+/// Inching distance: one number, in the unit of the inching command.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Amount {
-    /// Of an axis.
+    /// For an axis.
     amount_pulses: i32,
-    /// The same along a Cartesian axis, or one of the tool.
+    /// Along a Cartesian or tool axis.
     amount_mm: f64,
 }
 

@@ -32,7 +32,7 @@ pub struct AxisServo {
     pub state: String,
 }
 
-/// The servos of the axes that there are.
+/// Servos of the axes that exist.
 pub fn servos(values: &Values) -> Vec<AxisServo> {
     let states = Key::AXES.into_iter().map(|key| shown(Command::ServoStatus, values, key));
     let states = (1..).zip(states).filter_map(|(axis, state)| Some(AxisServo { axis, state: state? }));
@@ -40,7 +40,7 @@ pub fn servos(values: &Values) -> Vec<AxisServo> {
 }
 
 impl AxisServo {
-    /// The state, as it is noticed.
+    /// State with its tone.
     pub fn cell(&self) -> Cell {
         let tone = match &self.state[..] {
             "servo" => Tone::Good,

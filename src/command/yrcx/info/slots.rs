@@ -10,8 +10,8 @@ use crate::controller::yrcx::value::Key;
 use crate::output::view::{Table, View};
 
 one_row! {
-    /// Reads what is in the option slots.
-    #[command(after_help = "The manual has no number for PROFINET.")]
+    /// Reads the boards in the option slots.
+    #[command(after_help = "The manual defines no number for PROFINET.")]
     Slots(self) "yrcx.info.slots" -> Modules {
         /// Controller, 1 to 4
         #[arg(long, value_name = "N", default_value = "1")]
@@ -41,9 +41,9 @@ pub struct Modules {
 struct Slot {
     /// 1 to 4.
     slot: usize,
-    /// In words; `none` if it is empty.
+    /// Name of the board; `none` if the slot is empty.
     module: String,
-    /// As the controller tells it.
+    /// Code from the controller.
     code: String,
 }
 

@@ -1,4 +1,4 @@
-//! `yrcx info tasks` (4.7.5) and `yrcx info line` (4.7.6): eight tasks a command.
+//! `yrcx info tasks` (4.7.5) and `yrcx info line` (4.7.6): eight tasks per command.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -20,22 +20,22 @@ use crate::output::view::{Cell, Tone, View};
 /// Tasks of one command.
 const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
 
-/// Which tasks.
+/// Selection of tasks.
 #[derive(Debug, Args)]
 struct Chosen {
-    /// Tasks, 1 to 16: 3, 1..8 or 1,9; those that there are, unless given
+    /// Tasks, 1 to 16: 3, 1..8 or 1,9; default: all existing tasks
     #[arg(value_name = "TASK", value_delimiter = ',', value_parser = tasks, add = complete::TASK)]
     tasks: Vec<Span>,
 }
 
-/// The first and the last of some tasks.
+/// First and last task of a range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Span(usize, usize);
 
 fn tasks(text: &str) -> Result<Span, String> {
     let number = |text: &str| match text.parse() {
         Ok(number @ 1..=16) => Ok(number),
-        _ => Err(format!("'{text}' is not a valid task; there are 1 to 16")),
+        _ => Err(format!("'{text}' is not a valid task (1 to 16)")),
     };
     let tasks = typed::range(text, number)?;
     Ok(Span(*tasks.start(), *tasks.end()))
@@ -46,7 +46,7 @@ impl Chosen {
         self.tasks.is_empty() || self.tasks.iter().any(|Span(first, last)| (*first..=*last).contains(&task))
     }
 
-    /// Asks for the halves that have one of them, and returns the tasks with what the half says that they are in.
+    /// Reads the halves with a selected task, and returns the tasks with their values.
     async fn read<V>(
         &self,
         context: Context<'_, Yrcx>,
@@ -64,7 +64,7 @@ impl Chosen {
         if let ([half], [Err(failure)]) = (&halves[..], &answers.outcomes[..]) {
             return Err(Failure { message: format!("{}: {}", told(half), failure.message), ..failure.clone() });
         }
-        // What a half came to is what each of its tasks did.
+        // The outcome of a half applies to each of its tasks.
         let asked = &halves[..answers.asked];
         let places: Vec<(usize, usize)> =
             halves.iter().flat_map(|half| (0..HALF.len()).map(|at| (*half, at))).collect();
@@ -82,7 +82,7 @@ impl Chosen {
     }
 }
 
-/// Reads what tasks do.
+/// Reads the task states.
 #[derive(Debug, Args)]
 pub struct Tasks {
     #[command(flatten)]
@@ -105,20 +105,20 @@ impl Command for Tasks {
 
 const NO_TASK: &str = "no task";
 
-/// Tasks.
+/// States of tasks.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct States {
     tasks: Rows<Which, State>,
 }
 
-/// Which task.
+/// Task number.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Which {
     /// 1 to 16.
     task: usize,
 }
 
-/// What a task does.
+/// State of a task.
 #[derive(Debug, Serialize, JsonSchema)]
 struct State {
     /// `execution`, `stop`, `suspend`, `standby`, or `no task`.
@@ -139,7 +139,7 @@ impl Report for States {
     }
 }
 
-/// Reads which line each task stands at.
+/// Reads the current line of each task.
 #[derive(Debug, Args)]
 pub struct Line {
     #[command(flatten)]
@@ -162,13 +162,13 @@ impl Command for Line {
     }
 }
 
-/// Lines of tasks.
+/// Current lines of tasks.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Lines {
     tasks: Rows<Which, TaskLine>,
 }
 
-/// Where a task stands.
+/// Current line of a task.
 #[derive(Debug, Serialize, JsonSchema)]
 struct TaskLine {
     /// From 1; null if there is no such task.

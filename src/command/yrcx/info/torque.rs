@@ -11,12 +11,12 @@ use crate::controller::yrcx::value::Key;
 use crate::output::view::{Table, View};
 
 one_row! {
-    /// Reads the torque of axes; its sign is the direction.
+    /// Reads the torque of axes; the sign is the direction.
     Torque(self) "yrcx.info.torque" -> Torques {
-        /// What it is measured by
+        /// Reference of the percentage
         #[arg(long, value_name = "TORQUE", default_value = "max")]
         of: Reference,
-        /// Axes, as in 1,3; all unless given
+        /// Axes, as in 1,3; default: all
         #[arg(long, value_name = "AXES", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=4))]
         axes: Vec<u8>,
     }
@@ -36,7 +36,7 @@ one_row! {
     };
 }
 
-/// What a torque is measured by.
+/// Reference of the torque percentage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Reference {
@@ -46,10 +46,10 @@ pub enum Reference {
     Rated,
 }
 
-/// Torques of the axes that were asked for.
+/// Torques of the selected axes.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Torques {
-    /// What 100 % are: the maximum or the rated torque.
+    /// Reference for 100 %: the maximum or the rated torque.
     of: Reference,
     axes: Vec<AxisTorque>,
 }
@@ -60,7 +60,7 @@ struct AxisTorque {
     /// 1 to 4.
     #[serde(rename = "axis_number")]
     axis: u8,
-    /// 0 also for an axis that is not there.
+    /// 0 also for an axis that does not exist.
     torque_percent: i32,
 }
 

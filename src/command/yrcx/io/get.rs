@@ -14,11 +14,11 @@ use crate::failure::Failure;
 
 /// Reads signals and general-purpose words.
 #[derive(Debug, Args)]
-#[command(after_help = "Words are those of remote commands and their answers, too, as long as those last.")]
+#[command(after_help = "While a remote command runs, the words contain the command and its answer.")]
 pub struct Get {
-    /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for what the controller is shown; SOW2, SOD4, SIW2, SID4 for
-    /// words; SO20..SO37 is a range;
-    /// names of robots.toml. All dedicated outputs, and the general-purpose ones that are on, unless given
+    /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for an input of the controller; SOW2, SOD4, SIW2, SID4
+    /// for words; SO20..SO37 for a range; names of robots.toml. Default: all dedicated outputs, and the
+    /// general-purpose outputs that are on
     #[arg(value_name = "SIGNAL", value_delimiter = ',', value_parser = readables, add = complete::OUTPUT)]
     signals: Vec<Series<Readable>>,
 }
@@ -36,9 +36,9 @@ impl Command for Get {
             && let Some(signal) = Series::all(&self.signals).find(|signal| signal.side() == Side::Input)
         {
             return Err(Failure::usage(format!(
-                "{signal} is known to whoever commands the controller, and not seen here"
+                "{signal} can be read only by the client that commands the controller"
             ))
-            .hint("ask in a session, which shows the inputs itself: `armctl session open`"));
+            .hint("open a session (`armctl session open`) and repeat the command"));
         }
         let given = given.unwrap_or_default();
         let shown = context.link.look().await?;

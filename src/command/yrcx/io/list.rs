@@ -10,7 +10,7 @@ use crate::command::{Command, ConnectMode, Context};
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
 
-/// Reads all signals. Inputs are known to the client that sets them, so they are listed in a session only.
+/// Reads all signals. Only the client that sets the inputs can read them, so they are listed only in a session.
 #[derive(Debug, Args)]
 pub struct List {
     #[command(flatten)]

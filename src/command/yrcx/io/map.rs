@@ -1,4 +1,4 @@
-//! `yrcx io map`: the image as each fieldbus lays it out (chapter 1, section 1).
+//! `yrcx io map`: layout of the image on each fieldbus (chapter 1, section 1).
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -11,20 +11,20 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, View};
 
-/// Prints addresses.
+/// Prints the address table.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without start addresses they count from m (what the master reads) and n (what it writes), as in the \
-    manual. -o csv and --json make a file of it."
+    after_help = "Without start addresses, they count from m (read by the master) and n (written by the master), as in \
+                  the manual. Use -o csv or --json to save the table."
 )]
 pub struct Map {
     /// Fieldbus: devicenet, devicenet-compact, ethernet-ip, profibus, profinet
     #[arg(long, value_name = "BUS")]
     bus: Bus,
-    /// Where the master's input area starts: the controller's outputs
+    /// Start of the master's input area (outputs of the controller)
     #[arg(long, value_name = "M")]
     input_start: Option<u32>,
-    /// Where the master's output area starts: the controller's inputs
+    /// Start of the master's output area (inputs of the controller)
     #[arg(long, value_name = "N")]
     output_start: Option<u32>,
 }
@@ -52,14 +52,14 @@ pub struct Addresses {
 struct Row {
     /// `from_controller` or `to_controller`.
     direction: &'static str,
-    /// As the master counts.
+    /// Address as the master counts.
     address: String,
-    /// Bits of it, as in `3` or `0 - 7`.
+    /// Bits of the address, as in `3` or `0 - 7`.
     bits: String,
     /// As in `SI(20) to SI(27)`; empty if reserved.
     signal: String,
     meaning: String,
-    /// Must not be used.
+    /// Whether its use is forbidden.
     reserved: bool,
 }
 

@@ -1,4 +1,4 @@
-//! `yrcx io`: signals. SO is what the controller shows, SI what it is shown; numbers are octal, as in the manual.
+//! `yrcx io`: signals. SO are outputs and SI inputs of the controller; numbers are octal, as in the manual.
 
 mod get;
 mod list;
@@ -17,7 +17,7 @@ use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
 
 commands! {
-    /// What can be done with signals.
+    /// Commands for signals.
     pub enum Io {
         /// Read signals
         Get(get::Get),
@@ -29,7 +29,7 @@ commands! {
         Pulse(set::Pulse),
         /// Show signal changes until Ctrl-C
         Watch(Watch<watch::Outputs>),
-        /// The addresses of words and signals on a fieldbus, for the PLC engineer
+        /// Fieldbus address table of words and signals, for the PLC engineer
         Map(Offline<map::Map>),
     }
 }
@@ -59,7 +59,7 @@ impl std::fmt::Display for Readable {
     }
 }
 
-/// Signals and words as typed, a range of them, or the name of one.
+/// Parses signals and words, a range of them, or a name.
 fn readables(text: &str) -> Result<Series<Readable>, String> {
     names::read(&[Kind::Signal], "SO(20)", text, Series::reader(readable))
 }
@@ -71,38 +71,38 @@ fn readable(text: &str) -> Result<Readable, String> {
     }
 }
 
-/// A signal as typed: `servo-on`, `20` and `SO(20)` are outputs of the controller, `SI20` is an input, and so is what only
-/// an input is called, such as `stop`.
+/// Parses a signal: `servo-on`, `20` and `SO(20)` are outputs of the controller. `SI20` is an input, and so is a name
+/// that only inputs have, such as `stop`.
 fn signal(text: &str) -> Result<Signal, String> {
     let is_input = text.get(..2).is_some_and(|prefix| prefix.eq_ignore_ascii_case("SI"));
     let side = if is_input { Side::Input } else { Side::Output };
     Signal::parse(side, text).or_else(|error| input(text).map_err(|_| error.to_string()))
 }
 
-/// An input of the controller as typed, or by its name; with the name, if it was that.
+/// Parses an input of the controller, by number or name. Returns the name if one was typed.
 fn named_input(text: &str) -> Result<(Signal, Option<String>), String> {
     let signal = names::read(&[Kind::Signal], ANY_INPUT, text, input)?;
     Ok((signal, input(text).is_err().then(|| text.to_owned())))
 }
 
-/// Stands for a name that is not known yet.
+/// Placeholder for a name that is not resolved yet.
 const ANY_INPUT: &str = "SI(20)";
 
-/// A signal in words: its name, and which it is.
+/// Text of a signal: name and number.
 fn called(signal: Signal, name: Option<&String>) -> String {
     name.map_or_else(|| signal.named(), |name| format!("{name} ({signal})"))
 }
 
-/// An input of the controller as typed.
+/// Parses an input of the controller.
 fn input(text: &str) -> Result<Signal, String> {
     Signal::parse(Side::Input, text).map_err(|error| error.to_string())
 }
 
-/// A signal as reports name it.
+/// Signal in reports.
 fn item(signal: Signal, names: &Names) -> IoItem {
     let dedicated = signal.dedicated();
     let address = signal.to_string();
-    // What inputs and outputs are both called is an output where it is typed.
+    // A name that an input and an output share means the output when typed.
     let is_one = |name: &&str| self::signal(name).is_ok_and(|typed| typed == signal);
     let name = dedicated.map(|dedicated| dedicated.name).filter(is_one);
     IoItem {
@@ -114,12 +114,12 @@ fn item(signal: Signal, names: &Names) -> IoItem {
     }
 }
 
-/// A signal that was read.
+/// Row of a signal that was read.
 fn row(signal: Signal, image: &Image, names: &Names) -> IoRow {
     IoRow::state(item(signal, names), Ok(signal.is_on(image)))
 }
 
-/// A general-purpose word as reports name it; `image` is what it is in.
+/// General-purpose word in reports; `image` is its source.
 fn word_item(register: Register, image: Option<&Image>, names: &Names) -> IoItem {
     let name = register.to_string();
     let is_in_command = image.is_some_and(|image| image.command()[0] != 0);

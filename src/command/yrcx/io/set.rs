@@ -19,12 +19,12 @@ use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
 
-/// Switches inputs of the controller, one after the other, and sets general-purpose words.
+/// Switches inputs of the controller one after the other, and sets general-purpose words.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Inputs go back to rest, and words to 0, when the connection ends: `armctl session open` keeps it. Two \
-    edges have 100 ms and more between them; words that follow each other change at once. A remote command has the words \
-    for itself as long as it lasts, and puts them back."
+    after_help = "When the connection ends, inputs return to their resting state and words to 0. `armctl session open` \
+                  keeps the connection open. Edges are at least 100 ms apart; consecutive words change together. A \
+                  remote command uses the words while it runs, then restores them."
 )]
 pub struct Set {
     /// Name or number and state, as in servo-on=on or 20=off; or a word and its value, as in SIW2=5 or SID4=0x1F
@@ -32,10 +32,10 @@ pub struct Set {
     changes: Vec<Change>,
 }
 
-/// An input and what to switch it to, or a word and what to set it to.
+/// A change of an input or a word.
 #[derive(Debug, Clone)]
 enum Change {
-    /// With the name that was typed, if it was one.
+    /// With the name, if one was typed.
     Signal {
         signal: Signal,
         name: Option<String>,
@@ -47,7 +47,7 @@ enum Change {
     },
 }
 
-/// What a line sets: an input or a word.
+/// Target of a change: an input or a word.
 enum Settable {
     Signal(Signal),
     Word(Register),
@@ -66,17 +66,17 @@ fn change(text: &str) -> Result<Change, String> {
     let name = settable(signal).is_err().then(|| signal.to_owned());
     match found {
         Settable::Word(register) if register.side() == Side::Output => {
-            Err(format!("{register} is the controller's to set; SIW and SID are set from here"))
+            Err(format!("only the controller sets {register}; armctl can set SIW and SID"))
         }
         Settable::Word(register) => Ok(Change::Word { register, value: register.value(state)? }),
-        // What a name stands for decides what can be set.
+        // The meaning of a name decides what can be set.
         Settable::Signal(signal) if is_open => Ok(Change::Signal { signal, name, on: false }),
         Settable::Signal(signal) => Ok(Change::Signal { signal, name, on: typed::state(state)? }),
     }
 }
 
 impl Change {
-    /// What was done, where this was shown before.
+    /// Result of the change; `shown` is the image before it.
     fn written(&self, shown: Option<&Image>, names: &Names) -> WrittenSignal {
         match self {
             Self::Signal { signal, on, .. } => {
@@ -106,7 +106,7 @@ impl Change {
         }
     }
 
-    /// The word, if it is one.
+    /// Word and value, if the change is one of a word.
     fn word(&self) -> Option<(Register, u32)> {
         match self {
             Self::Signal { .. } => None,
@@ -114,7 +114,7 @@ impl Change {
         }
     }
 
-    /// Does it, or all of these words at once.
+    /// Carries out one change, or several word changes together.
     async fn carry_out(together: &[Self], link: &mut Link) -> Result<(), Failure> {
         if let [Self::Signal { signal, on, .. }] = together {
             return link.carry_out(switching(Procedure::set(*signal, *on))?).await.map(|_| ());
@@ -195,10 +195,10 @@ impl Command for Pulse {
     }
 }
 
-/// What was parsed as an input can be switched.
+/// Procedure that switches an input.
 fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
     procedure.ok_or_else(|| {
-        Failure::usage("outputs are the controller's to switch")
+        Failure::usage("only the controller switches its outputs")
             .hint("`yrcx io get` reads them; `yrcx port set` switches DO, MO and SO")
     })
 }
@@ -250,7 +250,7 @@ mod tests {
         bench.run(&["position"]).unwrap();
         let word = shown(&mut bench);
         assert_eq!((&word["name"], &word["value"], &word["meaning"]), (&"SIW(2)".into(), &5.into(), &Value::Null));
-        assert_eq!(bench.into_peer().taken[0][2], 0, "the command had the words for itself");
+        assert_eq!(bench.into_peer().taken[0][2], 0, "the command used the words");
     }
 
     #[test]
@@ -268,12 +268,12 @@ mod tests {
         for (line, part) in [
             (&["io", "set"][..], "SIGNAL=STATE"),
             (&["io", "set", "20"], "servo-on=on"),
-            (&["io", "set", "20=maybe"], "there are on and off"),
+            (&["io", "set", "20=maybe"], "use on or off"),
             (&["io", "set", "SI(02)=on"], "reserved"),
             (&["io", "pulse", "cpu-ok"], "is not a valid signal"),
-            (&["io", "set", "SOW2=5"], "the controller's to set"),
+            (&["io", "set", "SOW2=5"], "only the controller sets SOW(2)"),
             (&["io", "set", "SIW1=5"], "belong to remote commands"),
-            (&["io", "set", "SIW2=65536"], "does not fit SIW(2)"),
+            (&["io", "set", "SIW2=65536"], "out of range for SIW(2)"),
         ] {
             let objection = objection(line);
             assert!(objection.contains(part), "{line:?}: {objection}");

@@ -1,4 +1,4 @@
-//! `yrcx io watch`: each change, as it comes.
+//! `yrcx io watch`: signal changes as they occur.
 
 use clap::Args;
 
@@ -16,7 +16,7 @@ use crate::failure::Failure;
 /// Outputs of the controller, for a watch.
 #[derive(Debug, Args)]
 pub struct Outputs {
-    /// Names or numbers of outputs of the controller, as in servo-on or 20; all unless given
+    /// Names or numbers of outputs of the controller, as in servo-on or 20; default: all
     #[arg(value_name = "SIGNAL", value_parser = output, add = complete::OUTPUT)]
     signals: Vec<Signal>,
 }
@@ -38,7 +38,7 @@ impl Command for Outputs {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
         let names = names::of(context.robot, context.screen);
         let link = context.link;
-        // What a wait has seen is told, however short it was.
+        // A change that occurred during a wait is reported, however short it was.
         let image = match link.seen.take() {
             Some(image) => image,
             None => link.look().await?,

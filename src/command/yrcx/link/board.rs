@@ -1,4 +1,4 @@
-//! A link that asks only the device on the fieldbus.
+//! Link with only the explicit messaging client.
 
 use std::any::Any;
 
@@ -12,33 +12,33 @@ use crate::failure::Failure;
 use crate::transport::tap::Direction;
 
 impl Link {
-    /// The device, of a link that is for it alone, whatever its fieldbus.
+    /// Explicit messaging client of any fieldbus.
     pub fn any_board(&mut self) -> Result<&mut dyn Board, Failure> {
         match &mut self.board {
             Some((board, _)) => Ok(&mut **board),
             None if self.client.is_dry() => Err(unknown()),
-            None => Err(Failure::local("this link carries images, not messages")),
+            None => Err(Failure::local("internal error: this link carries images, not messages")),
         }
     }
 
-    /// The device as this fieldbus knows it.
+    /// Explicit messaging client of a specific fieldbus.
     pub fn board<B: Board>(&mut self, fieldbus: &str) -> Result<&mut B, Failure> {
         let label = self.label.clone();
         let board: &mut dyn Any = self.any_board()?;
         board.downcast_mut().ok_or_else(|| {
-            Failure::usage(format!("{label} is on another fieldbus than {fieldbus}"))
+            Failure::usage(format!("{label} is not on {fieldbus}"))
                 .hint("`armctl yrcx --help` lists the commands of each fieldbus")
         })
     }
 
-    /// Tells at `-vv` what was asked of the device, and what it answered.
+    /// Prints a request and its answer at `-vv`.
     pub fn tell_message(&mut self, sent: &[u8], received: &[u8], about: &str) {
         let mut trace = locked(&self.trace);
         trace.message(Direction::Sent, sent, about);
         trace.message(Direction::Received, received, "done");
     }
 
-    /// In a dry run, notes a message, whose answer is not known then.
+    /// Notes a message in a dry run, in which its answer is unknown.
     pub fn plan_frame(&mut self, frame: Json) -> Result<(), Failure> {
         self.client.plan_frame(frame, Reason::default());
         if self.client.is_dry() { Err(unknown()) } else { Ok(()) }

@@ -1,4 +1,4 @@
-//! Who looks on while the client works: keeps the record of the traffic, and tells what people shall know.
+//! Observer of the client: records the traffic and prints notices.
 
 use std::sync::{Arc, Mutex};
 
@@ -12,7 +12,7 @@ use crate::controller::yrcx::describe::{answer_summary, command_summary};
 use crate::output::Screen;
 use crate::transport::image::LinkError;
 
-/// Keeps the record of the traffic, and tells what people shall know.
+/// Observer that records the traffic and prints notices.
 #[derive(Debug)]
 pub(super) struct Onlooker {
     pub(super) trace: Arc<Mutex<Trace>>,
@@ -27,8 +27,8 @@ impl Watcher<Event> for Onlooker {
             Event::Shown(image) => locked(trace).sent(&image),
             Event::Seen(image) => locked(trace).received(&image),
             Event::CpuNotOk => screen.note(
-                "warning: CPU OK (SO(01)) is off: the controller does not work, or the URL names something else than what \
-                 it shows (`armctl robots check`)",
+                "warning: CPU OK (SO(01)) is off: the controller is not ready, or the URL selects the wrong input data \
+                 (`armctl robots check`)",
             ),
             Event::Lost { why, is_reopening } => {
                 let again = if is_reopening { "; it is being opened again" } else { "" };
@@ -47,16 +47,16 @@ impl Watcher<Event> for Onlooker {
             }
             Event::NotReleased(command) => {
                 let id = command.row().id;
-                screen.note(&format!("warning: {id} has ended, but the controller is not ready again"));
+                screen.note(&format!("warning: {id} has ended, but the controller is not yet ready"));
             }
             Event::BrokenOff(command, alarm) => screen.note(&format!("warning: {}", refused(command.row(), alarm))),
             Event::Unanswered(error) => screen.note(&format!("warning: {}", failure(label, error))),
             Event::LeftByOthers { words, answer } => {
                 let (what, end) = (command_summary(&words), answer_summary(&answer));
-                screen.note(&format!("{label}: another client had left {what}; it ended: {end}"));
+                screen.note(&format!("{label}: another client left {what} running; it ended: {end}"));
             }
             Event::Stopping => {
-                // From a thread of its own: a terminal that is held must not hold the stop.
+                // In its own thread: a blocked terminal must not delay the stop.
                 let screen = *screen;
                 std::thread::spawn(move || screen.note("stopping the robot: stop input SI(06) off"));
             }

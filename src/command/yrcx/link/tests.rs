@@ -19,7 +19,7 @@ fn ends(scans: u32, head: &[u16]) -> Reply {
 
 const MOVE: &[&str] = &["move", "--point", "19", "--speed", "50"];
 const STOPPED: &[u16] = &[0x4000, 12, 400];
-/// Emergency stop and stop inputs on, as at rest; and without the stop input.
+/// Resting image: emergency stop and stop inputs on; and without the stop input.
 const REST: u16 = 0x0041;
 const HELD: u16 = 0x0001;
 
@@ -80,7 +80,7 @@ fn what_reads_is_repeated_after_a_loss_and_what_changes_is_not() {
         let (outcome, peer) = run_on(Scripted::new([lost(), answer.clone()]), line);
         let failure = outcome.unwrap_err();
         assert_eq!((failure.kind, peer.taken.len()), (Kind::OutcomeUnknown, 1), "{line:?}");
-        assert!(failure.message.contains("the link went down"), "{failure}");
+        assert!(failure.message.contains("the connection was lost"), "{failure}");
         assert!(failure.hint.is_some());
     }
 }
@@ -98,7 +98,7 @@ fn a_controller_that_takes_nothing_is_told_as_such() {
     let (servos, peer) = run_on(Scripted::new([]), &["info", "servo"]);
     let failure = servos.unwrap_err();
     assert_eq!(failure.kind, Kind::NoAnswer);
-    assert!(failure.message.contains("did not take it"), "{failure}");
+    assert!(failure.message.contains("did not start it"), "{failure}");
     assert!(!peer.taken.is_empty());
     let (moved, _) = run_on(Scripted::new([]), MOVE);
     assert_eq!(moved.unwrap_err().kind, Kind::OutcomeUnknown);
@@ -128,7 +128,7 @@ fn an_interrupt_tells_when_the_end_is_not_seen() {
 #[test]
 fn an_interrupt_before_anything_left_stops_nothing() {
     let mut bench = Bench::new(Scripted::new([]));
-    assert_eq!(bench.halt().unwrap(), "nothing was sent that moves the robot");
+    assert_eq!(bench.halt().unwrap(), "no motion command was sent");
     assert_eq!(bench.into_peer().bits, [REST]);
 }
 
@@ -150,9 +150,9 @@ fn signals_are_switched_while_a_command_runs() {
     let item = &switched["items"][0];
     assert_eq!((&item["name"], &item["old"], &item["new"]), (&json!("SI(20)"), &json!(false), &json!(true)));
     let busy = bench.run(&["alarm", "reset"]).unwrap_err();
-    assert!(busy.message.contains("move-ptp is still under way"), "{busy}");
+    assert!(busy.message.contains("move-ptp still runs"), "{busy}");
     bench.runtime.block_on(async { tokio::time::sleep(Duration::from_secs(2)).await });
-    // What ended meanwhile is noticed, and the next command goes out.
+    // The end of the command is noticed, and the next command is sent.
     bench.run(&["alarm", "reset"]).unwrap();
     assert_eq!(bench.into_peer().taken.len(), 2);
 }
@@ -161,7 +161,7 @@ fn signals_are_switched_while_a_command_runs() {
 fn the_end_of_a_command_is_not_taken_for_that_of_the_next() {
     let mut bench = Bench::new(Scripted::new([ends(10, &[0x4000, 2, 334]), ends(0, &[0x0200])]));
     bench.run(&[MOVE, &["--no-wait"]].concat()).unwrap();
-    // It ends while the pulse is waited for.
+    // The command ends during the pulse.
     bench.run(&["io", "pulse", "20"]).unwrap();
     bench.run(&["alarm", "reset"]).unwrap();
     assert_eq!(bench.into_peer().taken.len(), 2);

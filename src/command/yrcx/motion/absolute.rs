@@ -1,4 +1,4 @@
-//! `yrcx abs-reset` (4.2.10, 4.2.11): where an axis of the mark type is, told anew.
+//! `yrcx abs-reset` (4.2.10, 4.2.11): absolute reset of an axis of the mark type.
 
 use clap::Args;
 
@@ -17,14 +17,15 @@ use crate::gate::Confirmation;
 /// Resets the absolute position of an axis of the mark type.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "First `--move +` or `--move -` to the nearest position where it is possible, of which there are four a \
-    turn of the motor. Look at the marks: a reset at the wrong one puts the origin elsewhere. Then without --move."
+    after_help = "First use `--move +` or `--move -` to move to the nearest reset position. There are four per motor \
+                  turn. Check the marks: a reset at the wrong position shifts the origin. Then run the command without \
+                  --move."
 )]
 pub struct AbsReset {
     /// The axis, 1 to 4
     #[arg(long, value_name = "AXIS")]
     axis: String,
-    /// Move only, this way, to the nearest position where a reset is possible
+    /// Only move in this direction to the nearest reset position
     #[arg(long = "move", value_name = "DIRECTION", allow_hyphen_values = true)]
     direction: Option<Direction>,
     #[command(flatten)]
@@ -60,7 +61,7 @@ impl Command for AbsReset {
         let axis = self.axis();
         match self.direction {
             Some(direction) => format!("move {axis} {} to the nearest reset position", direction.describe()),
-            None => format!("make the place where {axis} stands its reset position, and so decide where its origin is"),
+            None => format!("set the current position of {axis} as its reset position, which defines its origin"),
         }
     }
 
@@ -72,7 +73,7 @@ impl Command for AbsReset {
         let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let Some(direction) = self.direction else {
             if self.end.no_wait() {
-                return Err(Failure::usage("--no-wait means nothing without --move").hint("remove --no-wait"));
+                return Err(Failure::usage("--no-wait needs --move").hint("remove --no-wait"));
             }
             let order = draft.build()?;
             let done = context.link.ask(&order).await?;

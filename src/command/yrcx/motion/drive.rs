@@ -1,4 +1,4 @@
-//! `yrcx drive` (4.2.3) and `yrcx drivei` (4.2.4): one axis, to a place or by a distance.
+//! `yrcx drive` (4.2.3) and `yrcx drivei` (4.2.4): absolute and relative moves of one axis.
 
 use clap::{ArgGroup, Args};
 
@@ -9,14 +9,14 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 
-/// Where an axis goes to; shared with a push.
+/// Target of one axis; shared with push.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("destination").required(true))]
 pub struct Destination {
     /// Point whose coordinate of this axis is the target
     #[arg(long, value_name = "POINT", group = "destination")]
     point: Option<String>,
-    /// Position in mm, of an axis that turns in degrees
+    /// Position in mm, or degrees for a rotary axis
     #[arg(long, value_name = "MM", group = "destination", allow_hyphen_values = true)]
     to: Option<String>,
     /// Position in pulses
@@ -25,7 +25,7 @@ pub struct Destination {
 }
 
 impl Destination {
-    /// The row for a point, for mm, or for pulses.
+    /// Command for a point, mm, or pulses.
     pub fn choose(&self, [point, mm, pulse]: [Command; 3]) -> Command {
         match self {
             Self { point: Some(_), .. } => point,
@@ -34,7 +34,7 @@ impl Destination {
         }
     }
 
-    /// Fills it in.
+    /// Sets the fields.
     pub fn put(&self, draft: Draft) -> Draft {
         draft
             .with_some(Key::Point, self.point.clone())
@@ -47,14 +47,14 @@ impl Destination {
     }
 }
 
-/// How far an axis goes.
+/// Distance of one axis.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("distance").required(true))]
 struct Distance {
     /// Point whose coordinate of this axis is the distance
     #[arg(long, value_name = "POINT", group = "distance")]
     point: Option<String>,
-    /// Distance in mm, of an axis that turns in degrees
+    /// Distance in mm, or degrees for a rotary axis
     #[arg(long, value_name = "MM", group = "distance", allow_hyphen_values = true)]
     by: Option<String>,
     /// Distance in pulses
@@ -62,7 +62,7 @@ struct Distance {
     by_pulse: Option<String>,
 }
 
-/// The one that is given of a point, mm and pulses.
+/// Text of a point, mm or pulses, whichever is given.
 fn describe(name: &str, given: [Option<&str>; 3]) -> String {
     match given {
         [Some(point), ..] => format!("{name} {point}"),
@@ -71,7 +71,7 @@ fn describe(name: &str, given: [Option<&str>; 3]) -> String {
     }
 }
 
-/// Moves one axis to a place.
+/// Moves one axis to an absolute position.
 #[derive(Debug, Args)]
 pub struct Drive {
     /// Axis to move, 1 to 4
@@ -117,12 +117,10 @@ impl Motion for Drive {
     }
 }
 
-/// Moves one axis by a distance.
+/// Moves one axis by a relative distance.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "A relative motion that was stopped goes on to its old target when it is given again, unless the \
-    controller's \"MOVEI/DRIVEI start position\" is Reset."
-)]
+#[command(after_help = "If you repeat a stopped relative motion, the robot moves to the old target, unless the \
+                        controller's \"MOVEI/DRIVEI start position\" is Reset.")]
 pub struct Drivei {
     /// Axis to move, 1 to 4
     #[arg(long, value_name = "AXIS")]
@@ -199,7 +197,7 @@ mod tests {
     fn what_cannot_be_meant_is_rejected() {
         for (line, part) in [
             ("drive --axis 1,2 --to 5", "axes: 2 named; name exactly 1"),
-            ("drive --axis 5 --to 5", "there are 1 to 4"),
+            ("drive --axis 5 --to 5", "must be from 1 to 4"),
             ("drive --axis X --to 5", "'X' is not a valid list"),
             ("drive --axis 1 --point 30000", "allowed: 0 to 29999"),
             ("drive --axis 1 --to 3000000", "target"),

@@ -1,4 +1,4 @@
-//! `yrcx inch` (4.2.7) and `yrcx inch-distance` (4.2.8): by a small distance that is set beforehand.
+//! `yrcx inch` (4.2.7): move by the inching distance.
 
 use clap::Args;
 
@@ -14,14 +14,14 @@ use crate::failure::Failure;
 /// Moves by the inching distance.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "`yrcx inch-distance` sets how far that is, `yrcx info inch` reads it; the speed is the manual speed."
+    after_help = "`yrcx inch-distance` sets the distance, `yrcx info inch` reads it. The speed is the manual speed."
 )]
 pub struct Inch {
-    /// Along which axes
+    /// Coordinate system
     system: System,
-    /// Which axis, 1 to 4
+    /// Axis, 1 to 4
     axis: String,
-    /// Which way
+    /// Direction
     direction: Direction,
 }
 
@@ -73,7 +73,8 @@ mod tests {
         assert_eq!(sent[0][..4], ["0x2026", "0x4000", "0x0088", "0x0000"]);
         assert_eq!(
             intent(&["inch", "cartesian", "2", "+"]),
-            "inch axis 2 of robot 1 in plus direction in Cartesian coordinates (by the inching distance, at the manual speed)"
+            "inch axis 2 of robot 1 in plus direction in Cartesian coordinates (by the inching distance, at the manual \
+             speed)"
         );
         assert!(words(&["inch", "pulse", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
         assert!(objection(&["inch", "joint", "1", "+"]).contains("pulse, cartesian, tool"));

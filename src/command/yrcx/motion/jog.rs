@@ -1,4 +1,4 @@
-//! `yrcx jog` (4.2.6): an axis goes on until it is stopped, and it is stopped whatever happens.
+//! `yrcx jog` (4.2.6): an axis moves until it is stopped. Every exit path stops it.
 
 use std::time::Duration;
 
@@ -15,24 +15,24 @@ use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::settings::duration;
 
-/// Jogs an axis, and stops it.
+/// Jogs an axis.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The axis moves at the manual speed. The stop input SI(06) stops it after its time and at Ctrl-C, and stays \
-    off if the controller does not show the end. If armctl or its computer dies, the link goes down with it, and the \
-    controller stops by itself. A soft limit stops the axis with an alarm."
+    after_help = "The axis moves at the manual speed. The stop input SI(06) stops it after the time of --for or at \
+                  Ctrl-C. SI(06) stays off if the controller does not report the end. If armctl or its computer fails, \
+                  the connection drops and the controller stops the robot. A soft limit stops the axis with an alarm."
 )]
 pub struct Jog {
-    /// Along which axes
+    /// Coordinate system
     system: System,
-    /// Which axis, 1 to 4
+    /// Axis, 1 to 4
     axis: String,
-    /// Which way
+    /// Direction
     direction: Direction,
-    /// How long; until Ctrl-C unless given
+    /// How long; default: until Ctrl-C
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
-    /// Report the position at the end, in this unit; in that of the axes unless given
+    /// Report the end position in this unit; default: the unit of the axes
     #[arg(long, value_name = "UNIT")]
     report: Option<Unit>,
     #[command(flatten)]

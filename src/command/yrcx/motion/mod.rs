@@ -1,4 +1,4 @@
-//! Motions by remote commands (4.2): what they share is here, how each is told and reported.
+//! Motions by remote commands (4.2): common execution and reports.
 
 mod absolute;
 mod drive;
@@ -47,48 +47,48 @@ pub use push::Push;
 pub use relative::Movei;
 pub use tool::Movet;
 
-/// A motion that ends by itself and can tell where the robot is then; [`Moving`] makes a command of it.
+/// A motion that ends on its own and can report the position; [`Moving`] makes it a command.
 pub trait Motion: Args {
-    /// What it reports.
+    /// Report type.
     type Report: Report + 'static;
-    /// `yrcx.move`: its name in envelopes and schemas.
+    /// `yrcx.move`: name in envelopes and schemas.
     const ID: &'static str;
-    /// What it does, how it is doing it, what it has done.
+    /// Verb forms: move, moving, moved.
     const VERB: [&'static str; 3] = ["move", "moving", "moved"];
 
-    /// The row of the table.
+    /// Row of the command table.
     fn command(&self) -> table::Command;
 
-    /// Fills in what was typed.
+    /// Sets the typed arguments.
     fn fill(&self, draft: Draft) -> Result<Draft, Failure>;
 
-    /// The axis, where it is one: `axis 3`.
+    /// Axis of a single-axis motion: `axis 3`.
     fn axis(&self) -> Option<String> {
         None
     }
 
-    /// Where to: `to point 19 in a straight line`.
+    /// Target: `to point 19 in a straight line`.
     fn target(&self) -> String;
 
-    /// Which axes, and how fast: `all axes, at 50 %`.
+    /// Axes and speed: `all axes, at 50 %`.
     fn manner(&self) -> String;
 
-    /// Axes that are not named and are sent where they are, so that they stay (4.2.1).
+    /// Unnamed axes that are sent to their current position so that they do not move (4.2.1).
     fn stays(&self) -> Vec<usize> {
         Vec::new()
     }
 
-    /// The axes with their coordinates or distances, as far as they were typed.
+    /// Typed coordinates or distances per axis.
     fn targets(&self) -> Vec<Target> {
         Vec::new()
     }
 
-    /// In which unit to report the position, where the command line does not say.
+    /// Default unit of the reported position.
     fn usual_unit(&self) -> Option<Unit> {
         None
     }
 
-    /// What came of it; `values` are those of the answer, if it has ended.
+    /// Report of the motion; `values` are those of the answer, if the motion has ended.
     fn report(&self, moved: MotionReport, values: Option<&Values>) -> Self::Report;
 }
 
@@ -108,7 +108,7 @@ impl<M: Motion> Moving<M> {
         self.ending.report.or(self.motion.usual_unit())
     }
 
-    /// The target, after the axis where it is one.
+    /// The target, after the axis of a single-axis motion.
     fn object(&self) -> String {
         self.motion.axis().map_or_else(|| self.motion.target(), |axis| format!("{axis} {}", self.motion.target()))
     }
@@ -147,7 +147,7 @@ impl<M: Motion> Command for Moving<M> {
     }
 }
 
-/// The order with these axes sent where they are: a SCARA moves them to the target position although they are not named.
+/// Adds the current position of these axes: a SCARA moves them to the target position even if they are not named.
 async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order, Failure> {
     let order = draft.clone().build()?;
     if axes.is_empty() {
@@ -156,16 +156,16 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
     let present = link.draft(table::Command::PositionMm)?.build()?;
     if link.is_dry() {
         let names = axes.iter().map(usize::to_string).collect::<Vec<_>>().join(" and ");
-        link.plan(&present, "where the robot is");
+        link.plan(&present, "current position");
         let one = draft.clone();
         let keys: Vec<Key> = axes.iter().filter_map(|axis| Key::AXES.get(axis - 1).copied()).collect();
         let other = keys.into_iter().fold(one, |draft, key| draft.with(key, -1)).build()?;
-        let kept = format!("the present position of what is not named: axis {names}");
+        let kept = format!("current position of the unnamed axis: {names}");
         link.plan_depending(&order, &other, Reason::default().depending_on(&kept));
         return Err(unknown());
     }
     let not_moved = |failure: Failure| Failure {
-        message: format!("nothing was moved: where the axes are that are not named is not known: {}", failure.message),
+        message: format!("not moved: the current position of the unnamed axes is unknown: {}", failure.message),
         ..failure.hint("name axes 1 and 2 as well, or use `yrcx drive`")
     };
     let place = link.ask(&present).await.map_err(not_moved)?.values.axes();
@@ -174,7 +174,7 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
     Ok(keys.fold(draft, |draft, (key, steps)| draft.with(key, steps)).build()?)
 }
 
-/// Carries out a motion and waits for its end, unless that is not wanted.
+/// Executes a motion and waits for its end, unless `--no-wait` is set.
 async fn go(
     link: &mut Link,
     screen: &Screen,
@@ -191,25 +191,25 @@ async fn go(
     done.map(Some)
 }
 
-/// Shows that something moves and since when, from a thread of its own: a terminal that is held must not hold the stop.
+/// Display of the motion and its duration, in its own thread: a blocked terminal must not delay the stop.
 struct Live(Option<(Sender<()>, JoinHandle<()>)>);
 
 impl Live {
-    /// Begins to show it; a dry run moves nothing.
+    /// Starts the display. In a dry run nothing moves.
     fn new(link: &Link, screen: &Screen, doing: &str) -> Self {
         let (screen, doing) = (*screen, doing.to_owned());
         Self((!link.is_dry()).then(|| {
             let (end, ended) = mpsc::channel();
             let show = move || {
                 let _progress = screen.spinner(&doing);
-                // It ends when the other side is dropped; nothing is ever sent.
+                // The channel carries no messages; it ends when the sender is dropped.
                 ended.recv().unwrap_or_default();
             };
             (end, thread::spawn(show))
         }))
     }
 
-    /// Clears what it shows, once nothing moves any more.
+    /// Clears the display after the motion.
     fn end(self) {
         if let Some((end, thread)) = self.0 {
             drop(end);
@@ -218,35 +218,35 @@ impl Live {
     }
 }
 
-/// What came of a motion.
+/// Result of a motion.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct MotionReport {
-    /// What kind of motion: `move-ptp`.
+    /// Kind of motion: `move-ptp`.
     #[serde(rename = "motion")]
     kind: &'static str,
     #[serde(flatten)]
     motion: robot::Motion,
-    /// The axes that were named; empty for all.
+    /// Named axes; empty for all.
     axes: Vec<u32>,
-    /// The point that it goes by; null where it goes by none.
+    /// Target point; null for a motion without a point.
     point: Option<i32>,
-    /// The pallet, and the place on it.
+    /// Pallet and position on it.
     pallet: Option<i32>,
     work_position: Option<i32>,
-    /// Of a jog and the like: `plus` or `minus`.
+    /// Direction of a jog and similar motions: `plus` or `minus`.
     direction: Option<&'static str>,
     #[serde(skip)]
     words: String,
 }
 
-/// The targets of axes in mm, or of those in pulses.
+/// Targets of axes, in mm or in pulses.
 fn targets(axes: &Axes, mm: &[String], pulses: &[String]) -> Vec<Target> {
     let (numbers, unit) = if mm.is_empty() { (pulses, Unit::Pulse) } else { (mm, Unit::Mm) };
     let pairs = axes.pairs(numbers).unwrap_or_default();
     pairs.into_iter().map(|(axis, text)| target(axis.to_string(), text, unit)).collect()
 }
 
-/// The target of one axis; none where it goes by a point.
+/// Target of one axis; none for a motion to a point.
 fn single_target(axis: &str, mm: Option<&String>, pulses: Option<&String>) -> Vec<Target> {
     let mm = mm.map(|text| target(axis.to_owned(), text, Unit::Mm));
     mm.or_else(|| pulses.map(|text| target(axis.to_owned(), text, Unit::Pulse))).into_iter().collect()
@@ -256,7 +256,7 @@ fn target(axis: String, text: &str, unit: Unit) -> Target {
     Target { axis, from: None, to: text.parse().ok(), unit: unit.symbol() }
 }
 
-/// Where an order has its speed, by what its number is divided, and the unit.
+/// Speed key of a command, its divisor, and the unit.
 const SPEEDS: [(Key, f64, &str); 3] =
     [(Key::SpeedPercent, 1.0, "%"), (Key::SpeedMmS, 1.0, "mm/s"), (Key::SpeedOfMax, 100.0, "%")];
 
@@ -290,7 +290,7 @@ impl MotionReport {
         }
     }
 
-    /// The view, with more to say after the time it took.
+    /// View with additional text after the duration.
     fn view_with(&self, more: &str) -> View {
         let elapsed = self.motion.elapsed_ms.map(|ms| format!(" in {}.{:03} s", ms / 1000, ms % 1000));
         let view = View::text(format!("{}{}{more}", self.words, elapsed.unwrap_or_default()));

@@ -1,4 +1,4 @@
-//! `yrcx move` (4.2.1): to a point or two, or to coordinates.
+//! `yrcx move` (4.2.1): move to one or two points, or to coordinates.
 
 use clap::{ArgGroup, Args};
 
@@ -12,25 +12,25 @@ use crate::failure::Failure;
 
 /// Moves to a point, or to coordinates.
 #[derive(Debug, Args)]
-#[command(group = ArgGroup::new("destination").required(true), after_help = "Without --speed the robot moves at the program speed. \
-    A SCARA takes axes 1 and 2 along even if only others are named (4.2.1): with --to they are sent where they are, which \
-    is asked first, so that they stay; with --point they may go to the point.")]
+#[command(group = ArgGroup::new("destination").required(true), after_help = "Without --speed the robot moves at the \
+    program speed. A SCARA also moves axes 1 and 2 if only other axes are named (4.2.1). With --to, armctl reads their \
+    current position first and sends it, so that they do not move. With --point, they may move to the point.")]
 pub struct Move {
-    /// Point to move to; two points of an arc with --circular, as in 100,101
+    /// Target point; two points with --circular, as in 100,101
     #[arg(long, value_name = "POINT", group = "destination", value_delimiter = ',')]
     point: Vec<String>,
-    /// Coordinates of the axes in mm, of all four, in the order of --axes, or named: 1=300,3=10
+    /// Coordinates of the axes in mm: all four, or in the order of --axes, or by axis: 1=300,3=10
     #[arg(long, value_name = "[AXIS=]MM,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["linear", "circular", "peak"])]
     to: Vec<String>,
-    /// Coordinates of the axes in pulses, likewise
+    /// Coordinates of the axes in pulses, in the same form
     #[arg(long, value_name = "[AXIS=]PULSES,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["linear", "circular", "peak"])]
     to_pulse: Vec<String>,
-    /// In a straight line; --speed may be 200mm/s then
+    /// Move in a straight line; --speed may be in mm/s
     #[arg(long, group = "way")]
     linear: bool,
-    /// In an arc over the first point to the second; --speed may be 200mm/s then
+    /// Move in an arc through the first point to the second; --speed may be in mm/s
     #[arg(long, group = "way", conflicts_with = "axes")]
     circular: bool,
     #[command(flatten)]
@@ -67,9 +67,11 @@ impl Motion for Move {
             ([point], false) => self.axes.put(draft).with(Key::Point, point.as_str()),
             ([first, second], true) => draft.with(Key::Point, first.as_str()).with(Key::Point2, second.as_str()),
             (_, true) => {
-                return Err(Failure::usage("an arc has two points").hint("name both: --point 100,101 --circular"));
+                return Err(
+                    Failure::usage("an arc needs two points").hint("give both points: --point 100,101 --circular")
+                );
             }
-            (_, false) => return Err(Failure::usage("a motion has one point").hint("an arc has two: add --circular")),
+            (_, false) => return Err(Failure::usage("this move needs one point").hint("for an arc, add --circular")),
         };
         let draft = if self.linear || self.circular { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
         let draft = self.arch.put(self.ramps.put(draft, self.command())?);
@@ -95,10 +97,10 @@ impl Motion for Move {
         let axes = self.axes.describe(if self.to.is_empty() { &self.to_pulse } else { &self.to });
         let along = match (&self.stays()[..], self.axes.leaves_out(&self.point)) {
             ([], false) => "",
-            ([], true) => ", though a SCARA may take axes 1 and 2 to the point",
-            ([1], _) => ", axis 1 where it is",
-            ([2], _) => ", axis 2 where it is",
-            _ => ", axes 1 and 2 where they are",
+            ([], true) => ", but a SCARA may also move axes 1 and 2 to the point",
+            ([1], _) => ", axis 1 stays",
+            ([2], _) => ", axis 2 stays",
+            _ => ", axes 1 and 2 stay",
         };
         format!("{axes}{along}, {}", self.pace.describe())
     }
@@ -125,7 +127,7 @@ mod tests {
 
     #[test]
     fn some_axes_and_another_robot() {
-        // As typed: 1.5 is for axis 3.
+        // In the order typed: 1.5 is for axis 3.
         for line in ["move --to 1.5,-2,3 --axes 3,1,2 --hand left", "move --to 3=1.5,1=-2,2=3 --hand left"] {
             let sent = words(&["--unit", "2"].into_iter().chain(line.split(' ')).collect::<Vec<_>>()).unwrap();
             assert_eq!(
@@ -152,12 +154,12 @@ mod tests {
         assert_eq!(peer.taken[1][..11], [0x0006, 1, 8, 0, 1000, 0, 0xF830, 0xFFFF, 0, 0, 0x5F90]);
         assert_eq!(moved.unwrap()["targets"], json!([{"axis": "4", "from": null, "to": 90.0, "unit": "mm"}]));
         let noted = frames(&line).unwrap();
-        assert_eq!((&noted[0]["about"], noted.len()), (&json!("where the robot is"), 2));
-        // Nothing moves if nobody knows where it is.
+        assert_eq!((&noted[0]["about"], noted.len()), (&json!("current position"), 2));
+        // Nothing moves if the position is unknown.
         let mut no = [0; 16];
         no[..3].copy_from_slice(&[0x4000, 5, 1]);
         let (refused, peer) = run_on(Scripted::new([Reply::Ends(1, no)]), &line);
-        assert!(refused.unwrap_err().message.starts_with("nothing was moved"));
+        assert!(refused.unwrap_err().message.starts_with("not moved"));
         assert_eq!(peer.taken.len(), 1);
         assert_eq!(frames(&["move", "--to", "1=1,2=2"]).unwrap().len(), 1);
     }
@@ -171,13 +173,13 @@ mod tests {
             ("move --to 1,2 --axes 1,1", "axis 1 is named twice"),
             ("move --to 1=1,1=2", "axis 1 is named twice"),
             ("move --to 1=1,2", "some numbers name their axis"),
-            ("move --to 1=1 --axes 1", "named twice, by --axes"),
+            ("move --to 1=1 --axes 1", "named twice: by --axes"),
             ("move --to 5=1", "'5' is not a valid axis"),
             ("move --to 1.0005,2,3,4", "axis_1"),
             ("move --point 30000", "point: 30000 is out of range; allowed: 0 to 29999"),
             ("move --point 1 --speed 101", "speed_percent: 101 is out of range; allowed: 1 to 100 %"),
             ("move --point 1 --speed-of-max 0.001", "speed_of_max_percent"),
-            ("move --point 1 --speed 100mm/s", "along a line or an arc"),
+            ("move --point 1 --speed 100mm/s", "needs a linear or circular move"),
             ("move --point 1 --linear --speed 1001mm/s", "allowed: 1 to 1000 mm/s"),
             ("move --point 1 --circular", "two points"),
             ("move --point 1,2", "one point"),
@@ -214,13 +216,10 @@ mod tests {
                 "--unit 2 move --to 1,2 --axes 2,1",
                 "move robot 2 to axis 2: 1 mm, axis 1: 2 mm (axes 2, 1 alone, at the program speed)",
             ),
-            (
-                "move --to 4=90",
-                "move robot 1 to axis 4: 90 mm (axis 4 alone, axes 1 and 2 where they are, at the program speed)",
-            ),
+            ("move --to 4=90", "move robot 1 to axis 4: 90 mm (axis 4 alone, axes 1 and 2 stay, at the program speed)"),
             (
                 "move --point 3 --axes 4",
-                "move robot 1 to point 3 (axis 4 alone, though a SCARA may take axes 1 and 2 to the point, at the \
+                "move robot 1 to point 3 (axis 4 alone, but a SCARA may also move axes 1 and 2 to the point, at the \
                  program speed)",
             ),
             (

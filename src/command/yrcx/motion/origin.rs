@@ -14,15 +14,13 @@ use crate::failure::Failure;
 
 /// Returns to origin.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Without --unit and --axis all robots of the controller return. Axes of the semi-absolute type search \
-    for their position; those of the absolute mark type want `yrcx abs-reset` first."
-)]
+#[command(after_help = "Without --unit and --axis, all robots of the controller return to origin. Semi-absolute axes \
+                        search for their position. Axes of the absolute mark type need `yrcx abs-reset` first.")]
 pub struct Origin {
     /// One axis of one robot, 1 to 4
     #[arg(long, value_name = "AXIS", conflicts_with = "only")]
     axis: Option<String>,
-    /// Only axes of this kind
+    /// Only axes of this type
     #[arg(long, value_name = "KIND")]
     only: Option<Kind>,
     #[command(flatten)]
@@ -31,7 +29,7 @@ pub struct Origin {
     which: Which,
 }
 
-/// Which axes of a robot.
+/// Axis types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
     /// Axes of the incremental type
@@ -43,7 +41,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// As a field: bits of which one may be on.
+    /// Value of the field: one bit per type.
     fn value(self) -> i32 {
         match self {
             Self::Incremental => 1,

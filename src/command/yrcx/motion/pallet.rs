@@ -1,4 +1,4 @@
-//! `yrcx pallet` (4.2.5): to a place on a pallet.
+//! `yrcx pallet` (4.2.5): move to a pallet position.
 
 use clap::Args;
 
@@ -9,13 +9,13 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 
-/// Moves to a place on a pallet.
+/// Moves to a pallet position.
 #[derive(Debug, Args)]
 pub struct Pallet {
     /// Pallet, 0 to 39
     #[arg(long, value_name = "N")]
     pallet: String,
-    /// Place on it, from 1 on
+    /// Position on the pallet, starting with 1
     #[arg(long, value_name = "N")]
     position: String,
     #[command(flatten)]
@@ -40,7 +40,7 @@ impl Motion for Pallet {
     }
 
     fn target(&self) -> String {
-        format!("to place {} of pallet {}{}", self.position, self.pallet, self.arch.describe())
+        format!("to position {} of pallet {}{}", self.position, self.pallet, self.arch.describe())
     }
 
     fn manner(&self) -> String {
@@ -74,7 +74,7 @@ mod tests {
         }
         assert_eq!(
             intent(&["pallet", "--pallet", "1", "--position", "21", "--arch", "3:-5", "--speed", "70"]),
-            "move robot 1 to place 21 of pallet 1 in an arch over axis 3 at -5 mm (all axes, at 70 %)"
+            "move robot 1 to position 21 of pallet 1 in an arch over axis 3 at -5 mm (all axes, at 70 %)"
         );
     }
 }

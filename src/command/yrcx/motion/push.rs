@@ -1,4 +1,4 @@
-//! `yrcx push` (4.2.23): an axis towards a place, with a force and for a time.
+//! `yrcx push` (4.2.23): move of one axis with limited force and time.
 
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ use crate::settings::duration;
 
 /// Pushes with one axis.
 #[derive(Debug, Args)]
-#[command(after_help = "Without --force and --time the axis pushes by the parameters PSHFRC and PSHTIME.")]
+#[command(after_help = "Without --force and --time, the parameters PSHFRC and PSHTIME apply.")]
 pub struct Push {
     /// Axis to push with, 1 to 4
     #[arg(long, value_name = "AXIS")]
@@ -41,7 +41,7 @@ fn milliseconds(text: &str) -> Result<i32, String> {
     let time = duration::parse(text)?;
     match i32::try_from(time.as_millis()) {
         Ok(ms @ 1..=32_767) if time.subsec_nanos() % 1_000_000 == 0 => Ok(ms),
-        _ => Err(format!("a push takes 1ms to 32767ms in whole milliseconds, not {}s", time.as_secs_f64())),
+        _ => Err(format!("the push time must be 1ms to 32767ms in whole milliseconds, not {}s", time.as_secs_f64())),
     }
 }
 
@@ -80,22 +80,22 @@ impl Motion for Push {
     }
 }
 
-/// What came of a push.
+/// Result of a push.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Pushed {
     #[serde(flatten)]
     moved: MotionReport,
-    /// Whether it pushed until its time was over; null unless it has ended.
+    /// Whether it pushed for the whole time; null unless it has ended.
     push_completed: Option<bool>,
-    /// The same as it travels: 1, or 0.
+    /// Raw result: 1 or 0.
     push_result: Option<i32>,
 }
 
 impl Report for Pushed {
     fn view(&self) -> View {
         self.moved.view_with(match self.push_completed {
-            Some(true) => "; it pushed until its time was over",
-            Some(false) => "; it ended without pushing for all of its time",
+            Some(true) => "; it pushed for the whole time",
+            Some(false) => "; it ended before the push time was over",
             None => "",
         })
     }

@@ -1,4 +1,4 @@
-//! What is asked before a motion once the controller can be asked first: each axis with where it is and where it goes.
+//! Confirmation of a motion after reading the controller: current position and target of each axis.
 
 use crate::command::frame::authority::Authority;
 use crate::command::yrcx::link::Link;
@@ -10,18 +10,18 @@ use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::gate::{Change, outdated};
 
-/// Where a motion ends.
+/// Target of a motion.
 #[derive(Debug, Clone, PartialEq)]
 struct Goal {
     unit: Unit,
-    /// Of axes 1 to 4; none for those that are not sent anywhere.
+    /// Axes 1 to 4; none for an axis without a target.
     axes: [Option<i32>; 4],
-    /// They are distances from where the robot is.
+    /// Whether the values are distances from the current position.
     by_distance: bool,
 }
 
-/// Has a motion confirmed that `intent` says in a line. Where somebody is asked, it is read first where the robot is and
-/// where the point is that it goes to; that must be the same place after the answer.
+/// Confirms a motion. `intent` describes it in one line. Before an interactive question, the current position and the
+/// target point are read. The point must be unchanged after the answer.
 pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<(), Failure> {
     let change = Change::new(intent);
     if !authority.asks() {
@@ -29,7 +29,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
     }
     let Some(goal) = goal(link, order).await? else {
         let is_point = order.values().int(Key::Point).is_some();
-        let change = if is_point { change.note("Where the point is could not be read.") } else { change };
+        let change = if is_point { change.note("The point could not be read.") } else { change };
         let here = present(link, Unit::Mm).await?;
         return authority.confirm(&standing(change, order, here)).await;
     };
@@ -37,11 +37,11 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
     authority.confirm(&goal.clone().from(here).describe(change, here)).await?;
     match self::goal(link, order).await? {
         Some(now) if now == goal => Ok(()),
-        _ => Err(outdated("the point was changed since the question; nothing was moved")),
+        _ => Err(outdated("the point changed after the question; not moved")),
     }
 }
 
-/// Where the robot is; nothing where that is refused.
+/// Current position; none if the controller refuses to report it.
 async fn present(link: &mut Link, unit: Unit) -> Result<Option<[i32; 4]>, Failure> {
     let command = match unit {
         Unit::Mm => Command::PositionMm,
@@ -50,21 +50,21 @@ async fn present(link: &mut Link, unit: Unit) -> Result<Option<[i32; 4]>, Failur
     Ok(read(link, command, &[]).await?.and_then(|values| values.axes()))
 }
 
-/// With each axis that is meant and where it is now, of a motion whose end no numbers tell.
+/// Adds the current position of each selected axis, for a motion without numeric target.
 fn standing(change: Change, order: &Order, here: Option<[i32; 4]>) -> Change {
     let is_meant = meant(order);
     let here = here.into_iter().flatten().enumerate().filter(|(at, _)| is_meant(*at));
     here.fold(change, |change, (at, steps)| change.item(format!("axis {}: from {} mm", at + 1, mm(steps))))
 }
 
-/// Which axes an order means: those that it names, or all.
+/// Axes that a command moves: the named axes, or all.
 fn meant(order: &Order) -> impl Fn(usize) -> bool + use<> {
     let mask = order.values().int(Key::Axes).unwrap_or_default();
     move |at| mask == 0 || mask >> at & 1 == 1
 }
 
-/// Where an order leads, as far as numbers tell; a distance is one as long as it is not known from where. Pallets are told
-/// in its line.
+/// Target of a command, if it is numeric; a distance stays a distance until the start is known. Pallets are described
+/// in the intent.
 async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
     let values = order.values();
     let is_meant = meant(order);
@@ -99,7 +99,7 @@ async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
     }))
 }
 
-/// Whether an order's numbers, or those of its point, are distances.
+/// Whether the numbers of a command, or those of its point, are distances.
 const fn is_distance(command: Command) -> bool {
     matches!(
         command,
@@ -113,14 +113,14 @@ const fn is_distance(command: Command) -> bool {
     )
 }
 
-/// Reads something; nothing where the controller refuses to tell.
+/// Reads values; none if the controller refuses.
 async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<Option<Values>, Failure> {
     let draft = with.iter().fold(link.draft(command)?, |draft, (key, value)| draft.with(*key, *value));
     Ok(link.try_ask(&draft.build()?).await?.ok().map(|done| done.values))
 }
 
 impl Goal {
-    /// With the start known, a distance is a place.
+    /// Adds the start position to a distance.
     fn from(self, here: Option<[i32; 4]>) -> Self {
         let Some(here) = here.filter(|_| self.by_distance) else { return self };
         let mut axes = self.axes;
@@ -130,7 +130,7 @@ impl Goal {
         Self { axes, by_distance: false, ..self }
     }
 
-    /// A line for each axis that is sent somewhere, and how far that is.
+    /// Adds a line for each axis with a target, and its distance.
     fn describe(&self, change: Change, here: Option<[i32; 4]>) -> Change {
         let shown = |steps: i32| if self.unit == Unit::Mm { mm(steps) } else { steps.to_string() };
         let told = self.axes.iter().enumerate().filter_map(|(at, new)| Some((at, (*new)?)));

@@ -1,4 +1,4 @@
-//! `yrcx movei` (4.2.2): by the distances of a point, or by distances as typed.
+//! `yrcx movei` (4.2.2): move by the distances of a point, or by typed distances.
 
 use clap::{ArgGroup, Args};
 
@@ -12,13 +12,13 @@ use crate::failure::Failure;
 
 /// Moves by distances.
 #[derive(Debug, Args)]
-#[command(group = ArgGroup::new("distance").required(true), after_help = "A relative motion that was stopped goes on to its \
-    old target when it is given again, unless the controller's \"MOVEI/DRIVEI start position\" is Reset.")]
+#[command(group = ArgGroup::new("distance").required(true), after_help = "If you repeat a stopped relative motion, the \
+    robot moves to the old target, unless the controller's \"MOVEI/DRIVEI start position\" is Reset.")]
 pub struct Movei {
-    /// Point whose data are the distances
+    /// Point that contains the distances
     #[arg(long, value_name = "POINT", group = "distance")]
     point: Option<String>,
-    /// Distances of the axes in mm, of all four, in the order of --axes, or named: 1=-5,3=10
+    /// Distances of the axes in mm: all four, or in the order of --axes, or by axis: 1=-5,3=10
     #[arg(
         long,
         value_name = "[AXIS=]MM,…",
@@ -28,7 +28,7 @@ pub struct Movei {
         conflicts_with = "linear"
     )]
     by: Vec<String>,
-    /// Distances of the axes in pulses, likewise
+    /// Distances of the axes in pulses, in the same form
     #[arg(
         long,
         value_name = "[AXIS=]PULSES,…",
@@ -38,7 +38,7 @@ pub struct Movei {
         conflicts_with = "linear"
     )]
     by_pulse: Vec<String>,
-    /// In a straight line; --speed may be 200mm/s then
+    /// Move in a straight line; --speed may be in mm/s
     #[arg(long)]
     linear: bool,
     #[command(flatten)]

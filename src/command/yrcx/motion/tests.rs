@@ -8,7 +8,7 @@ use crate::command::yrcx::testing::{
 use crate::controller::yrcx::image::Words;
 use crate::failure::Kind;
 
-/// A command line for each worked example of 4.2. Misprinted words are taken as the data file sets them right.
+/// A command line for each worked example of 4.2. Misprinted words are corrected as in the data file.
 const EXAMPLES: &[(&str, &str)] = &[
     ("4.2.1-ptp", "move --point 100 --speed 50 --report pulse"),
     ("4.2.1-arch", "move --point 100 --speed 50 --arch 3:1.000 --arch-start 0 --arch-end 0 --report mm"),
@@ -55,7 +55,7 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("4.2.23-direct-pulse", "push --axis 3 --to-pulse 10000 --speed 50 --force 100 --time 0.1s --report pulse"),
 ];
 
-/// Examples of the section that a command gives alone: teaching also reads (its example is in `orders`).
+/// Examples that a single command sends; teaching also reads (its example is in `orders`).
 fn is_one_order(id: &str) -> bool {
     id.starts_with("4.2.") && id != "4.2.9-teach"
 }
@@ -79,11 +79,11 @@ fn lines_become_the_words_of_the_examples() {
     }
     let walk_through = words(&split("move --point 19 --speed 50")).unwrap();
     assert_eq!(walk_through, [example("2-ptp-walkthrough")]);
-    // As printed, robot 1 is meant and all robots are told (4.2.12).
+    // The printed example means robot 1 but selects all robots (4.2.12).
     assert_eq!(words(&["origin"]).unwrap()[0][0], "0x0032");
 }
 
-/// The positions that the manual gives in numbers.
+/// Positions that the manual prints as numbers.
 fn positions(entry: &Value) -> (Value, Value) {
     let number = |key: &str| entry["answer"][key].as_str().unwrap().parse::<f64>().unwrap();
     let axes = ["axis_1", "axis_2", "axis_3", "axis_4"];
@@ -131,7 +131,7 @@ fn words_of(head: &[u16]) -> Words {
     words
 }
 
-/// Emergency stop and stop inputs on, as at rest; and without the stop input.
+/// Resting image: emergency stop and stop inputs on; and without the stop input.
 const REST: u16 = 0x0041;
 const HELD: u16 = 0x0001;
 
@@ -160,7 +160,7 @@ fn an_interrupt_stops_every_kind_of_motion() {
             told.starts_with("the robot was stopped by the stop input SI(06), which is on again"),
             "{line}: {told}"
         );
-        assert_eq!(told.contains("goes on to its old target"), line.contains("ei --"), "{line}: {told}");
+        assert_eq!(told.contains("moves to the old target"), line.contains("ei --"), "{line}: {told}");
         let peer = bench.into_peer();
         assert_eq!((peer.taken.len(), &peer.bits[..]), (1, &[REST, HELD, REST][..]), "{line}");
     }
@@ -214,7 +214,7 @@ fn a_relative_motion_that_breaks_off_tells_of_its_target() {
     for line in ["movei --point 1", "drivei --axis 1 --by 5"] {
         let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split(line));
         let hint = outcome.unwrap_err().hint.unwrap();
-        assert!(hint.contains("release it") && hint.contains("goes on to its old target"), "{hint}");
+        assert!(hint.contains("release it") && hint.contains("moves to the old target"), "{hint}");
     }
     let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split("move --point 1"));
     assert!(!outcome.unwrap_err().hint.unwrap().contains("old target"));

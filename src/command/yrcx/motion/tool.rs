@@ -1,4 +1,4 @@
-//! `yrcx movet` (4.2.21): to a point in the coordinates of the tool.
+//! `yrcx movet` (4.2.21): move to a point in tool coordinates.
 
 use clap::Args;
 
@@ -9,13 +9,13 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 
-/// Moves to a point that is read in tool coordinates: from where the tool is, along its axes.
+/// Moves to a point in tool coordinates: the point is relative to the tool, along its axes.
 #[derive(Debug, Args)]
 pub struct Movet {
     /// Point to move to
     #[arg(long, value_name = "POINT")]
     point: String,
-    /// In a straight line; --speed may be 200mm/s then
+    /// Move in a straight line; --speed may be in mm/s
     #[arg(long)]
     linear: bool,
     #[command(flatten)]

@@ -88,7 +88,7 @@ impl Board {
             Unknown::NoAnswer => self.silent(),
             Unknown::NotAsked => {
                 Failure::new(Kind::Malformed, format!("{}: it is a {}", self.name(), kind(found.kind)))
-                    .hint("check station of the URL: `yrcx profibus scan` lists the slaves")
+                    .hint("check station of the URL; `yrcx profibus scan` lists the slaves")
             }
             why => Failure::new(Kind::Malformed, format!("{}: Slave_Diag: {}", self.name(), unknown(&why)))
                 .hint("check that this is a slave of PROFIBUS DP"),
@@ -98,7 +98,7 @@ impl Board {
     /// Failure: the station of the URL does not answer.
     pub fn silent(&self) -> Failure {
         Failure::new(Kind::NoAnswer, format!("{} does not answer", self.name()))
-            .hint("`yrcx profibus scan` lists who answers")
+            .hint("`yrcx profibus scan` lists the stations that answer")
     }
 
     fn name(&self) -> String {
@@ -154,24 +154,24 @@ impl fieldbus::Board for Board {
     }
 }
 
-/// A station, as it says itself.
+/// Station data from its diagnosis.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Station {
     /// Its address.
     pub station: u8,
-    /// `slave`, or what kind of master.
+    /// `slave`, or the type of master.
     pub kind: &'static str,
-    /// Which kind of slave it is, such as 0x1234; null where it does not say.
+    /// Ident number, such as 0x1234; null if the station does not report it.
     pub ident: Option<String>,
-    /// The master that it belongs to; null where it has none.
+    /// Master of the slave; null if it has none.
     pub master: Option<u8>,
-    /// How it is doing, in words; why not, where it does not say.
+    /// Diagnosis as text, or the reason why there is none.
     pub diagnosis: String,
-    /// The identifier bytes that it wants; null where it does not say.
+    /// Identifier bytes of its configuration; null if the station does not report them.
     pub configuration: Option<String>,
-    /// Bytes from it that these add up to.
+    /// Bytes from the station, by the configuration.
     pub in_size: Option<usize>,
-    /// Bytes to it that these add up to.
+    /// Bytes to the station, by the configuration.
     pub out_size: Option<usize>,
     /// Whether it exchanges data with its master.
     pub exchanging: bool,
@@ -232,8 +232,8 @@ const fn kind(station: StationKind) -> &'static str {
 
 fn unknown(why: &Unknown) -> String {
     match why {
-        Unknown::NotAsked => "not asked".to_owned(),
-        Unknown::NoAnswer => "it does not answer".to_owned(),
+        Unknown::NotAsked => "not read".to_owned(),
+        Unknown::NoAnswer => "no answer".to_owned(),
         Unknown::Refused(status) => format!("refused: {}", status.text()),
         Unknown::Malformed(why) => format!("cannot be read: {why}"),
     }

@@ -25,10 +25,10 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         Ok(answered) => answered,
     };
     match latency_timer(&settings.port) {
-        None => layers.ok("name", format!("{} opens, and no other master speaks", settings.port)),
+        None => layers.ok("name", format!("{} opens, and no other master is active", settings.port)),
         Some(time) => layers.warn(
             "name",
-            format!("{} opens, but its driver holds characters back for {time} ms", settings.port),
+            format!("{} opens, but its driver delays characters by {time} ms", settings.port),
             "write 1 to latency_timer of the port in /sys/bus/usb-serial/devices, or set slot=50ms in the URL",
         ),
     }
@@ -36,8 +36,8 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         layers.wrong(
             "station",
             format!("station {} does not answer", settings.station),
-            "check station and baud of the URL, A and B, the terminators, and that the controller is on; `yrcx profibus \
-             scan` lists who answers",
+            "check station and baud of the URL, wires A and B, the terminators, and that the controller is on. `yrcx \
+             profibus scan` lists the stations that answer",
         );
         return None;
     };
@@ -57,30 +57,30 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     }
     match (&station.configuration, settings.configuration.is_some() || settings.gsd.is_some()) {
         (Some(bytes), _) if station.fits() => layers.ok("configuration", format!("{bytes}, 48 bytes each way")),
-        (_, true) => layers.ok("configuration", "it is that of the URL"),
+        (_, true) => layers.ok("configuration", "equal to the URL"),
         (Some(bytes), false) => {
             let sizes =
                 [station.in_size, station.out_size].map(|size| size.map_or("?".to_owned(), |size| size.to_string()));
-            let found = format!("{bytes}: {} bytes from it and {} to it, not 48", sizes[0], sizes[1]);
+            let found = format!("{bytes}: {} bytes from it and {} bytes to it, not 48", sizes[0], sizes[1]);
             layers.wrong("configuration", found, "check station of the URL, and the unit of the controller");
         }
         (None, false) => {
-            layers.wrong("configuration", "it does not say which it wants", "set cfg= or gsd= in the URL");
+            layers.wrong("configuration", "the station does not report it", "set cfg= or gsd= in the URL");
         }
     }
-    let found = station.master.map(|master| format!("master {master} commands it"));
+    let found = station.master.map(|master| format!("master {master} owns it"));
     layers.judge(
         "owner",
         found.is_none(),
-        ("no master commands it", found.as_deref().unwrap_or_default()),
-        "commands want that master away first",
+        ("no master", found.as_deref().unwrap_or_default()),
+        "to send commands, disconnect that master",
     );
     match image {
-        Some(_) => layers.ok("inputs", "they can be read"),
+        Some(_) => layers.ok("inputs", "readable"),
         None => layers.warn(
             "inputs",
-            "a slave without a master shows nothing",
-            "`armctl session open` commands it; then `yrcx status` shows its signals",
+            "a slave without a master sends no data",
+            "start a master with `armctl session open`; then `yrcx status` shows the signals",
         ),
     }
     image
@@ -88,7 +88,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
 
 /// With role=listen, only listening is possible.
 async fn overheard(board: &Board, layers: &mut Layers) -> Option<Image> {
-    let opens = format!("{} opens; nothing is sent, as role=listen wants it", board.settings().port);
+    let opens = format!("{} opens; nothing is sent because of role=listen", board.settings().port);
     match board.overheard().await {
         Err(failure) if failure.kind != Kind::NoAnswer => layers.fail("name", &failure),
         Err(failure) => {
@@ -97,7 +97,7 @@ async fn overheard(board: &Board, layers: &mut Layers) -> Option<Image> {
         }
         Ok(image) => {
             layers.ok("name", opens);
-            layers.ok("inputs", "heard in the answers to its master");
+            layers.ok("inputs", "received from its answers to the master");
             return image;
         }
     }

@@ -53,7 +53,7 @@ pub(super) fn opener(profibus: &Profibus) -> Result<Opener, LinkError> {
 }
 
 fn rate(profibus: &Profibus) -> Result<Rate, LinkError> {
-    let unknown = || LinkError::Settings(Cause::new(format!("there is no bit rate of {}", profibus.baud)));
+    let unknown = || LinkError::Settings(Cause::new(format!("{} is not a PROFIBUS bit rate", profibus.baud)));
     Rate::from_baud(profibus.baud).ok_or_else(unknown)
 }
 
@@ -83,8 +83,9 @@ pub(super) fn settings(profibus: &Profibus, calm: Duration) -> Result<Settings, 
 /// Reads a GSD file and selects the named module, or the only one with the size of the image.
 fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MAX_FILE)
-        .map_err(|error| LinkError::Local(wrong(plain(&error)).advice("gsd= of the URL names the maker's file")))?;
+    let bytes = files::read(path, MAX_FILE).map_err(|error| {
+        LinkError::Local(wrong(plain(&error)).advice("set gsd= in the URL to the manufacturer's GSD file"))
+    })?;
     let gsd = Gsd::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))?;
     let found = match module {
         Some(name) => gsd.modules.iter().find(|module| module.name.eq_ignore_ascii_case(name)),
@@ -93,7 +94,7 @@ fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
     let Some(module) = found.cloned() else {
         let names: Vec<&str> = gsd.modules.iter().map(|module| module.name.as_str()).collect();
         let size = Image::BYTES;
-        let cause = wrong(format!("no module with this name, or not exactly one of {size} bytes each way"));
+        let cause = wrong(format!("no module with this name, or no unique module with {size} bytes each way"));
         let advice = format!("set module= in the URL to one of: {}", names.join(", "));
         return Err(LinkError::Settings(cause.advice(advice)));
     };

@@ -36,7 +36,7 @@ impl BusDecoder for Decoder {
             }
             Ok(Parsed::Whole(Telegram::Frame(frame), _)) => self.frame(message, &frame, images),
             Ok(Parsed::Part(needed)) => {
-                self.damaged(message, &format!("{needed} bytes are needed, {} are there", message.bytes.len()), images);
+                self.damaged(message, &format!("needs {needed} bytes, has {}", message.bytes.len()), images);
             }
             Err(error) if error.field == START => self.noise += message.bytes.len(),
             Err(error) => self.damaged(message, &error.to_string(), images),
@@ -48,7 +48,7 @@ impl BusDecoder for Decoder {
             images.note(format!("tokens: {}", self.tokens));
         }
         if self.noise > 0 {
-            images.note(format!("bytes that begin no telegram: {}", self.noise));
+            images.note(format!("bytes outside of telegrams: {}", self.noise));
         }
     }
 }
@@ -71,7 +71,7 @@ impl Decoder {
             return images.image(message, direction, &link, &image);
         }
         let mut text = match frame.control {
-            Control::Request(Service::FdlStatus, _) => "are you there?".to_owned(),
+            Control::Request(Service::FdlStatus, _) => "FDL status request".to_owned(),
             Control::Request(..) => sap::name(service).to_owned(),
             Control::Answer(_, status) if service.is_none() => format!("answer: {}", status.text()),
             Control::Answer(_, status) => format!("answer to {}: {}", sap::name(service), status.text()),
@@ -109,7 +109,7 @@ fn about(frame: &Frame, service: Option<u8>) -> Option<String> {
     if frame.data.is_empty() {
         return None;
     }
-    let unread = |error: WireError| format!("cannot be read: {error}");
+    let unread = |error: WireError| format!("invalid: {error}");
     Some(match service? {
         sap::SLAVE_DIAG => Diagnosis::parse(&frame.data).map_or_else(unread, |diagnosis| diagnosis.to_string()),
         sap::GLOBAL_CONTROL => GlobalControl::parse(&frame.data).map_or_else(unread, |control| control.to_string()),

@@ -10,8 +10,8 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
-/// Asks the station how it is doing (Slave_Diag), and tells all of it: the state, and what the unit says beyond that of
-/// itself, its modules and channels. It is not owned, and nothing changes.
+/// Reads the diagnosis of the station (Slave_Diag): state, and the diagnostic blocks of the unit, its modules and
+/// channels. The station is not locked and nothing changes.
 #[derive(Debug, Args)]
 pub struct Diag {}
 
@@ -23,7 +23,7 @@ impl Command for Diag {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Diagnosed, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        context.link.then("telegrams that ask the station for its state, diagnosis and configuration");
+        context.link.then("telegrams that read state, diagnosis and configuration of the station");
         let board = board_of(context.link)?;
         let diagnosis = board.diagnosis().await?;
         Ok(Diagnosed {
@@ -36,18 +36,18 @@ impl Command for Diag {
     }
 }
 
-/// How a station is doing.
+/// Diagnosis of a station.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Diagnosed {
-    /// Its address.
+    /// Station address.
     station: u8,
-    /// Which kind of slave it is, such as 0x1234.
+    /// Ident number, such as 0x1234.
     ident: String,
-    /// The master that it belongs to; null where it has none.
+    /// Master of the slave; null if it has none.
     master: Option<u8>,
-    /// What the flags of the standard say, those that are set.
+    /// Standard diagnosis flags that are set.
     states: Vec<&'static str>,
-    /// What it says beyond that, a block each, in its order.
+    /// Extended diagnosis, one entry per block, in the order received.
     blocks: Vec<String>,
 }
 

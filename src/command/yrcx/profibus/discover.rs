@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::settings::target::profibus::SCHEME;
 use crate::transport::image::tap::Tap;
 
-/// Which line to ask.
+/// Line to search.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {

@@ -23,16 +23,16 @@ fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
 }
 
 /// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the station is that of the whole controller";
+const NO_UNIT: &str = "the station belongs to the whole controller";
 
 commands! {
-    /// What a line and its stations can be asked.
+    /// Commands for a line and its stations.
     pub enum Profibus {
-        /// List the stations of the line, without owning any
+        /// List the stations of the line without locking them
         Scan(scan::Scan),
-        /// Show diagnosis, ident number and configuration of the station, without owning it
+        /// Show diagnosis, ident number and configuration of the station without locking it
         Probe(probe::Probe),
-        /// Show the diagnosis of the station with its blocks in words, without owning it
+        /// Show the diagnosis of the station with its blocks decoded, without locking it
         Diag(diag::Diag),
     }
 }

@@ -11,7 +11,7 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 
-/// Asks the station who it is, how it is doing, and which configuration it wants (Slave_Diag, Get_Cfg). It is not owned, and
+/// Reads identity, diagnosis and configuration of the station (Slave_Diag, Get_Cfg). The station is not locked and
 /// nothing changes.
 #[derive(Debug, Args)]
 pub struct Probe {}
@@ -24,14 +24,14 @@ impl Command for Probe {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        context.link.then("telegrams that ask the station for its state, diagnosis and configuration");
+        context.link.then("telegrams that read state, diagnosis and configuration of the station");
         let board = board_of(context.link)?;
         let (station, _) = board.station().await?.ok_or_else(|| board.silent())?;
         Ok(Probed { station })
     }
 }
 
-/// What a station says of itself.
+/// Result of the probe.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Probed {
     #[serde(flatten)]
@@ -45,8 +45,8 @@ impl Report for Probed {
 
     fn failure(&self) -> Option<Failure> {
         (!self.station.fits()).then(|| {
-            Failure::new(Kind::ConditionNotMet, "its images do not have the 48 bytes of a controller")
-                .hint("check station of the URL; where the slave does not say, set cfg= or gsd=")
+            Failure::new(Kind::ConditionNotMet, "the image size is not 48 bytes each way")
+                .hint("check station of the URL; if the slave does not report its configuration, set cfg= or gsd=")
         })
     }
 }

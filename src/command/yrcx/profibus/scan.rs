@@ -11,7 +11,8 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
 
-/// Asks every address of the line who is there, once nobody else speaks. Nobody is owned, and nothing changes.
+/// Asks every address of the line for its state when no other master is active. No station is locked and nothing
+/// changes.
 #[derive(Debug, Args)]
 pub struct Scan {}
 
@@ -23,22 +24,22 @@ impl Command for Scan {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Stations, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        context.link.then("telegrams that ask every station for its state, and slaves for diagnosis and configuration");
+        context.link.then("telegrams that read the state of every station, and diagnosis and configuration of slaves");
         Ok(Stations { stations: board_of(context.link)?.scan().await? })
     }
 }
 
-/// Who answers.
+/// Stations that answered.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stations {
-    /// In the order of their addresses.
+    /// Stations in the order of their addresses.
     stations: Vec<Station>,
 }
 
 impl Report for Stations {
     fn view(&self) -> View {
         let columns = ["station", "kind", "ident", "master", "configuration", "diagnosis"];
-        let mut table = Table::new(&columns, "no station answers: check baud, A and B, and the terminators");
+        let mut table = Table::new(&columns, "no station answered: check baud, wires A and B, and the terminators");
         for station in &self.stations {
             table.row([
                 station.station.into(),

@@ -13,7 +13,7 @@ use crate::transport::fault::LineFaultSpec;
 use crate::transport::profibus::rates::{RATES, Rate};
 use crate::transport::profibus::slave::SlaveFault;
 
-/// What the slave is, and what it does wrong.
+/// Options and faults of the simulated slave.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
@@ -23,13 +23,13 @@ pub struct ServeArgs {
     /// PROFIBUS: ident number of the station
     #[arg(long, value_name = "0xNNNN", default_value = "0x1234", value_parser = ident)]
     ident: u16,
-    /// PROFIBUS: bit rate, which characters take their time by: 9.6k, 19.2k, 45.45k, 93.75k, 187.5k, 500k, 1.5M
+    /// PROFIBUS: bit rate, which sets the character time: 9.6k, 19.2k, 45.45k, 93.75k, 187.5k, 500k, 1.5M
     #[arg(long, value_name = "RATE", default_value = "500k", value_parser = rate)]
     baud: Rate,
     /// PROFIBUS: faults of characters, such as noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,echo,seed=7
     #[arg(long, value_name = "FAULTS")]
     line_fault: Option<LineFaultSpec>,
-    /// PROFIBUS: what the slave does wrong: mute, lose, bad-fcs, locked, other-ident, other-size, no-configuration,
+    /// PROFIBUS: fault of the slave: mute, lose, bad-fcs, locked, other-ident, other-size, no-configuration,
     /// no-parameters, not-ready, wrong-size, inactive, master, diagnosis, token
     #[arg(long, value_name = "WHAT", value_parser = mischief)]
     slave_fault: Option<SlaveFault>,
@@ -78,11 +78,11 @@ fn console(server: &Server, line: &str) -> Result<String, String> {
     server.with(|slave, now| match line.trim() {
         "restart" => {
             slave.restart(now);
-            Ok("the slave was off, and is on again".to_owned())
+            Ok("the slave was switched off and on".to_owned())
         }
         "mischief off" => {
             slave.misbehave(None);
-            Ok("the slave does as it should".to_owned())
+            Ok("the slave works normally".to_owned())
         }
         line => match line.strip_prefix("mischief ").map(str::trim) {
             None => slave.peer_mut().0.console(now, line),

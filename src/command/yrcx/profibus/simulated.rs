@@ -68,7 +68,7 @@ pub struct Server {
 
 /// Serves a controller as a slave behind a pseudo-terminal.
 pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
-    let failed = |error: io::Error| Failure::local(format!("cannot make a pseudo-terminal: {}", plain(&error)));
+    let failed = |error: io::Error| Failure::local(format!("cannot create a pseudo-terminal: {}", plain(&error)));
     let setup = Setup { station: options.station, ident: options.ident, ..Setup::stand_in(options.rate) };
     let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)));
     slave.misbehave(options.mischief);

@@ -109,11 +109,12 @@ impl Board {
             Ok(found) => Ok(found),
             Err(error @ ProfinetError::Dcp { .. }) => {
                 let failure = Failure::new(Kind::Refused, format!("{}: {error}", self.label));
-                Err(failure.hint("nothing was changed; `yrcx profinet identify` shows the station as it is"))
+                Err(failure.hint("nothing was changed; `yrcx profinet identify` shows the current settings"))
             }
             Err(error) => {
-                let message = format!("{}: sent, and whether it was done is unknown: {error}", self.label);
-                Err(Failure::new(Kind::OutcomeUnknown, message).hint("`yrcx profinet identify` tells"))
+                let message = format!("{}: sent; the result is unknown: {error}", self.label);
+                Err(Failure::new(Kind::OutcomeUnknown, message)
+                    .hint("`yrcx profinet identify` shows the current settings"))
             }
         }
     }

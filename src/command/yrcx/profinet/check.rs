@@ -44,7 +44,7 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
     layers.ok("privilege", "raw Ethernet is allowed");
     let found = board.station().await.map_err(|failure| ("station", failure))?;
     let kind = &found.station.kind;
-    layers.ok("station", format!("'{}' at {}, {kind}, is there once", found.station.name, found.mac));
+    layers.ok("station", format!("'{}' at {}, {kind}, found once", found.station.name, found.mac));
     let address = match (found.station.address(), profinet.ip) {
         (None, None) => {
             let station = profinet.station.to_string();
@@ -52,8 +52,8 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
         }
         (has, Some(wanted)) if has != Some(wanted.address) => {
             let has = has.map_or_else(|| "none".to_owned(), |address| address.to_string());
-            let found = format!("it has {has}, the target says {}", wanted.address);
-            layers.warn("IP", found, "connecting sets it until the device is switched off");
+            let found = format!("the device has {has}, the target has {}", wanted.address);
+            layers.warn("IP", found, "a connection sets this address until the device is switched off");
             return Ok(None);
         }
         (None, Some(wanted)) => wanted.address,
@@ -70,8 +70,8 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
     }
     layers.warn(
         "data",
-        "a device shows its data only to the controller it is connected to",
-        "`armctl session open` connects; then `yrcx status` shows its signals",
+        "a device sends its data only to the controller that owns the connection",
+        "connect with `armctl session open`; then `yrcx status` shows the signals",
     );
     Ok(None)
 }
@@ -80,9 +80,9 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
 async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<(), (&'static str, Failure)> {
     let identity = board.identity(found.clone()).await.map_err(|failure| ("RPC", failure))?;
     match identity.im0 {
-        Ok(im0) => layers.ok("RPC", format!("it answers: order id '{}', vendor {:#06x}", im0.order_id, im0.vendor)),
+        Ok(im0) => layers.ok("RPC", format!("answers: order id '{}', vendor {:#06x}", im0.order_id, im0.vendor)),
         Err(ProfinetError::Refused { status, .. }) => {
-            layers.ok("RPC", format!("it answers, though not who it is: {status}"));
+            layers.ok("RPC", format!("answers, but refuses to report its identity: {status}"));
         }
         Err(error) => return Err(("RPC", board.failure(error))),
     }
@@ -104,16 +104,19 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
             }
             let layout = &settings.layout;
             match left_out(layout, &real) {
-                None => layers.ok("modules", format!("as the target says: {layout}")),
+                None => layers.ok("modules", format!("equal to the target: {layout}")),
                 Some(left_out) => layers.warn(
                     "modules",
-                    format!("as the target says, but for {left_out} of the head, which it has besides: {layout}"),
-                    "a device may want all of its head named: `yrcx profinet probe` tells what it has",
+                    format!(
+                        "equal to the target, except {left_out} of the access point, which only the device has: \
+                         {layout}"
+                    ),
+                    "a device can require all submodules of its access point: `yrcx profinet probe` lists them",
                 ),
             }
         }
         Err(error) => {
-            layers.warn("modules", format!("it does not tell them: {error}"), "connecting tells whether they fit");
+            layers.warn("modules", format!("not reported: {error}"), "a connection shows whether they fit");
         }
     }
     Ok(())
@@ -166,7 +169,7 @@ async fn data(board: &Board, network: &Network, layers: &mut Layers) -> Result<O
     let _ = link.close().await;
     match event {
         Event::Image(image) => {
-            layers.ok("data", "it flows both ways");
+            layers.ok("data", "flows both ways");
             Ok(Image::from_link(&image))
         }
         Event::Lost(error) => Err(board.failure_of(&error)),

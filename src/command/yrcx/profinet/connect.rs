@@ -27,8 +27,10 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     let profinet = options(at.bus)?;
     if purpose == Purpose::Look {
         // A read would need a connection, and its end would stop the controller.
-        let cause = Cause::new("a device of PROFINET shows its signals only to the controller it is connected to");
-        return Err(LinkError::Refused(cause.advice("open a session, `armctl session open`, and look through that")));
+        let cause = Cause::new("a PROFINET device sends its signals only to the controller that owns the connection");
+        return Err(LinkError::Refused(
+            cause.advice("open a session with `armctl session open`, then read through that session"),
+        ));
     }
     let settings = settings(profinet, at.bus.calm)?;
     if let Some(network) = Network::find(&profinet.interface) {
@@ -68,14 +70,16 @@ pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, 
     if !fits {
         let (input, output) = sizes;
         let cause = Cause::new(format!(
-            "the modules have {input} bytes from the controller and {output} to it, not {} each way",
+            "the modules have {input} bytes from the controller and {output} bytes to it, not {} each way",
             Image::BYTES
         ));
-        return Err(LinkError::Settings(cause.advice("correct layout= in the URL; `yrcx profinet probe` finds it")));
+        return Err(LinkError::Settings(
+            cause.advice("correct layout= in the URL; `yrcx profinet probe` finds the layout"),
+        ));
     }
     if profinet.cycle < shortest {
         let cause =
-            Cause::new(format!("the device wants a cycle of at least {} ms", shortest.as_micros().div_ceil(1000)));
+            Cause::new(format!("the device needs a cycle of at least {} ms", shortest.as_micros().div_ceil(1000)));
         return Err(LinkError::Settings(cause.advice("set a longer cycle= in the URL")));
     }
     let cycle = profinet.cycle.max(whole(calm));
@@ -121,10 +125,10 @@ fn modules(profinet: &Profinet) -> Result<Modules, LinkError> {
         }),
         (None, Some(path)) => file(path),
         (None, None) => {
-            let cause = Cause::new("the URL does not tell the modules of the device");
-            Err(LinkError::Settings(
-                cause.advice("set gsdml=FILE to the maker's file, or layout= to what `yrcx profinet probe` finds"),
-            ))
+            let cause = Cause::new("the URL does not define the modules of the device");
+            Err(LinkError::Settings(cause.advice(
+                "set gsdml= to the manufacturer's GSDML file, or layout= to the result of `yrcx profinet probe`",
+            )))
         }
     }
 }
@@ -149,7 +153,7 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
         return Ok(only);
     }
     let size = Image::BYTES;
-    let cause = wrong(format!("not exactly one choice of its modules has {size} bytes each way"));
+    let cause = wrong(format!("there is no unique selection of modules with {size} bytes each way"));
     let advice = "set layout= in the URL instead; `yrcx profinet gsdml FILE` lists the modules";
     Err(LinkError::Settings(cause.advice(advice)))
 }
@@ -157,7 +161,7 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
     let bytes = files::read(path, MOST_BYTES).map_err(|error| {
-        LinkError::Local(wrong(plain(&error)).advice("name the maker's file: gsdml= of the URL, or FILE"))
+        LinkError::Local(wrong(plain(&error)).advice("give the manufacturer's GSDML file: gsdml= in the URL, or FILE"))
     })?;
     Gsdml::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
 }
@@ -192,6 +196,6 @@ mod tests {
         let error = of("profinet://robot@eth0", Duration::ZERO).unwrap_err();
         assert!(error.cause().advice.as_ref().unwrap().contains("gsdml=FILE"), "{error:?}");
         let error = of("profinet://robot@eth0?layout=1:1:i48,2:2:o32", Duration::ZERO).unwrap_err();
-        assert!(error.to_string().contains("48 bytes from the controller and 32 to it"), "{error}");
+        assert!(error.to_string().contains("48 bytes from the controller and 32 bytes to it"), "{error}");
     }
 }

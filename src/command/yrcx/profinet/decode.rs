@@ -64,12 +64,12 @@ impl BusDecoder for Decoder {
     fn finish(&mut self, images: &mut Images) {
         if self.unknown > 0 {
             images.note(format!(
-                "{} cyclic frames cannot be read: no answer to a Connect stands before them",
+                "{} cyclic frames cannot be decoded: the capture has no Connect answer before them",
                 self.unknown
             ));
         }
         if self.unreadable > 0 {
-            images.note(format!("{} frames of PROFINET cannot be read", self.unreadable));
+            images.note(format!("{} PROFINET frames cannot be decoded", self.unreadable));
         }
     }
 }
@@ -140,7 +140,7 @@ impl Decoder {
     fn answered(&mut self, header: &Header, body: &[u8], asked: Option<&(u64, Vec<Request>)>) -> String {
         let reply = match Reply::parse(body, header.order) {
             Ok(reply) => reply,
-            Err(error) => return format!("cannot be read: {error}"),
+            Err(error) => return format!("invalid: {error}"),
         };
         if reply.status != 0 {
             return Status(reply.status).to_string();
@@ -152,11 +152,11 @@ impl Decoder {
                     describe_connected(&responses)
                 }
                 (Ok(responses), None) => describe_connected(&responses),
-                (Err(error), _) => format!("cannot be read: {error}"),
+                (Err(error), _) => format!("invalid: {error}"),
             },
             operation::READ | operation::READ_IMPLICIT => match Record::parse_answer(reply.blocks) {
                 Ok((record, bytes)) => format!("record {:#06x}, {} bytes", record.index, bytes.len()),
-                Err(error) => format!("cannot be read: {error}"),
+                Err(error) => format!("invalid: {error}"),
             },
             _ => "done".to_owned(),
         }
@@ -211,8 +211,7 @@ impl Stream {
             Err(why) => (None, Some(why)),
         };
         if trouble != self.trouble {
-            let text =
-                trouble.as_ref().map_or("its data can be used again".to_owned(), |why| format!("not used: {why}"));
+            let text = trouble.as_ref().map_or("data is valid again".to_owned(), |why| format!("data ignored: {why}"));
             say(message, self.direction, self.link.clone(), text, images);
             self.trouble = trouble;
         }
@@ -231,7 +230,7 @@ impl Stream {
         for (at, length) in &self.places {
             let end = at + length;
             if cyclic.data.get(end).is_none_or(|status| status & GOOD == 0) {
-                return Err(format!("its sender marks the data from byte {at} on as bad (IOPS)"));
+                return Err(format!("the sender marks the data from byte {at} as bad (IOPS)"));
             }
             image.extend_from_slice(&cyclic.data[*at..end]);
         }
@@ -274,16 +273,16 @@ fn kind_name(kind: u8) -> &'static str {
         Kind::PING => "ping",
         Kind::FAULT => "fault",
         Kind::WORKING => "working",
-        Kind::NO_CALL => "no such call",
+        Kind::NO_CALL => "no call",
         Kind::REJECT => "reject",
         Kind::ACK | Kind::FRAGMENT_ACK => "acknowledged",
-        _ => "of another kind",
+        _ => "unknown type",
     }
 }
 
 /// Text of a call, and its blocks for the answer.
 fn request(header: &Header, body: &[u8]) -> (String, Vec<Request>) {
-    let unread = |error| (format!(": cannot be read: {error}"), Vec::new());
+    let unread = |error| (format!(": invalid: {error}"), Vec::new());
     let call = match Call::parse(body, header.order) {
         Ok(call) => call,
         Err(error) => return unread(error),
@@ -356,7 +355,7 @@ fn alarm(priority: Priority, rta: &Rta) -> String {
     let level = if priority == Priority::High { "high" } else { "low" };
     match &rta.pdu {
         Pdu::Ack => format!("alarm ({level}): frame acknowledged"),
-        Pdu::Nack => format!("alarm ({level}): frame not taken"),
+        Pdu::Nack => format!("alarm ({level}): frame rejected"),
         Pdu::Error(status) => format!("the connection ends: {}", Status(*status)),
         Pdu::Data(data) => match (Notification::parse(data), Acknowledgement::parse(data)) {
             (Ok(alarm), _) => format!("alarm ({level}): {}", alarm.describe()),

@@ -16,7 +16,7 @@ use crate::transport::image::tap::Tap;
 use crate::transport::profinet::commission;
 use crate::transport::profinet::interface::Interface;
 
-/// Which interface to ask on.
+/// Interface to search.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {

@@ -5,9 +5,9 @@ mod gsdml;
 use crate::command::{Offline, commands};
 
 commands! {
-    /// What needs no station.
+    /// Commands that need no station.
     pub enum Profinet {
-        /// Read the maker's GSDML file: modules, and the layout for a target
+        /// Read a GSDML file: modules and the layout for a target
         Gsdml(Offline<gsdml::ReadFile>),
     }
 }

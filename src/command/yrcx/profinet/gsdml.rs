@@ -15,13 +15,15 @@ use crate::output::view::{Cell, Section, Table, View};
 use crate::transport::profinet::gsdml::{self, Fitting, Gsdml, Head};
 use crate::transport::profinet::layout::Direction;
 
-/// Reads the maker's file of a device: which modules it has, and the layout that a target needs. Takes no robot.
+/// Reads a device's GSDML file: its modules, and the layout for a target. Needs no robot.
 #[derive(Debug, Args)]
-#[command(after_help = "A mistake in the file is told with its line and element (exit 2). The layout is that of the \
-                        modules of 48 bytes each way, which is what a YRCX has; where the file leaves a choice, write \
-                        the layout into the target by hand: `armctl help profinet` has its form.")]
+#[command(
+    after_help = "An error in the file is reported with its line and element (exit 2). The layout uses the modules \
+                  with 48 bytes each way, as on a YRCX. If several layouts are possible, write the layout into the \
+                  target yourself; see `armctl help profinet`."
+)]
 pub struct ReadFile {
-    /// The file: GSDML-V2.35-….xml
+    /// GSDML file, such as GSDML-V2.35-….xml
     #[arg(value_name = "FILE")]
     file: PathBuf,
 }
@@ -34,55 +36,55 @@ impl OfflineCommand for ReadFile {
         let shown = self.file.display();
         let bytes = files::read(&self.file, gsdml::MOST_BYTES).map_err(|error| Failure::io(&shown, &error))?;
         let read = Gsdml::parse(&bytes).map_err(|error| {
-            Failure::usage(format!("{shown}: {error}")).hint("check that it is the GSDML file of the device's maker")
+            Failure::usage(format!("{shown}: {error}")).hint("check that it is the GSDML file of the device")
         })?;
         Ok(Described::from(&read))
     }
 }
 
-/// A device as its maker describes it. Names are untrusted.
+/// Device description of the manufacturer. Names are untrusted.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Described {
     /// As in `0x0123`.
     vendor: String,
     /// As in `0x0001`.
     device: String,
-    /// What the device may have in slot 0: one of them is plugged.
+    /// Access points for slot 0; one of them is plugged.
     access_points: Vec<AccessPoint>,
 }
 
 /// An access point.
 #[derive(Debug, Serialize, JsonSchema)]
 struct AccessPoint {
-    /// Its name within the file.
+    /// ID in the file.
     id: String,
     name: String,
-    /// The name that a new device has; empty for none.
+    /// Default station name; empty if there is none.
     station: String,
     /// As in `0x1`.
     ident: String,
     /// `advanced`, `legacy`.
     startup: Vec<&'static str>,
-    /// Shortest time between frames.
+    /// Minimum cycle time in us.
     cycle_us: u32,
     modules: Vec<Module>,
-    /// `layout=` of a target with images of 48 bytes each way; null where no modules make these, or several do.
+    /// `layout=` for a target with images of 48 bytes each way; null unless exactly one selection of modules fits.
     layout: Option<String>,
-    /// Records that are written to it at the start then.
+    /// Number of start-up parameter records for this layout.
     parameters: Option<usize>,
 }
 
-/// A module that fits an access point.
+/// A module that the access point allows.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Module {
-    /// Its name within the file.
+    /// ID in the file.
     id: String,
     name: String,
     /// As in `0x101`.
     ident: String,
-    /// Slots that it may be in.
+    /// Allowed slots.
     slots: Vec<u16>,
-    /// Slots that it is always in.
+    /// Fixed slots.
     fixed: Vec<u16>,
     /// Bytes from the device.
     in_size: usize,
@@ -150,7 +152,7 @@ impl Report for Described {
                 ("parameters", Cell::maybe(head.parameters.map(|count| format!("{count} records")))),
             ]));
             let columns = ["module", "name", "ident", "slots", "from device", "to device"];
-            let mut table = Table::new(&columns, "no module fits it");
+            let mut table = Table::new(&columns, "no modules");
             for module in &head.modules {
                 let always = if module.fixed.is_empty() { "" } else { " (always there)" };
                 table.row([

@@ -11,10 +11,10 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
 
-/// Asks the station who it is (DCP Identify). It needs no address for that, and is not connected.
+/// Reads the identity of the station (DCP Identify). The station needs no address, and is not connected.
 #[derive(Debug, Args)]
-#[command(after_help = "A station without a name is reached by its card, profinet://02:00:00:00:00:01@eth0; `armctl \
-                        robots discover --interface eth0` lists all.")]
+#[command(after_help = "Use the MAC address for a station without a name: profinet://02:00:00:00:00:01@eth0. `armctl \
+                        robots discover --interface eth0` lists all stations.")]
 pub struct Identify {}
 
 impl Command for Identify {
@@ -31,7 +31,7 @@ impl Command for Identify {
     }
 }
 
-/// Who answers.
+/// Identity of the station.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Identified {
     #[serde(flatten)]

@@ -35,13 +35,13 @@ fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
 }
 
 /// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the station is that of the whole controller";
+const NO_UNIT: &str = "the station belongs to the whole controller";
 
 /// Station of a robot's URL.
 fn station_of(robot: &Robot) -> Result<Station, Failure> {
     let other = || {
-        Failure::usage(format!("{} is on another fieldbus than {}", robot.label(), SCHEME.bus))
-            .hint("name the station: -t profinet://NAME@INTERFACE")
+        Failure::usage(format!("{} is not on {}", robot.label(), SCHEME.bus))
+            .hint("give a station: -t profinet://NAME@INTERFACE")
     };
     match endpoint(robot)? {
         Endpoint::Bus(bus, _) => {
@@ -56,7 +56,7 @@ fn station_of(robot: &Robot) -> Result<Station, Failure> {
 fn plan_search(link: &mut Link, robot: &Robot) -> Result<(), Failure> {
     let question = commission::looking_for(&station_of(robot)?, 0);
     let hex = text::hex(&commission::identify(Mac::default(), &question));
-    link.plan_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: which card the station has" }))
+    link.plan_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: MAC address of the station" }))
 }
 
 /// Frame of a DCP Set, as far as known before the station is found.
@@ -77,21 +77,21 @@ fn unknown(hex: &str, is_destination_known: bool) -> String {
 }
 
 commands! {
-    /// What a station can be asked, and what can be set at it.
+    /// Commands for a station.
     pub enum Profinet {
-        /// Show who a station is: name, card, maker, address
+        /// Show name, MAC address, vendor and IP address of the station
         Identify(identify::Identify),
-        /// Show records and modules of the station, and find the layout for a target
+        /// Show records and modules of the station and find the layout for a target
         Probe(probe::Probe),
         /// Make the light of the station blink
         Blink(set::Blink),
-        /// Give the station a name
+        /// Set the station name
         SetName(set::SetName),
-        /// Give the station an IP address
+        /// Set the IP address of the station
         SetIp(set::SetIp),
-        /// Make the station forget its name and its address
+        /// Delete the name and the IP address of the station
         Reset(set::Reset),
-        /// Read the maker's GSDML file: modules, and the layout for a target
+        /// Read a GSDML file: modules and the layout for a target
         Gsdml(Offline<gsdml::ReadFile>),
     }
 }

@@ -23,12 +23,12 @@ use crate::transport::profinet::guess;
 use crate::transport::profinet::layout::Layout;
 use crate::transport::profinet::wire::record::{Im0, RealModule};
 
-/// Asks the station for its records (I&M0, 0xF000): who it is, and which modules it has. It is not connected.
+/// Reads the records of the station (I&M0, 0xF000): identity and modules. The station is not connected.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "With --try it is connected: with the layout of the target, then with those that its modules leave \
-                        possible, until data flows with one. Each connection shows the controller the image at rest, and \
-                        its end stops the robot. A station that another controller has refuses, and nothing changes."
+    after_help = "With --try, armctl connects with the layout of the target, then with the layouts that its modules \
+                  allow, until data flows. Each connection sends the resting image to the controller, and its end \
+                  stops the robot. If another controller owns the station, it refuses and nothing changes."
 )]
 pub struct Probe {
     /// Try layouts until one fits
@@ -41,7 +41,7 @@ impl Command for Probe {
     type Report = Probed;
     const ID: &'static str = "yrcx.profinet.probe";
     const INTENT: &'static str =
-        "connect to the station with one layout after the other; the end of each connection stops the robot";
+        "connect to the station with one layout after the other (the end of each connection stops the robot)";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
@@ -54,7 +54,7 @@ impl Command for Probe {
         link.no_unit(NO_UNIT)?;
         link.then("calls that read I&M0 and the modules (ReadImplicit of 0xAFF0 and 0xF000)");
         if self.tries {
-            link.then("a connection with each layout that is possible, until data flows with one");
+            link.then("a connection with each possible layout, until data flows");
         }
         plan_search(link, robot)?;
         if self.tries {
@@ -123,18 +123,18 @@ fn untried(layouts: &[Layout]) -> Vec<Attempt> {
     layouts.iter().map(|layout| Attempt { layout: layout.to_string(), fits: None, answer: None }).collect()
 }
 
-/// What a station has.
+/// Result of the probe.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Probed {
     #[serde(flatten)]
     station: Station,
-    /// I&M0; null where the station does not tell.
+    /// I&M0; null if the station does not report it.
     identity: Option<Product>,
-    /// Modules that are there; null where the station does not tell.
+    /// Plugged modules; null if the station does not report them.
     modules: Option<Vec<Module>>,
-    /// Why the station does not tell.
+    /// Reasons for missing data.
     refusals: Vec<String>,
-    /// Layouts that may fit, or were tried, as `layout=` of a target wants them.
+    /// Possible or tried layouts, as `layout=` of a target accepts them.
     layouts: Vec<Attempt>,
     #[serde(skip)]
     has_tried: bool,
@@ -167,9 +167,9 @@ struct Module {
 struct Attempt {
     /// `0:0x1,1:0x101:i48,2:0x102:o48`.
     layout: String,
-    /// Null where it was not tried.
+    /// Null if not tried.
     fits: Option<bool>,
-    /// What came of it.
+    /// Result of the attempt.
     answer: Option<String>,
 }
 
@@ -227,13 +227,13 @@ impl Report for Probed {
         fields.extend(self.refusals.iter().map(|why| ("remark", Cell::from(why.as_str()).tone(Tone::Warning))));
         let mut view = View::default().and(Section::Fields(fields));
         if let Some(modules) = &self.modules {
-            let mut table = Table::new(&["slot", "module", "submodules"], "no module is plugged");
+            let mut table = Table::new(&["slot", "module", "submodules"], "no modules");
             for module in modules {
                 table.row([module.slot.into(), module.ident.as_str().into(), module.submodules.join(" ").into()]);
             }
             view = view.and(Section::Table(table));
         }
-        let mut table = Table::new(&["layout that is possible", "answer"], "no layout is possible");
+        let mut table = Table::new(&["possible layout", "answer"], "no possible layout");
         for attempt in &self.layouts {
             let answer = Cell::maybe(attempt.answer.as_deref());
             let tone = match attempt.fits {
@@ -249,8 +249,8 @@ impl Report for Probed {
     fn failure(&self) -> Option<Failure> {
         let is_open = self.has_tried && !self.layouts.iter().any(|attempt| attempt.fits == Some(true));
         is_open.then(|| {
-            Failure::new(Kind::ConditionNotMet, "no layout that was tried fits")
-                .hint("get the GSDML file of the unit: `armctl yrcx profinet gsdml FILE` reads it")
+            Failure::new(Kind::ConditionNotMet, "none of the tried layouts fits")
+                .hint("get the GSDML file of the unit and read it with `armctl yrcx profinet gsdml FILE`")
         })
     }
 }

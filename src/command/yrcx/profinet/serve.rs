@@ -16,11 +16,11 @@ use crate::transport::profinet::device::server::Server;
 use crate::transport::profinet::interface::Interface;
 use crate::transport::profinet::layout::Layout;
 
-/// What the device is, and what it does wrong.
+/// Options and faults of the simulated device.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
-    /// PROFINET: Ethernet interface of the device, whose address it has
+    /// PROFINET: Ethernet interface of the device; the device uses its address
     #[arg(long, value_name = "IFACE")]
     interface: Option<String>,
     /// PROFINET: name of the station
@@ -29,8 +29,8 @@ pub struct ServeArgs {
     /// PROFINET: modules of the device, as in 1:0x101:i48,2:0x102:o48
     #[arg(long, value_name = "LAYOUT")]
     layout: Option<Layout>,
-    /// PROFINET: what the device does wrong: never-ready, wrong-module, silent, diagnosis, restart, abort, stop, mute,
-    /// owned and others
+    /// PROFINET: fault of the device: never-ready, wrong-module, silent, diagnosis, restart, abort, stop, mute, owned
+    /// and others
     #[arg(long, value_name = "WHAT", value_parser = fault)]
     device_fault: Option<Fault>,
 }
@@ -38,8 +38,8 @@ pub struct ServeArgs {
 impl Serve for ServeArgs {
     fn serve(&self, _simulator: Option<&str>, start: Start, _link: Option<&Path>) -> Result<Served, Failure> {
         let Some(interface) = &self.interface else {
-            return Err(Failure::usage("a device of PROFINET needs an Ethernet interface")
-                .hint("add --interface IFACE; `ip link` lists them"));
+            return Err(Failure::usage("a PROFINET device needs an Ethernet interface")
+                .hint("add --interface IFACE; `ip link` lists the interfaces"));
         };
         let layout = self.layout.clone().unwrap_or_else(layout);
         let target = format!("{}://{}@IFACE?layout={layout}", SCHEME.name, self.station_name);
@@ -55,11 +55,11 @@ fn console(server: &Server<Controller>, line: &str) -> Result<String, String> {
     server.with(|device, now| match line.trim() {
         "restart" => {
             device.restart(now);
-            Ok("the device was off, and is on again".to_owned())
+            Ok("the device was switched off and on".to_owned())
         }
         "mischief off" => {
             device.set_fault(None);
-            Ok("the device does as it should".to_owned())
+            Ok("the device works normally".to_owned())
         }
         line => match line.strip_prefix("mischief ").map(str::trim) {
             None => device.application_mut().0.0.console(now, line),

@@ -19,53 +19,56 @@ use crate::transport::profinet::commission::Found;
 use crate::transport::profinet::wire::dcp::{Block, IpSuite, Station};
 
 /// Effect of a new name or address on a station with a connected controller.
-const ENDS: &str = "If a controller is connected to it, that may end the connection, which stops the robot.";
+const ENDS: &str = "If a controller is connected to the station, the connection may end, which stops the robot.";
 
 /// Makes the light of the station blink for about three seconds, to find it in the cabinet.
 #[derive(Debug, Args)]
 pub struct Blink {}
 
-/// Gives the station a name (DCP Set). It keeps the name when it is switched off, unless --temporary.
+/// Sets the station name (DCP Set). The station keeps the name after power-off, unless --temporary is used.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Names have small letters, digits, - and . only, 63 characters between dots. A name that another \
-                        station has is refused. Afterwards the station is profinet://NAME@eth0."
+    after_help = "A name can have lowercase letters, digits, - and dots, with up to 63 characters between dots. A name \
+                  that another station has is rejected. The new target is profinet://NAME@eth0."
 )]
 pub struct SetName {
     /// The new name, as in robot-7
     #[arg(value_name = "NAME", value_parser = profinet::name)]
     name: String,
-    /// Only until it is switched off
+    /// Only until the station is switched off
     #[arg(long)]
     temporary: bool,
 }
 
-/// Gives the station an IP address (DCP Set). It keeps it when it is switched off, unless --temporary.
+/// Sets the IP address of the station (DCP Set). The station keeps the address after power-off, unless --temporary is
+/// used.
 #[derive(Debug, Args)]
-#[command(after_help = "Before, ARP asks whether somebody has the address, which is then refused. A target with ip= \
-                        sets the address at every start of a connection, and needs no set-ip.")]
+#[command(
+    after_help = "An address that another device has (ARP check) is rejected. A target with ip= sets the address at \
+                  each connection and needs no set-ip."
+)]
 pub struct SetIp {
-    /// The new address, and the bits of its mask: 192.168.0.10/24
+    /// New address with the mask length: 192.168.0.10/24
     #[arg(value_name = "ADDRESS/BITS", value_parser = suite)]
     address: IpSuite,
     /// Router to other networks
     #[arg(long, value_name = "ADDRESS")]
     gateway: Option<Ipv4Addr>,
-    /// Only until it is switched off
+    /// Only until the station is switched off
     #[arg(long)]
     temporary: bool,
 }
 
-/// Makes the station forget its name and its address (DCP Reset to factory, communication parameters).
+/// Deletes the name and the IP address of the station (DCP Reset to factory, communication parameters).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Afterwards it has no name, and is reached by its card: profinet://02:00:00:00:00:01@eth0. Data and \
-                        programs of the robot are not touched."
+    after_help = "The station then has no name: use its MAC address, as in profinet://02:00:00:00:00:01@eth0. Data and \
+                  programs of the robot do not change."
 )]
 pub struct Reset {}
 
 fn suite(text: &str) -> Result<IpSuite, String> {
-    let short = || format!("the bits of the mask are missing, as in {text}/24");
+    let short = || format!("the mask length is missing, as in {text}/24");
     text.contains('/').then_some(()).ok_or_else(short)?;
     profinet::suite(text).map_err(|why| why.trim_start_matches("ip: ").to_owned())
 }
@@ -148,7 +151,7 @@ impl Command for SetName {
     }
 
     fn intent(&self) -> String {
-        format!("give the station the name '{}'{}", self.name, kept(self.temporary))
+        format!("set the station name to '{}'{}", self.name, kept(self.temporary))
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
@@ -189,7 +192,7 @@ impl Command for SetIp {
     }
 
     fn intent(&self) -> String {
-        format!("give the station the address {}{}", self.address.address, kept(self.temporary))
+        format!("set the station address to {}{}", self.address.address, kept(self.temporary))
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
@@ -212,7 +215,7 @@ impl Command for SetIp {
         let screen = context.screen;
         let found = set(context, task, async |board, found| {
             if let Some(own) = board.interface()?.ip.filter(|own| !own.reaches(address)) {
-                screen.note(&format!("warning: {address} is in another network than {} of this machine", own.address));
+                screen.note(&format!("warning: {address} is not in the network of {} of this computer", own.address));
             }
             match board.holder(address, found).await? {
                 Some(other) => Err(taken(&format!("the address {address}"), &other)),
@@ -229,7 +232,7 @@ impl Command for SetIp {
 
 /// Failure: another station has the name or address.
 fn taken(what: &str, other: &str) -> Failure {
-    Failure::new(Kind::ConditionNotMet, format!("{what} is taken: {other} has it"))
+    Failure::new(Kind::ConditionNotMet, format!("{what} is in use by {other}"))
         .hint("nothing was set; `armctl robots discover --interface IFACE` lists names and addresses")
 }
 
@@ -238,14 +241,14 @@ impl Command for Reset {
     type Report = Done;
     const ID: &'static str = "yrcx.profinet.reset";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "make the station forget its name and its address";
+    const INTENT: &'static str = "delete the name and the address of the station";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         let change = |found: &Found| {
             let (name, address) = (&found.station.name, found.station.address());
-            let mut change = Change::new(format!("delete what station {} was given", found.mac));
+            let mut change = Change::new(format!("delete the settings of station {}", found.mac));
             if name.is_empty() && address.is_none() {
                 return Change::nothing();
             }
@@ -266,7 +269,7 @@ impl Command for Reset {
             is_so: Box::new(|said| said.name.is_empty()),
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
-        let words = format!("station {} has no name and no address of its own", found.mac);
+        let words = format!("station {} has no name and no address", found.mac);
         let new = New::of("station_name", "", words).with("mac", found.mac.to_string());
         Ok(new.replaces(Old::read(Some(found.station.name.as_str()))))
     }

@@ -7,14 +7,14 @@ use crate::output::view::{Cell, Tone};
 use crate::transport::profinet::commission::Found;
 use crate::transport::profinet::wire::dcp;
 
-/// A station. What it says of itself is untrusted.
+/// A station. Its texts are untrusted.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Station {
-    /// Its name; empty if it has none.
+    /// Station name; empty if there is none.
     pub station: String,
-    /// The address of its card.
+    /// MAC address.
     pub mac: String,
-    /// Its type, in its words.
+    /// Station type.
     pub kind: String,
     /// As in `0x0123`.
     pub vendor: Option<String>,
@@ -22,13 +22,13 @@ pub struct Station {
     pub device: Option<String>,
     /// `device`, `controller`, `multidevice`, `supervisor`.
     pub roles: Vec<&'static str>,
-    /// Null if it has none.
+    /// IP address; null if there is none.
     pub ip: Option<String>,
-    /// Likewise.
+    /// Subnet mask; null if there is no address.
     pub mask: Option<String>,
-    /// Null if it has none.
+    /// Gateway; null if there is none.
     pub gateway: Option<String>,
-    /// What is wrong: names and addresses that others have, too.
+    /// Problems, such as duplicate names and addresses.
     pub remarks: Vec<String>,
 }
 
@@ -41,10 +41,10 @@ impl From<&Found> for Station {
         let suite = said.ip.filter(|(suite, _)| !suite.address.is_unspecified());
         let mut remarks = Vec::new();
         if suite.is_some_and(|(_, origin)| origin.is_in_conflict()) {
-            remarks.push("it reports that another station has its address too".to_owned());
+            remarks.push("the station reports a duplicate address".to_owned());
         }
         if suite.is_some_and(|(_, origin)| origin.is_by_dhcp()) {
-            remarks.push("its address came by DHCP".to_owned());
+            remarks.push("the address is from DHCP".to_owned());
         }
         let is_gateway = |suite: &dcp::IpSuite| !suite.gateway.is_unspecified() && suite.gateway != suite.address;
         Self {
@@ -137,7 +137,12 @@ mod tests {
     fn numbers_and_roles_are_told() {
         let station = Station::from(&found(1, "a", 5));
         assert_eq!(station.roles, ["device", "supervisor"]);
-        assert_eq!((station.ip.as_deref(), station.gateway), (Some("192.168.0.5"), None), "its own address is none");
+        assert_eq!(
+            (station.ip.as_deref(), station.gateway),
+            (Some("192.168.0.5"), None),
+            "its own address is not a \
+            duplicate"
+        );
         assert_eq!(station.vendor.as_deref(), Some("0x0123"));
     }
 }

@@ -1,4 +1,4 @@
-//! `yrcx program run` (4.6.2): starts a program, and waits for its end where that is wanted.
+//! `yrcx program run` (4.6.2): starts a program and optionally waits for its end.
 
 use std::time::Duration;
 
@@ -21,11 +21,11 @@ use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 use crate::settings::duration;
 
-/// Runs a program, or all that are registered. The controller answers as soon as it has accepted that.
+/// Runs a program, or all registered programs. The controller answers when it has accepted the start.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "--wait looks at SO(13) until no program runs. `yrcx io get program-running` tells the same; `yrcx \
-    stop` stops programs, and so does the end of the connection. A program must be in a task: `yrcx program select`."
+    after_help = "--wait waits until no program runs (SO(13), as in `yrcx io get program-running`). `yrcx stop` stops \
+                  programs, and so does the end of the connection. A program must be in a task: `yrcx program select`."
 )]
 pub struct Run {
     #[command(flatten)]
@@ -36,7 +36,7 @@ pub struct Run {
     repeat: Repeat,
 }
 
-/// How long a program may take to show that it runs; what was not seen by then was over before.
+/// Time for a program to start running. A program that was not seen by then has already ended.
 const BEGIN_WITHIN: Duration = Duration::from_secs(1);
 
 impl Command for Run {
@@ -82,7 +82,7 @@ impl Command for Run {
             if seen {
                 runs.ended(elapsed_ms);
             } else if self.repeat.repeat.is_some() {
-                // Nobody knows whether it ended or has not begun: it is not started on top of that.
+                // It is unknown whether the program ended or did not start, so it is not started again.
                 return Err(early(not_seen(&what)));
             }
         }
@@ -91,11 +91,11 @@ impl Command for Run {
 }
 
 impl Run {
-    /// Says in a dry run what follows a start.
+    /// Notes in a dry run what follows a start.
     fn plan(&self, link: &mut Link) -> Failure {
-        link.then("what the controller shows is looked at until SO(13) tells that no program runs");
+        link.then("the signals are read until SO(13) shows that no program is running");
         if let Some(count) = self.repeat.repeat {
-            link.then(&format!("after each end that was seen it is started again, {count} starts in all"));
+            link.then(&format!("after each end the program is started again, {count} starts in total"));
         }
         unknown()
     }
@@ -103,18 +103,18 @@ impl Run {
 
 fn not_seen(what: &str) -> Failure {
     let limit = duration::display(BEGIN_WITHIN);
-    let message =
-        format!("{what} was started, and was not seen running within {limit}: it may have ended at once, or not begun");
-    Failure::new(Kind::ConditionNotMet, message).hint("`yrcx info tasks` and `yrcx info line` tell how it stands")
+    let message = format!(
+        "{what} was started but did not report running within {limit}: it may have ended at once or not started"
+    );
+    Failure::new(Kind::ConditionNotMet, message).hint("check the program with `yrcx info tasks` and `yrcx info line`")
 }
 
-/// Waits until no program runs; whether one was seen running.
+/// Waits until no program runs. Returns whether one was seen running.
 async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool, Failure> {
     let lost = |failure: Failure| {
-        let message = format!("{what} was started, but its end was not seen: {}", failure.message);
-        Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(
-            "do not send it again; `yrcx status` tells what came of it. A controller whose master goes away stops",
-        )
+        let message = format!("{what} was started, but its end was not reported: {}", failure.message);
+        Failure { kind: Kind::OutcomeUnknown, message, ..failure }
+            .hint("do not send it again; `yrcx status` shows the result. A controller stops when the connection ends")
     };
     let is_over = |image: &_| output::ALARM.is_on(image) || output::EMERGENCY_STOP.is_on(image);
     let begins = link.look_until(|image| output::PROGRAM_RUNNING.is_on(image) || is_over(image));
@@ -128,15 +128,15 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
         None => ends.await,
         Some(rest) => timeout(rest, ends).await.map_err(|_| {
             let limit = duration::display(limit.unwrap_or_default());
-            Failure::new(Kind::ConditionNotMet, format!("{what} still runs after {limit}"))
-                .hint("`yrcx info line` tells how far it is; the end of this connection stops it")
+            Failure::new(Kind::ConditionNotMet, format!("{what} is still running after {limit}"))
+                .hint("`yrcx info line` shows the current line; the end of this connection stops the program")
         })?,
     };
     let image = image.map_err(lost)?;
     let stopped = if output::EMERGENCY_STOP.is_on(&image) {
-        Some(("the emergency stop came on", "release it, then `yrcx recover`"))
+        Some(("the emergency stop was triggered", "release it, then `yrcx recover`"))
     } else if output::ALARM.is_on(&image) {
-        Some(("an alarm came up", "`yrcx alarm list` names it, `yrcx alarm reset` resets it"))
+        Some(("an alarm occurred", "see `yrcx alarm list`, then reset with `yrcx alarm reset`"))
     } else {
         None
     };
@@ -148,23 +148,23 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
     }
 }
 
-/// A program that was started.
+/// Result of a program start.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Ran {
-    /// The controller took the order.
+    /// The controller accepted the start.
     accepted: bool,
     #[serde(flatten)]
     program: Program<Started>,
 }
 
-/// What was started.
+/// Selection of the started program.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 struct Started {
-    /// The task by which it was named.
+    /// Task, if the program was selected by its task.
     task: Option<i64>,
     /// All registered programs.
     all_programs: bool,
-    /// In words.
+    /// Description of the selection.
     #[serde(skip)]
     words: String,
 }

@@ -18,7 +18,7 @@ pub fn fields() -> &'static [Field] {
 
 /// Formats programs as TOML.
 pub fn write(programs: &[Filled]) -> String {
-    let mut text = "# Easy programs: from the start tag to the end tag, and how often\n".to_owned();
+    let mut text = "# Easy programs: start tag, end tag and number of runs\n".to_owned();
     for (program, values) in programs {
         let _ = writeln!(text, "{program} = {}", reading::toml(fields(), values));
     }
@@ -45,7 +45,7 @@ fn programs(reading: &mut Reading<'_>, document: &toml_edit::Table) -> Vec<Fille
             }
         };
         if let Some(other) = seen.insert(program, at.line) {
-            reading.findings.error(at, format!("program {program} is there already, in line {other}"), None);
+            reading.findings.error(at, format!("program {program} already exists in line {other}"), None);
         }
         programs.push((program, reading.values(name, fields(), item, at)));
     }
@@ -59,8 +59,8 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        let text = "# Easy programs: from the start tag to the end tag, and how often\n\
-                    1 = { start = 10, loop = 5, end = 20 }\n8 = { start = 0, loop = 9999, end = 999 }\n";
+        let text = "# Easy programs: start tag, end tag and number of runs\n1 = { start = 10, loop = 5, end = 20 \
+                    }\n8 = { start = 0, loop = 9999, end = 999 }\n";
         assert_eq!(write(&read(text.as_bytes()).unwrap()), text);
     }
 
@@ -76,7 +76,7 @@ mod tests {
         );
         assert_eq!(
             errors(&format!("1 = {values}\n01 = {values}")),
-            ["line 2, column 1: error: program 1 is there already, in line 1"]
+            ["line 2, column 1: error: program 1 already exists in line 1"]
         );
         assert_eq!(
             errors("1 = { start = 1, loop = 1 }"),

@@ -49,7 +49,7 @@ fn records(reading: &mut Reading<'_>, document: &toml_edit::Table) -> Vec<Filled
             continue;
         };
         if let Some(other) = seen.insert(pallet.number, at.line) {
-            reading.findings.error(at, format!("{} is there already, in line {other}", pallet.name), None);
+            reading.findings.error(at, format!("{} already exists in line {other}", pallet.name), None);
         }
         records.push((pallet, reading.values(pallet.name, pallet.layout.fields, item, at)));
     }
@@ -83,8 +83,8 @@ end = 7
         let errors = |text: &str| -> Vec<String> {
             read(text.as_bytes()).unwrap_err().iter().map(ToString::to_string).collect()
         };
-        assert_eq!(errors("stat = 1"), ["line 1, column 1: error: there is no record 'stat' (did you mean start?)"]);
-        assert_eq!(errors("end = 7\n16 = 8"), ["line 2, column 1: error: end is there already, in line 1"]);
+        assert_eq!(errors("stat = 1"), ["line 1, column 1: error: unknown record 'stat' (did you mean start?)"]);
+        assert_eq!(errors("end = 7\n16 = 8"), ["line 2, column 1: error: end already exists in line 1"]);
         assert_eq!(
             errors("source-p0 = { x = 9000.0, y = 0.0 }"),
             [

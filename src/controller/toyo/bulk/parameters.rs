@@ -93,7 +93,7 @@ impl Reader<'_, '_> {
                     self.reading.findings.error(
                         at,
                         message,
-                        Some(format!("write [{}], and a row a line", parameter.name)),
+                        Some(format!("write [{}], and one row per line", parameter.name)),
                     );
                 }
                 (Some(_), _) => {
@@ -118,7 +118,7 @@ impl Reader<'_, '_> {
             match (Parameter::named(&format!("T4.{name}")), item.as_table_like()) {
                 (Some(parameter), Some(table)) => self.rows(parameter, table),
                 (Some(parameter), None) => {
-                    let hint = format!("write [{}], and a row a line", parameter.name);
+                    let hint = format!("write [{}], and one row per line", parameter.name);
                     self.reading.findings.error(at, format!("T4.{name} is a table"), Some(hint));
                 }
                 (None, _) => self.reading.unknown(at, "table", name, ["S1", "S2", "S3", "S4", "S5"]),
@@ -131,8 +131,8 @@ impl Reader<'_, '_> {
             let at = self.reading.key(table, name);
             match Parameter::named(name) {
                 Some(parameter) if parameter.row().is_some() => {
-                    let hint = format!("write [{}], and a row a line", parameter.name);
-                    self.reading.findings.error(at, format!("{name} is a table of its own"), Some(hint));
+                    let hint = format!("write [{}], and one row per line", parameter.name);
+                    self.reading.findings.error(at, format!("{name} is a separate table"), Some(hint));
                 }
                 Some(parameter) => self.setting(parameter, None, item, at),
                 None => self.reading.unknown(at, "parameter", name, PARAMETERS.iter().map(|row| row.name)),
@@ -158,7 +158,7 @@ impl Reader<'_, '_> {
         let setting = Setting { parameter, values };
         if let Some(other) = self.seen.insert((parameter.id, setting.row()), at.line) {
             let what = setting.row().map_or_else(|| parameter.name.to_owned(), |row| format!("row {row}"));
-            self.reading.findings.error(at, format!("{what} is there already, in line {other}"), None);
+            self.reading.findings.error(at, format!("{what} already exists in line {other}"), None);
         }
         if self.reading.findings.errors() == before {
             self.settings.push((setting, at.line));
@@ -171,7 +171,7 @@ impl Reader<'_, '_> {
             let steps = setting.values.iter().map(|value| if let Value::Number(steps) = value { *steps } else { 0 });
             let steps = steps.fold(0_usize, |sum, steps| sum + usize::try_from(steps).unwrap_or_default());
             if steps > MOST_STEPS {
-                let message = format!("the tasks have {steps} steps together; there are {MOST_STEPS}");
+                let message = format!("the tasks have {steps} steps in total; at most {MOST_STEPS} are possible");
                 self.reading.findings.error(SourceLocation { line: *line, column: 1 }, message, None);
             }
         }
@@ -252,11 +252,11 @@ area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 
         for (text, expected) in [
             (
                 "[parameters]\nsoft-limit-plsu = 1",
-                "line 2, column 1: error: there is no parameter 'soft-limit-plsu' (did you mean soft-limit-plus?)",
+                "line 2, column 1: error: unknown parameter 'soft-limit-plsu' (did you mean soft-limit-plus?)",
             ),
             (
                 "[speed-tabel]\n1 = 1.0",
-                "line 1, column 2: error: there is no table 'speed-tabel' (did you mean speed-table?)",
+                "line 1, column 2: error: unknown table 'speed-tabel' (did you mean speed-table?)",
             ),
             (
                 "pendant-language = \"J\"",
@@ -264,11 +264,11 @@ area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 
             ),
             (
                 "[parameters]\nspeed-table = 1",
-                "line 2, column 1: error: speed-table is a table of its own (write [speed-table], and a row a line)",
+                "line 2, column 1: error: speed-table is a separate table (write [speed-table], and one row per line)",
             ),
-            ("T2 = 5", "line 1, column 1: error: T2 is a table (write [speed-table], and a row a line)"),
+            ("T2 = 5", "line 1, column 1: error: T2 is a table (write [speed-table], and one row per line)"),
             ("parameters = 5", "line 1, column 1: error: parameters is a table (write [parameters])"),
-            ("[T4.S6]", "line 1, column 5: error: there is no table 'S6'"),
+            ("[T4.S6]", "line 1, column 5: error: unknown table 'S6'"),
             ("[speed-table]\n21 = 1.0", "line 2, column 1: error: row: 21 is out of range (a number, 1 to 20)"),
             (
                 "[speed-table]\n1 = 0.9",
@@ -280,10 +280,10 @@ area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 
             ),
             ("[speed-table]\n1 = \"1.0\"", "line 2, column 5: error: speed: a number, 1.0 to 9999.9 mm/s is expected"),
             ("[speed-table]\n1 = inf", "line 2, column 5: error: speed: 'inf' is not a number, 1.0 to 9999.9 mm/s"),
-            ("[speed-table]\n1 = 1.0\n01 = 2.0", "line 3, column 1: error: row 1 is there already, in line 2"),
+            ("[speed-table]\n1 = 1.0\n01 = 2.0", "line 3, column 1: error: row 1 already exists in line 2"),
             (
                 "[parameters]\nM09 = 'J'\npendant-language = 'E'",
-                "line 3, column 1: error: pendant-language is there already, in line 2",
+                "line 3, column 1: error: pendant-language already exists in line 2",
             ),
             ("[parameters]\nM09 = 'X'", "line 2, column 7: error: language: 'X' is not J or E"),
             ("[parameters]\nM09 = { language = 'J' }", "line 2, column 7: error: language: J or E is expected"),
@@ -297,11 +297,11 @@ area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 
             ),
             (
                 "[parameters]\nP08 = { low = 5.0, high = 9.0, hihg = 1.0 }",
-                "line 2, column 32: error: there is no value 'hihg' (did you mean high?)",
+                "line 2, column 32: error: unknown value 'hihg' (did you mean high?)",
             ),
             (
                 "[parameters]\nE22 = { task1 = 5000, task2 = 1, task3 = 0, task4 = 0 }",
-                "line 2, column 1: error: the tasks have 5001 steps together; there are 5000",
+                "line 2, column 1: error: the tasks have 5001 steps in total; at most 5000 are possible",
             ),
         ] {
             assert_eq!(errors(text), [expected]);

@@ -19,7 +19,7 @@ const COLUMNS: [&str; 5] = ["name", "x_mm", "y_mm", "z_mm", "r_mm"];
 /// # Panics
 /// If it is missing in the parameter table; a test checks that.
 pub fn table() -> &'static Parameter {
-    Parameter::named("T1").expect("the coordinate table is in the table of parameters")
+    Parameter::named("T1").expect("the parameter table has the coordinate table")
 }
 
 /// Columns with axis numbers instead of letters: they have the same meaning on every machine.
@@ -82,7 +82,7 @@ pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
 pub fn numbers(bytes: &[u8]) -> Result<Vec<i32>, Vec<Finding>> {
     let mut findings = Findings::default();
     let mut points = Vec::new();
-    let expected = format!("the first line begins with {}", COLUMNS[0]);
+    let expected = format!("the first line must begin with {}", COLUMNS[0]);
     if let Some(sheet) = Sheet::read(bytes, &expected, &mut findings) {
         match sheet.column(COLUMNS[0]) {
             Some(at) => {
@@ -109,7 +109,7 @@ fn has_numbers(bytes: &[u8]) -> bool {
 fn read_wanted(bytes: &[u8], names: [&str; 5], axes: usize, wanted: &[&str]) -> Result<Vec<Partial>, Vec<Finding>> {
     let mut findings = Findings::default();
     let names = if has_numbers(bytes) { NUMBERED_COLUMNS } else { names };
-    let expected = format!("the first line is {}", names[..=axes.clamp(1, 4)].join(","));
+    let expected = format!("the first line must be {}", names[..=axes.clamp(1, 4)].join(","));
     let mut points = Vec::new();
     if let Some(sheet) = Sheet::read(bytes, &expected, &mut findings) {
         // An error in one row does not hide errors in others.
@@ -119,7 +119,7 @@ fn read_wanted(bytes: &[u8], names: [&str; 5], axes: usize, wanted: &[&str]) -> 
             findings.error(sheet.end_of_head(), format!("column {name} is missing"), Some(expected.clone()));
         }
         if findings.errors() == before && places[1..].iter().all(Option::is_none) {
-            findings.error(sheet.end_of_head(), "there is no column of coordinates", Some(expected));
+            findings.error(sheet.end_of_head(), "no column with coordinates", Some(expected));
         }
         if findings.errors() == before {
             points = read_rows(&sheet, names, &places, &mut findings);
@@ -153,7 +153,7 @@ fn read_rows(sheet: &Sheet, names: [&str; 5], places: &[Option<usize>], findings
         }
         let point = Partial { values, line: row.line };
         if let Some(other) = seen.insert(point.row(), row.line) {
-            let message = format!("point {} is there already, in line {other}", point.row());
+            let message = format!("point {} already exists in line {other}", point.row());
             findings.error(row.place(usize::MAX), message, None);
         }
         points.push(point);
@@ -169,12 +169,12 @@ fn coordinate(
     at: usize,
 ) -> Result<Value, (String, Option<String>)> {
     if row.text(at).is_empty() {
-        let hint = (column != COLUMNS[0]).then(|| "without its column, a coordinate stays as it is".to_owned());
+        let hint = (column != COLUMNS[0]).then(|| "to keep a coordinate unchanged, remove its column".to_owned());
         return Err((format!("{column} is empty"), hint));
     }
     match sheet.number(row, at) {
         Ok(text) => field.read(&text).map_err(|error| (error.to_string(), None)),
-        Err(why) => Err((format!("{column}: '{}' is not clear", row.text(at)), Some(why.to_owned()))),
+        Err(why) => Err((format!("{column}: '{}' is ambiguous", row.text(at)), Some(why.to_owned()))),
     }
 }
 
@@ -223,8 +223,7 @@ mod tests {
     fn an_axis_that_is_there_needs_its_column() {
         assert_eq!(
             errors("name,x_mm,y_mm,z_mm\n1,0,0,0"),
-            ["line 1, column 21: error: column r_mm is missing \
-                 (the first line is name,x_mm,y_mm,z_mm,r_mm)"]
+            ["line 1, column 21: error: column r_mm is missing (the first line must be name,x_mm,y_mm,z_mm,r_mm)"]
         );
         assert_eq!(rows("name,x_mm\n1,0.01", 1), [(1, vec![1, 0, 0, 0], 2)]);
     }
@@ -232,19 +231,16 @@ mod tests {
     #[test]
     fn mistakes_are_told_with_their_place() {
         for (text, expected) in [
-            ("", "line 1, column 1: error: the file is empty (the first line is name,x_mm,y_mm,z_mm,r_mm)"),
-            (
-                "name,x_mm,y_mm,z_mm,r_mm,x_mn\n",
-                "line 1, column 27: error: there is no column 'x_mn' (did you mean x_mm?)",
-            ),
-            ("name,x_mm,y_mm,z_mm,r_mm,X_MM\n", "line 1, column 27: error: column X_MM is there twice"),
+            ("", "line 1, column 1: error: the file is empty (the first line must be name,x_mm,y_mm,z_mm,r_mm)"),
+            ("name,x_mm,y_mm,z_mm,r_mm,x_mn\n", "line 1, column 27: error: unknown column 'x_mn' (did you mean x_mm?)"),
+            ("name,x_mm,y_mm,z_mm,r_mm,X_MM\n", "line 1, column 27: error: column X_MM appears twice"),
         ] {
             assert_eq!(errors(text), [expected]);
         }
         let header = "name,x_mm,y_mm,z_mm,r_mm\n";
         for (row, expected) in [
-            ("1,0,0,0", "line 2, column 1: error: 4 cells under 5 columns"),
-            ("1,0,0,0,", "line 2, column 9: error: r_mm is empty (without its column, a coordinate stays as it is)"),
+            ("1,0,0,0", "line 2, column 1: error: 4 cells for 5 columns"),
+            ("1,0,0,0,", "line 2, column 9: error: r_mm is empty (to keep a coordinate unchanged, remove its column)"),
             (
                 "1,0,8000.01,0,0",
                 "line 2, column 5: error: y: 8000.01 is out of range (a number, -8000.00 to 8000.00 mm)",
@@ -254,13 +250,10 @@ mod tests {
                 "line 2, column 5: error: y: 0.001 has too many decimals: at most 2 decimals (a number, -8000.00 to 8000.00 mm)",
             ),
             ("1000,0,0,0,0", "line 2, column 1: error: row: 1000 is out of range (a number, 1 to 999)"),
-            (
-                "1,0,\"0,5\",0,0",
-                "line 2, column 5: error: y_mm: '0,5' is not clear (numbers have a point, not a comma)",
-            ),
-            ("1,0,\"0,0,0", "line 2, column 5: error: the quotes are wrong here"),
-            ("1,0,0\"5\",0,0", "line 2, column 6: error: the quotes are wrong here"),
-            ("1,0,0,0,0\n01,1,1,1,1", "line 3, column 1: error: point 1 is there already, in line 2"),
+            ("1,0,\"0,5\",0,0", "line 2, column 5: error: y_mm: '0,5' is ambiguous (use a decimal point, not a comma)"),
+            ("1,0,\"0,0,0", "line 2, column 5: error: wrong quotes"),
+            ("1,0,0\"5\",0,0", "line 2, column 6: error: wrong quotes"),
+            ("1,0,0,0,0\n01,1,1,1,1", "line 3, column 1: error: point 1 already exists in line 2"),
         ] {
             assert_eq!(errors(&format!("{header}{row}\n")), [expected]);
         }

@@ -81,7 +81,7 @@ impl Reading<'_> {
         match (fields, item, item.as_table_like()) {
             ([field], Item::Value(value), _) => self.value(field, value).into_iter().collect(),
             ([field], ..) => {
-                self.findings.error(at, format!("{name} is one value: {}", field.expected()), None);
+                self.findings.error(at, format!("{name} must be one value: {}", field.expected()), None);
                 Vec::new()
             }
             (fields, _, Some(table)) => self.fields(fields, table, at),
@@ -141,7 +141,7 @@ impl Reading<'_> {
             return self.findings.error(at, "", None);
         }
         let near = nearest(name, known).map(|near| format!("did you mean {near}?"));
-        self.findings.error(at, format!("there is no {what} '{}'", name.escape_debug()), near);
+        self.findings.error(at, format!("unknown {what} '{}'", name.escape_debug()), near);
     }
 
     /// Position of a key.

@@ -14,7 +14,11 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
             && !matches!(row.op, Op::Tag | Op::Nop | Op::End)
         {
             let word = jump.row().word;
-            findings.warning(at, format!("nothing reaches this step: {word} before it never goes on here"), None);
+            findings.warning(
+                at,
+                format!("the program never reaches this step: it does not continue after {word}"),
+                None,
+            );
         }
         // A NOP or END after a jump is padding.
         if !(row.op == Op::Nop && before.is_some_and(never_goes_on)) {
@@ -28,15 +32,15 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
     {
         findings.warning(
             at,
-            format!("the program does not end: {} is its last instruction", row.word),
+            format!("the program has no end: {} is its last instruction", row.word),
             Some("add END".to_owned()),
         );
     }
     let unknown: Vec<_> = steps().filter(|(row, _)| jumps_somewhere(row.op)).collect();
     if let Some((row, at)) = unknown.first() {
-        let more = if unknown.len() > 1 { format!("; {} steps do so", unknown.len()) } else { String::new() };
+        let more = if unknown.len() > 1 { format!("; {} steps are like this", unknown.len()) } else { String::new() };
         findings
-            .note(*at, format!("where {} jumps to depends on counters and inputs, and is not checked{more}", row.word));
+            .note(*at, format!("the target of {} depends on counters and inputs, and is not checked{more}", row.word));
     }
     limits(steps(), findings);
 }

@@ -72,7 +72,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findin
     let word = cursor.word();
     let Some(row) = INSTRUCTIONS.iter().find(|row| row.word.eq_ignore_ascii_case(word)) else {
         let near = nearest(word, INSTRUCTIONS.iter().map(|row| row.word));
-        let message = format!("there is no instruction '{}'", shown(word));
+        let message = format!("unknown instruction '{}'", shown(word));
         findings.error(at, message, near.map(|near| format!("did you mean {near}?")));
         return None;
     };
@@ -85,7 +85,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findin
     }
     let mut draft = Draft { instruction: row, values: Vec::new(), tags: Vec::new(), at };
     let mut keys = row.layout.text[row.word.len()..].split("{}");
-    let form = || Some(format!("it is written {}", row.form()));
+    let form = || Some(format!("write {}", row.form()));
     cursor
         .pass_to(keys.next().unwrap_or_default(), row.layout.fields.first(), known)
         .map_err(|missing| findings.error(cursor.place(), missing, form()))
@@ -115,7 +115,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findin
         cursor.pass_to(key, next, known).map_err(|missing| findings.error(cursor.place(), missing, form())).ok()?;
     }
     if !cursor.rest().is_empty() {
-        findings.error(cursor.place(), format!("'{}' is too much", shown(cursor.rest())), form());
+        findings.error(cursor.place(), format!("unexpected text '{}'", shown(cursor.rest())), form());
     }
     pass_fixed(&mut draft, findings);
     (findings.errors() == before).then_some(draft)
@@ -128,7 +128,7 @@ fn pass_fixed(draft: &mut Draft, findings: &mut Findings) {
     }
     for value in &mut draft.values {
         if *value == Value::Word("POST") {
-            findings.warning(draft.at, "RSMV never stops at its place: POST is taken as PASS", None);
+            findings.warning(draft.at, "RSMV never stops at its position: POST has the effect of PASS", None);
             *value = Value::Word("PASS");
         }
     }
@@ -142,7 +142,7 @@ fn target(field: &Field, text: &str) -> Result<Target, String> {
     match field.read(text) {
         Ok(Value::Number(number)) => Ok(Target::Number(number)),
         Ok(_) | Err(FieldError::Form { .. }) => {
-            Err(format!("{}: '{}' is not a valid tag (001 to 999) and no label", field.name, shown(text)))
+            Err(format!("{}: '{}' is neither a valid tag (001 to 999) nor a label", field.name, shown(text)))
         }
         Err(error) => Err(error.to_string()),
     }
@@ -207,7 +207,7 @@ fn unknown_name(field: &Field, text: &str, known: &Names) -> Option<(String, Str
     let (kind, prefix) = names::of_field(field.name).filter(|_| is_label(text))?;
     let alike = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
     let hint = nearest(text, alike).map(|near| format!("did you mean {near}?"));
-    let hint = hint.unwrap_or_else(|| format!("names stand in robots.toml: {} = \"{prefix}1\"", shown(text)));
+    let hint = hint.unwrap_or_else(|| format!("define names in robots.toml: {} = \"{prefix}1\"", shown(text)));
     Some((format!("there is no {} called '{}'", kind.word(), shown(text)), hint))
 }
 

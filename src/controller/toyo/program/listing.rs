@@ -76,7 +76,7 @@ pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Row
     let tags = tags(shown, first);
     let mut text = String::new();
     if !unread.is_empty() {
-        let _ = writeln!(text, "# NOT WHOLE: {} of {} steps were not read", unread.len(), steps.len());
+        let _ = writeln!(text, "# INCOMPLETE: {} of {} steps were not read", unread.len(), steps.len());
     }
     for (index, (record, own)) in shown.iter().zip(&texts).enumerate() {
         if let Some(why) = unread.get(&index) {
@@ -101,7 +101,7 @@ pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Row
         text.push('\n');
     }
     if left_out > 0 {
-        let _ = writeln!(text, "# {left_out} NOP up to the end of the program are left out");
+        let _ = writeln!(text, "# {left_out} NOP at the end of the program are omitted");
     }
     Listing { text, left_out }
 }

@@ -67,11 +67,11 @@ impl Finder<'_> {
         for (index, record) in self.steps.iter().map(|step| &step.record).enumerate() {
             let (Some(point), Some(counter)) = (record.number("point"), record.number("counter")) else { continue };
             if counter == 0 && point == 0 {
-                self.warn(index, "point 0 without a counter is no row of the coordinate table", STOPS_AT_TABLE);
+                self.warn(index, "point 0 without a counter is not a row of the coordinate table", STOPS_AT_TABLE);
             } else if counter == 0 && known.points.as_ref().is_some_and(|points| !points.contains(&point)) {
                 self.warn(
                     index,
-                    format!("point {point} is not among the points that are given"),
+                    format!("point {point} is not in the given points"),
                     "teach it, or write it with `toyo point set`",
                 );
             }
@@ -85,7 +85,7 @@ impl Finder<'_> {
             if let (Some(Op::Iout | Op::Insp), Some(port)) = (self.op(index), port) {
                 self.warn(
                     index,
-                    format!("there may be no internal port {port}: controllers show 1 to 4"),
+                    format!("internal port {port} may not exist: controllers have 1 to 4"),
                     "a controller stops with error B5",
                 );
             }
@@ -103,7 +103,7 @@ impl Finder<'_> {
                 } else {
                     self.warn(
                         index,
-                        "an arc takes two steps, a place on the way and its end: the next step is no MVC or MVCP",
+                        "an arc needs two steps, a point on the arc and its end, but the next step is not MVC or MVCP",
                         "a controller stops with error A5",
                     );
                 }
@@ -122,7 +122,10 @@ impl Finder<'_> {
             };
             self.warn(
                 index,
-                format!("nothing begins group {number}: without MINI GRP={number} its counters may be at no place"),
+                format!(
+                    "no step starts group {number}: without MINI GRP={number}, its counters may have no valid \
+                     position"
+                ),
                 "a controller stops with error A7",
             );
         }
@@ -136,7 +139,7 @@ impl Finder<'_> {
         for index in main.steps.iter().copied().filter(|index| self.op(*index) == Some(Op::Ret)).collect::<Vec<_>>() {
             self.warn(
                 index,
-                "the program can come here without a call",
+                "the program can reach this step without a call",
                 "a controller stops with error A4 at a RET without a call",
             );
         }
@@ -152,12 +155,12 @@ impl Finder<'_> {
         for (call, entry) in main.calls {
             match depth(entry, &bodies, &mut depths, &mut Vec::new()) {
                 Depth::Calls(depth) if depth > DEPTH => {
-                    let message = format!("{depth} subroutines are called in each other from here");
+                    let message = format!("{depth} nested subroutine calls start here");
                     self.warn(call, message, "a controller stops with error A3 where its stack is full");
                 }
                 Depth::Calls(_) => {}
                 Depth::Endless(step) => {
-                    let message = "this call leads back to the subroutine that it is in";
+                    let message = "this call is recursive: it calls its own subroutine";
                     self.warn(step, message, "a controller stops with error A3 when its stack is full");
                     return;
                 }

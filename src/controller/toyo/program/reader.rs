@@ -41,8 +41,13 @@ pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names,
         let after = reader.read.steps.len();
         if before <= room && room < after {
             let at = reader.read.steps[room].at;
-            let message = format!("step {} is one too many: the task has room for {}", start + room, start + room - 1);
-            reader.findings.error(at, message, Some("the machine parameter E22 (task-steps) says how many".to_owned()));
+            let message =
+                format!("step {} does not fit: the task has at most {} steps", start + room, start + room - 1);
+            reader.findings.error(
+                at,
+                message,
+                Some("the machine parameter E22 (task-steps) sets this number".to_owned()),
+            );
         }
         // No task can have more steps.
         if after > MOST_STEPS {
@@ -50,7 +55,7 @@ pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names,
         }
     }
     if reader.read.steps.is_empty() && reader.findings.errors() == 0 {
-        reader.findings.error(SourceLocation { line: 1, column: 1 }, "there is no instruction in the file", None);
+        reader.findings.error(SourceLocation { line: 1, column: 1 }, "the file contains no instruction", None);
     }
     reader.read
 }
@@ -81,7 +86,7 @@ impl Reader<'_> {
             self.step_number(&mut cursor);
         }
         if cursor.rest().starts_with(NOT_READ) {
-            let hint = "read the program again: without this step it is another one";
+            let hint = "read the program again, because the program is different without this step";
             self.findings.error(cursor.place(), "this step was not read from the controller", Some(hint.to_owned()));
             return self.read.steps.push(Draft::empty(cursor.place()));
         }
@@ -92,7 +97,7 @@ impl Reader<'_> {
         }
         if cursor.rest().is_empty() {
             if steps == self.read.steps.len() {
-                self.findings.error(cursor.place(), "there is no instruction behind the step number", None);
+                self.findings.error(cursor.place(), "an instruction is missing after the step number", None);
             }
             return;
         }
@@ -108,8 +113,8 @@ impl Reader<'_> {
     fn is_clean(&mut self, code: &str, line: usize) -> bool {
         let Some((column, wrong)) = code.chars().enumerate().find(|(_, c)| is_wrong(*c)) else { return true };
         if wrong != char::REPLACEMENT_CHARACTER {
-            let hint = narrow(wrong).map(|narrow| format!("it is a wide character: write '{narrow}'"));
-            let message = format!("character '{}' cannot be here", wrong.escape_default());
+            let hint = narrow(wrong).map(|narrow| format!("this is a wide character: write '{narrow}'"));
+            let message = format!("character '{}' is not allowed here", wrong.escape_default());
             self.findings.error(SourceLocation { line, column: column + 1 }, message, hint);
         }
         false
@@ -128,13 +133,15 @@ impl Reader<'_> {
         let first = *self.first.get_or_insert(number.saturating_sub(steps));
         let expected = first + steps;
         if number != expected {
-            let message = format!("step number {number} is expected to be {expected:04}: they run on by one");
+            let message = format!("step number {number} must be {expected:04}: step numbers increase by one");
             self.findings.error(at, message, Some("instructions need no step numbers".to_owned()));
             // The following numbers are compared with this one.
             self.first = Some(number.saturating_sub(steps));
         } else if is_first && first != self.start {
             let start = self.start;
-            let message = format!("the file counts from {first}; its first instruction is step {start} nevertheless");
+            let message = format!(
+                "the step numbers of the file begin with {first}, but its first instruction becomes step {start}"
+            );
             self.findings.warning(at, message, None);
         }
     }
@@ -148,13 +155,13 @@ impl Reader<'_> {
         let step = self.read.steps.len();
         if !is_label(name) {
             let message = format!("'{}' is not a valid label", shown(name));
-            let hint = "a label begins with a letter, and has letters, digits, _ and - in it";
+            let hint = "a label begins with a letter, and contains letters, digits, _ and -";
             self.findings.error(at, message, Some(hint.to_owned()));
             return;
         }
         let number = tag.map(|tag| tag.parse().ok().filter(|tag| (1..=999).contains(tag)));
         if number == Some(None) {
-            let message = format!("the tag of label {name} is a number, 1 to 999");
+            let message = format!("the tag of label {name} must be a number from 1 to 999");
             self.findings.error(at, message, None);
         }
         self.read.labels.push(Defined { name: name.to_owned(), tag: number.flatten(), step, at });

@@ -69,7 +69,7 @@ impl Tags<'_> {
             match self.by_name.entry(label.name.to_lowercase()) {
                 Entry::Occupied(other) => {
                     let line = self.list[*other.get()].at.line;
-                    findings.error(label.at, format!("label {} is there already, in line {line}", label.name), None);
+                    findings.error(label.at, format!("label {} already exists in line {line}", label.name), None);
                     continue;
                 }
                 Entry::Vacant(free) => free.insert(self.list.len()),
@@ -101,7 +101,7 @@ impl Tags<'_> {
             if let Some(tag) = free.next() {
                 known.tag = tag;
             } else {
-                let message = format!("there is no tag left for label {}; there are {MOST}", known.name);
+                let message = format!("no free tag for label {}; all {MOST} are in use", known.name);
                 findings.error(known.at, message, None);
                 return;
             }
@@ -119,13 +119,13 @@ impl Tags<'_> {
                 continue;
             }
             if self.around().is_some_and(|tags| tags.contains(&tag)) {
-                let message = format!("tag {tag:03} is there already, in a step around these");
+                let message = format!("tag {tag:03} already exists in a step before or after these");
                 findings.error(used.at, message, Some("a controller stops with error A2".to_owned()));
             }
             let Some(place) = usize::try_from(tag).ok().and_then(|tag| self.defined.get_mut(tag)) else { continue };
             match place {
                 Some(first) => {
-                    let message = format!("tag {tag:03} is there already, in line {}", first.line);
+                    let message = format!("tag {tag:03} already exists in line {}", first.line);
                     findings.error(used.at, message, Some("a controller stops with error A2".to_owned()));
                 }
                 None => *place = Some(draft.at),
@@ -142,7 +142,7 @@ impl Tags<'_> {
                     let known = self.list.iter().map(|known| known.name.as_str());
                     let near = if findings.is_full() { None } else { nearest(name, known) };
                     let hint = near.map(|near| format!("did you mean {near}?"));
-                    findings.error(used.at, format!("there is no label '{name}'"), hint);
+                    findings.error(used.at, format!("unknown label '{name}'"), hint);
                 }
                 continue;
             };
@@ -169,7 +169,7 @@ impl Tags<'_> {
                 let is_around = self.part.is_some_and(|part| part.tags.as_ref().is_none_or(|tags| tags.contains(&tag)));
                 if !place.is_some_and(Option::is_some) && !is_around {
                     let hint = Some("a controller stops with error A1".to_owned());
-                    findings.error(at, format!("there is no tag {tag:03} in the program"), hint);
+                    findings.error(at, format!("the program has no tag {tag:03}"), hint);
                 }
             }
         }
@@ -195,8 +195,8 @@ impl Tags<'_> {
     /// Reports unused labels. A label with an explicit number may be used from elsewhere.
     fn idle(&self, findings: &mut Findings) {
         for known in self.list.iter().filter(|known| !known.used && !known.given) {
-            let hint = format!("if something outside names its tag, give it one: {}=10:", known.name);
-            findings.warning(known.at, format!("nothing jumps to label {}", known.name), Some(hint));
+            let hint = format!("if another program uses its tag, write the tag: {}=10:", known.name);
+            findings.warning(known.at, format!("no step jumps to label {}", known.name), Some(hint));
         }
     }
 }

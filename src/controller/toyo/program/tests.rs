@@ -92,62 +92,64 @@ fn labels_become_free_tags_in_their_order() {
 #[test]
 fn mistakes_are_told_with_their_place_and_what_was_meant() {
     for (line, expected) in [
-        ("MOVE a", "line 1, column 1: error: there is no instruction 'MOVE' (did you mean MOV?)"),
-        ("  xyzzy", "line 1, column 3: error: there is no instruction 'xyzzy'"),
+        ("MOVE a", "line 1, column 1: error: unknown instruction 'MOVE' (did you mean MOV?)"),
+        ("  xyzzy", "line 1, column 3: error: unknown instruction 'xyzzy'"),
         (
             "MOVP a PT=1000 CN=0 S V=0 POST",
             "line 1, column 11: error: point: 1000 is out of range (a number, 0 to 999)",
         ),
         (
             "MOVP a XT=1 CN=0 S V=0 POST",
-            "line 1, column 8: error: PT= is expected, not 'XT=1' \
-             (it is written MOVP a|i PT=<point> CN=<counter> S|T V=<speed> POST|PASS)",
+            "line 1, column 8: error: PT= is expected, not 'XT=1' (write MOVP a|i PT=<point> CN=<counter> S|T \
+             V=<speed> POST|PASS)",
         ),
-        ("CNT CN1", "line 1, column 8: error: = is missing (it is written CNT CN<counter>=<count>)"),
-        (
-            "CNT CN1=",
-            "line 1, column 9: error: count is missing: a number, 0 to 9999 (it is written CNT CN<counter>=<count>)",
-        ),
-        ("HOME now", "line 1, column 6: error: 'now' is too much (it is written HOME)"),
+        ("CNT CN1", "line 1, column 8: error: = is missing (write CNT CN<counter>=<count>)"),
+        ("CNT CN1=", "line 1, column 9: error: count is missing: a number, 0 to 9999 (write CNT CN<counter>=<count>)"),
+        ("HOME now", "line 1, column 6: error: unexpected text 'now' (write HOME)"),
         ("SVON W", "line 1, column 6: error: axes: 'W' is not ALL, X, Y, Z or R"),
         ("OUT STN=0 PN1=.......2", "line 1, column 15: error: data: '.......2' is not eight of 0, 1 and ."),
-        (
-            "JMP TAG=",
-            "line 1, column 9: error: tag is missing: a number, 1 to 999, or a label (it is written JMP TAG=<tag>)",
-        ),
-        ("JMP TAG=7", "line 1, column 9: error: there is no tag 007 in the program (a controller stops with error A1)"),
-        ("JMP TAG=7x", "line 1, column 9: error: tag: '7x' is not a valid tag (001 to 999) and no label"),
+        ("JMP TAG=", "line 1, column 9: error: tag is missing: a number, 1 to 999, or a label (write JMP TAG=<tag>)"),
+        ("JMP TAG=7", "line 1, column 9: error: the program has no tag 007 (a controller stops with error A1)"),
+        ("JMP TAG=7x", "line 1, column 9: error: tag: '7x' is neither a valid tag (001 to 999) nor a label"),
         ("JMP TAG=1000", "line 1, column 9: error: tag: 1000 is out of range (a number, 1 to 999)"),
-        ("pick: JMP TAG=pikc", "line 1, column 15: error: there is no label 'pikc' (did you mean pick?)"),
+        ("pick: JMP TAG=pikc", "line 1, column 15: error: unknown label 'pikc' (did you mean pick?)"),
         ("1st: NOP", "line 1, column 1: error: '1st:' is not a valid step number"),
         (
             "to do: NOP",
-            "line 1, column 1: error: 'to do' is not a valid label \
-             (a label begins with a letter, and has letters, digits, _ and - in it)",
+            "line 1, column 1: error: 'to do' is not a valid label (a label begins with a letter, and contains \
+             letters, digits, _ and -)",
         ),
-        ("a=1000: JMP TAG=a", "line 1, column 1: error: the tag of label a is a number, 1 to 999"),
-        ("a: JMP TAG=a\nA: NOP", "line 2, column 1: error: label A is there already, in line 1"),
+        ("a=1000: JMP TAG=a", "line 1, column 1: error: the tag of label a must be a number from 1 to 999"),
+        ("a: JMP TAG=a\nA: NOP", "line 2, column 1: error: label A already exists in line 1"),
         (
             "TAG TAG=5\nb=5: NOP",
-            "line 2, column 1: error: tag 005 is there already, in line 1 (a controller stops with error A2)",
+            "line 2, column 1: error: tag 005 already exists in line 1 (a controller stops with error A2)",
         ),
-        ("0001", "line 1, column 5: error: there is no instruction behind the step number"),
+        ("0001", "line 1, column 5: error: an instruction is missing after the step number"),
         (
             "0001 NOP\n0003 NOP",
-            "line 2, column 1: error: step number 3 is expected to be 0002: they run on by one \
-             (instructions need no step numbers)",
+            "line 2, column 1: error: step number 3 must be 0002: step numbers increase by one (instructions need no \
+             step numbers)",
         ),
         (
             "RSMV a X=0 Y=0 Z=0 R=0 S V=0 POST",
-            "line 1, column 1: warning: RSMV never stops at its place: POST is taken as PASS",
+            "line 1, column 1: warning: RSMV never stops at its position: POST has the effect of PASS",
         ),
         (
             "NOP\n0007 NOP",
-            "line 2, column 1: warning: the file counts from 6; its first instruction is step 1 nevertheless",
+            "line 2, column 1: warning: the step numbers of the file begin with 6, but its first instruction becomes \
+             step 1",
         ),
-        ("0005 NOP", "line 1, column 1: warning: the file counts from 5; its first instruction is step 1 nevertheless"),
-        ("ｍOV", "line 1, column 1: error: character '\\u{ff4d}' cannot be here (it is a wide character: write 'm')"),
-        ("NOP \u{b}", "line 1, column 5: error: character '\\u{b}' cannot be here"),
+        (
+            "0005 NOP",
+            "line 1, column 1: warning: the step numbers of the file begin with 5, but its first instruction becomes \
+             step 1",
+        ),
+        (
+            "ｍOV",
+            "line 1, column 1: error: character '\\u{ff4d}' is not allowed here (this is a wide character: write 'm')",
+        ),
+        ("NOP \u{b}", "line 1, column 5: error: character '\\u{b}' is not allowed here"),
     ] {
         assert_eq!(finding(line), expected);
     }
@@ -181,23 +183,22 @@ fn what_only_looks_wrong_is_no_error() {
     assert_eq!(findings("a: NOP\nJMP TAG=a"), [] as [&str; 0]);
     assert_eq!(
         findings("a: END\n"),
-        ["line 1, column 1: warning: nothing jumps to label a \
-             (if something outside names its tag, give it one: a=10:)",]
+        ["line 1, column 1: warning: no step jumps to label a (if another program uses its tag, write the tag: a=10:)",]
     );
     assert_eq!(
         findings("a=5: SPD V=1\n"),
-        ["line 1, column 6: warning: the program does not end: SPD is its last instruction (add END)"]
+        ["line 1, column 6: warning: the program has no end: SPD is its last instruction (add END)"]
     );
     assert_eq!(
         findings("END\nNOP\nOUT STN=0 PN1=1.......\nTAG TAG=1\nRET"),
-        ["line 3, column 1: warning: nothing reaches this step: END before it never goes on here"]
+        ["line 3, column 1: warning: the program never reaches this step: it does not continue after END"]
     );
     assert_eq!(
         findings("DEC D=1\nDEC D=2\nBRAC CN=1 OFS=10\nPSEL"),
         [
             "line 1, column 1: note: only KCA-25-M10, KCA-25-M40, KCA-25-M80 have DEC",
-            "line 3, column 1: note: where BRAC jumps to depends on counters and inputs, and is not checked; \
-             2 steps do so",
+            "line 3, column 1: note: the target of BRAC depends on counters and inputs, and is not checked; 2 steps \
+             are like this",
         ]
     );
 }
@@ -212,8 +213,8 @@ fn a_program_must_fit() {
     assert_eq!(found(4), [] as [&str; 0]);
     assert_eq!(
         found(3),
-        ["line 3, column 7: error: step 4 is one too many: the task has room for 3 \
-             (the machine parameter E22 (task-steps) says how many)",]
+        ["line 3, column 7: error: step 4 does not fit: the task has at most 3 steps (the machine parameter E22 \
+          (task-steps) sets this number)",]
     );
     assert_eq!(found(0).len(), 1);
     let much = check("NOP\n".repeat(20_000).as_bytes(), usize::MAX);
@@ -225,19 +226,20 @@ fn bytes_that_are_no_text_are_told() {
     for (bytes, expected) in [
         (
             &b"END # \xE9t\xE9\nNOP # \xFF"[..],
-            "line 1, column 7: error: byte E9 is not UTF-8; there is more such text, in 2 lines in all (save the file as UTF-8)",
+            "line 1, column 7: error: byte E9 is not UTF-8; 2 lines have this error (save the file as UTF-8)",
         ),
         (b"NO\xE9", "line 1, column 3: error: byte E9 is not UTF-8 (save the file as UTF-8)"),
         (
             b"NOP\nE\0N\0D\0",
-            "line 2, column 2: error: there is a NUL; the rest is not read (this is not a text file, or one in UTF-16: save it as UTF-8)",
+            "line 2, column 2: error: NUL character; the rest of the file is not read (this is not a text file, or \
+             it is UTF-16: save it as UTF-8)",
         ),
         (b"\xFF\xFEE\0", "line 1, column 1: error: the file is UTF-16 (save it as UTF-8)"),
-        (b"\xEF\xBB\xBFEND", "line 1, column 1: note: the file begins with a byte order mark, which is passed over"),
-        (b"HOME\r\nEND\r\n", "line 1, column 5: note: lines end in CR LF, of which the CR is passed over"),
-        (b"HOME\rEND", "line 1, column 5: error: character '\\r' cannot be here"),
-        (b"", "line 1, column 1: error: there is no instruction in the file"),
-        (b"# nothing\n", "line 1, column 1: error: there is no instruction in the file"),
+        (b"\xEF\xBB\xBFEND", "line 1, column 1: note: the file begins with a byte order mark, which is ignored"),
+        (b"HOME\r\nEND\r\n", "line 1, column 5: note: lines end with CR LF; the CR is ignored"),
+        (b"HOME\rEND", "line 1, column 5: error: character '\\r' is not allowed here"),
+        (b"", "line 1, column 1: error: the file contains no instruction"),
+        (b"# nothing\n", "line 1, column 1: error: the file contains no instruction"),
     ] {
         assert_eq!(findings(bytes), [expected]);
     }
@@ -338,7 +340,7 @@ fn five_thousand_steps_are_read_whole() {
     assert_eq!(checked.errors().count(), 0, "{:?}", checked.errors().next());
     assert_eq!(checked.program.unwrap().steps.len(), 5000);
     let much = text.replace("label5:", "label5: label5b:");
-    assert!(check(much.as_bytes(), 5000).errors().any(|finding| finding.message.contains("no tag left")));
+    assert!(check(much.as_bytes(), 5000).errors().any(|finding| finding.message.contains("no free tag")));
 }
 
 #[test]
@@ -356,21 +358,20 @@ fn a_part_knows_the_tags_around_it() {
     let told = |checked: Checked| checked.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
     assert_eq!(
         told(part(text, Some(&[]))),
-        ["line 1, column 15: error: there is no tag 005 in the program (a controller stops with error A1)"]
+        ["line 1, column 15: error: the program has no tag 005 (a controller stops with error A1)"]
     );
     assert_eq!(
         told(part("TAG TAG=5", Some(&[5]))),
-        [
-            "line 1, column 9: error: tag 005 is there already, in a step around these (a controller stops with error A2)"
-        ]
+        ["line 1, column 9: error: tag 005 already exists in a step before or after these (a controller stops with \
+          error A2)"]
     );
     assert!(part("JMP TAG=7\nTAG TAG=8", None).program.is_some(), "any tag may be around");
     assert_eq!(
         told(check_part(b"0100 NOP\n0101 NOP", 1, &around(None))),
-        ["line 2, column 6: error: step 101 is one too many: the task has room for 100 \
-             (the machine parameter E22 (task-steps) says how many)"]
+        ["line 2, column 6: error: step 101 does not fit: the task has at most 100 steps (the machine parameter E22 \
+          (task-steps) sets this number)"]
     );
-    assert!(told(part("0001 NOP", None))[0].ends_with("its first instruction is step 100 nevertheless"));
+    assert!(told(part("0001 NOP", None))[0].ends_with("its first instruction becomes step 100"));
 }
 
 #[test]

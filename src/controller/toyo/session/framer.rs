@@ -43,8 +43,8 @@ impl Framer {
                 return (None, 1);
             }
             b' '..=b'~' if self.text.len() + 2 < MOST => self.text.push(char::from(byte)),
-            b' '..=b'~' => self.broken = Some("it is longer than a block may be"),
-            _ => self.broken = Some("it has characters that no block has"),
+            b' '..=b'~' => self.broken = Some("it is too long for a block"),
+            _ => self.broken = Some("it contains characters that are not possible in a block"),
         }
         (None, 0)
     }

@@ -34,7 +34,7 @@ fn parse(block: &str) -> Result<Request, String> {
     let given = block.trim_end_matches(' ').replacen("@HTSK", "@CTSK", 1);
     let content = request.content().map_err(text)?.map(|content| content.written());
     if request.text() != given || content.is_some_and(|content| !given.ends_with(&content)) {
-        return Err(format!("it is not in form: {} is", request.text()));
+        return Err(format!("wrong format: the correct format is {}", request.text()));
     }
     Ok(request)
 }
@@ -99,7 +99,7 @@ fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
         Command::Rmca => {
             world.idle().map_err(refused)?;
             let begun = world.card.read(world.now);
-            if begun { Ok(Reply::Done) } else { Err("there is no memory card that was written".to_owned()) }
+            if begun { Ok(Reply::Done) } else { Err("no memory card with data is inserted".to_owned()) }
         }
         Command::Mrss => {
             let place = ["x", "y", "z", "r"].map(|axis| f64::from(fields.number(axis)) / 100.0);
@@ -138,8 +138,8 @@ fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
     let (port, mask) = if let Some(mask) = request.record().mask("data") {
         (fields.port(), mask)
     } else {
-        let bit = world.settings.direct[fields.index("direct") - 1].ok_or("no bit is assigned to it (M12)")?;
+        let bit = world.settings.direct[fields.index("direct") - 1].ok_or("it has no assigned bit (M12)")?;
         (bit.port, Mask { care: bit.mask(), bits: bit.mask() })
     };
-    if world.ports.set_output(port, mask) { Ok(()) } else { Err("there is no such port") }
+    if world.ports.set_output(port, mask) { Ok(()) } else { Err("no such port") }
 }

@@ -11,11 +11,11 @@ use crate::toyo::layout::Record;
 /// Lines of `help`.
 const HELP: &[(&str, &str)] = &[
     ("input STATION/PORT/BIT on|off", "set an input: input 0/01/3 on"),
-    ("input STATION/PORT BITS", "set all eight of a port: input 0/01 00000100"),
+    ("input STATION/PORT BITS", "set all eight bits of a port: input 0/01 00000100"),
     ("input 0/SY/BIT on|off", "set a bit of the system port: 1 home, 2 start, 3 stop, 4 reset"),
     ("start [STEP]", "press START"),
     ("stop", "press STOP"),
-    ("reset", "press RESET: programs to their beginning"),
+    ("reset", "press RESET: set programs to their first step"),
     ("home", "press HOME: return to origin"),
     ("clear", "cancel the error"),
     ("servo on|off", "switch servo power"),
@@ -24,10 +24,10 @@ const HELP: &[(&str, &str)] = &[
     ("error CODE", "raise an error: error 28"),
     ("power cycle", "switch the controller off and on"),
     ("card in|out", "insert or take out the memory card"),
-    ("obstacle AXIS PLACE|off", "block an axis at a place in mm, or free it"),
-    ("slave on|off", "slave units are ready, or not"),
-    ("battery low|ok", "set what the battery is"),
-    ("why", "say why the last command was refused"),
+    ("obstacle AXIS PLACE|off", "block an axis at a position in mm, or free it"),
+    ("slave on|off", "set whether slave units are ready"),
+    ("battery low|ok", "set the battery state"),
+    ("why", "show the reason for the last refusal"),
 ];
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +86,7 @@ impl ConsoleLine {
             ["estop", "off"] => Self::EmergencyStop(false),
             ["error", code] => {
                 let code = u8::from_str_radix(code, 16).ok().filter(|code| *code > 0);
-                Self::Error(code.ok_or("an error has a code from 01 to FF")?)
+                Self::Error(code.ok_or("the code of an error must be from 01 to FF")?)
             }
             ["power", "cycle"] => Self::PowerCycle,
             ["card", "in"] => Self::Card(true),
@@ -106,7 +106,7 @@ impl ConsoleLine {
             Self::State => return Ok(console::table(&state(world))),
             Self::Why => {
                 let last = world.refusal.as_ref();
-                return Ok(last.map_or("nothing was refused".into(), |(block, why)| format!("{block}: {why}")));
+                return Ok(last.map_or("no command was refused".into(), |(block, why)| format!("{block}: {why}")));
             }
             Self::Input(port, mask) => set_input(world, port, mask)?,
             Self::System(mask, on) => set_system(world, mask, on),
@@ -141,7 +141,7 @@ fn input(place: &str, value: &str) -> Result<ConsoleLine, String> {
     let existing = |station: &str, port: &str| {
         let port = Port { station: number(station, 0..=4)?, port: number(port, 1..=99)? };
         let known = Ports::default().input(port).is_some();
-        if known { Ok(port) } else { Err(format!("there is no input port {}/{:02}", port.station, port.port)) }
+        if known { Ok(port) } else { Err(format!("no input port {}/{:02}", port.station, port.port)) }
     };
     match parts.as_slice() {
         ["0", "SY", bit] => Ok(ConsoleLine::System(mask(bit)?, on_off(value)?)),
@@ -154,7 +154,7 @@ fn input(place: &str, value: &str) -> Result<ConsoleLine, String> {
             let bits = bits.ok_or_else(|| expected(value, "eight of 0 and 1"))?;
             Ok(ConsoleLine::Input(existing(station, port)?, Mask::all(bits)))
         }
-        _ => Err(expected(place, "a place like 0/01/3 or 0/01")),
+        _ => Err(expected(place, "an address such as 0/01/3 or 0/01")),
     }
 }
 
@@ -179,7 +179,7 @@ fn press(world: &mut World, button: Button) -> Result<(), String> {
         (Button::Start, Kind::Sequential) => world.start_sequential(0)?,
         (Button::Start, Kind::Palletizing) => world.start_palletizing()?,
         (Button::Start, Kind::Easy) => world.start_easy()?,
-        (Button::Start, Kind::Point) => return Err("external points are started by the host".into()),
+        (Button::Start, Kind::Point) => return Err("only the host starts external points".into()),
         (Button::Stop, _) => world.stop(),
         (Button::Reset, _) => world.reset()?,
     }
@@ -188,7 +188,7 @@ fn press(world: &mut World, button: Button) -> Result<(), String> {
 
 /// While the host is ON, only the host can start programs (TO 2-2, HSON).
 fn host_off(world: &World) -> Result<(), String> {
-    if world.switches.host { Err("the host is on: it alone starts programs".into()) } else { Ok(()) }
+    if world.switches.host { Err("the host is ON: only the host starts programs".into()) } else { Ok(()) }
 }
 
 /// Sets an input port. Edges of the servo input switch servo power (M21).

@@ -10,12 +10,12 @@ use crate::toyo::table::{Command, Group, Instruction, Pallet};
 pub(super) fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
     let fields = Fields(request.record());
     let task = world.current;
-    let no_room = |NoRoom| "there is no such place in the memory".to_owned();
+    let no_room = |NoRoom| "no such memory address".to_owned();
     match request.command() {
         Command::Wpar => write_parameter(world, request)?,
         Command::Wstx => write_step(world, fields.index("step"), content(request)?)?,
         Command::Wplt => {
-            let record = Pallet::numbered(fields.number("record")).ok_or("there is no such record")?;
+            let record = Pallet::numbered(fields.number("record")).ok_or("no such record")?;
             world.memory.set_pallet(fields.index("program"), record, content(request)?.values()).map_err(no_room)?;
         }
         Command::Wesy => {
@@ -52,17 +52,17 @@ pub(super) fn carry_out(world: &mut World, request: &Request) -> Result<Reply, S
 /// The parameter, instruction or record of a request.
 fn content(request: &Request) -> Result<Record, String> {
     let content = request.content().map_err(|error| error.to_string())?;
-    content.ok_or_else(|| "it has nothing to store".to_owned())
+    content.ok_or_else(|| "it has no data to store".to_owned())
 }
 
 fn write_parameter(world: &mut World, request: &Request) -> Result<(), String> {
-    let parameter = request.parameter().ok_or("there is no such parameter")?;
+    let parameter = request.parameter().ok_or("no such parameter")?;
     if !world.has(parameter.only_on) {
         return Err(format!("a {} does not have {}", world.model, parameter.id));
     }
     let record = content(request)?;
     let written = world.memory.set_parameter(parameter, record, world.current);
-    written.map_err(|NoRoom| "there are 5000 steps for all tasks together".to_owned())?;
+    written.map_err(|NoRoom| "all tasks together have 5000 steps".to_owned())?;
     world.switches.machine_changed |= parameter.group() == Group::Machine;
     Ok(())
 }

@@ -117,7 +117,7 @@ struct IncomingBlock {
 
 /// Overview of the controller state.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub struct State {
     /// Axis coordinates in mm.
     pub position: [f64; 4],

@@ -36,9 +36,9 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Reply, String> 
         }
         Command::Rstx => step(world, fields.index("step"))?,
         Command::Rplt => {
-            let record = Pallet::numbered(fields.number("record")).ok_or("there is no such record")?;
+            let record = Pallet::numbered(fields.number("record")).ok_or("no such record")?;
             let content = world.memory.content.pallet(fields.index("program"), record);
-            let content = content.ok_or("there is no such program")?;
+            let content = content.ok_or("no such program")?;
             vec![
                 Value::Number(fields.number("program")),
                 Value::Number(record.number.into()),
@@ -96,12 +96,12 @@ fn system(world: &World) -> Vec<Value> {
 }
 
 fn parameter(world: &World, request: &Request) -> Result<Record, String> {
-    let parameter = request.parameter().ok_or("there is no such parameter")?;
+    let parameter = request.parameter().ok_or("no such parameter")?;
     if !world.has(parameter.only_on) {
         return Err(format!("a {} does not have {}", world.model, parameter.id));
     }
-    let key = request.content().map_err(|error| error.to_string())?.ok_or("it names no parameter")?;
-    world.memory.parameter(parameter, &key, world.current).ok_or_else(|| "there is no such row".to_owned())
+    let key = request.content().map_err(|error| error.to_string())?.ok_or("it contains no parameter")?;
+    world.memory.parameter(parameter, &key, world.current).ok_or_else(|| "no such row".to_owned())
 }
 
 /// A step of the current task; 0 is the current step.
@@ -119,7 +119,7 @@ fn palletizing(world: &World) -> Result<Vec<Value>, String> {
         let executed = if task.called { number(task.step) } else { 0 };
         (run.as_ref(), executed, run.side().piece.map(i32::from))
     } else {
-        fresh = world.palletizing(world.pallet).ok_or("there is no such program")?;
+        fresh = world.palletizing(world.pallet).ok_or("no such program")?;
         (&fresh, 0, [0; 3])
     };
     let mut values = vec![Value::Word(run.mode), Value::Word(run.state()), Value::Number(number(run.program))];
@@ -154,7 +154,7 @@ fn inputs(world: &World, station: i32, screen: i32) -> Result<(usize, Vec<Value>
             Ok((1, [head, ports(first..first + SCREEN)].concat()))
         }
         (1.., 1) => Ok((2, [vec![Value::Number(station)], ports(1..4)].concat())),
-        _ => Err("there is no such screen".to_owned()),
+        _ => Err("no such screen".to_owned()),
     }
 }
 
@@ -171,7 +171,7 @@ fn outputs(world: &World, station: i32, screen: i32) -> Result<(usize, Vec<Value
         }
         (0, 5) => Ok((2, [head, ports(16..19)].concat())),
         (1.., 1) => Ok((3, [vec![Value::Number(station)], ports(1..3)].concat())),
-        _ => Err("there is no such screen".to_owned()),
+        _ => Err("no such screen".to_owned()),
     }
 }
 
@@ -213,7 +213,7 @@ fn history(world: &World, entry: i32) -> Vec<Value> {
 
 /// A coordinate in the protocol: 0.01 mm.
 fn hundredths(coordinate: f64) -> Value {
-    #[expect(clippy::cast_possible_truncation, reason = "coordinates are within 8000 mm")]
+    #[expect(clippy::cast_possible_truncation, reason = "coordinates must be within 8000 mm")]
     let hundredths = (coordinate * 100.0).round() as i32;
     Value::Number(hundredths)
 }

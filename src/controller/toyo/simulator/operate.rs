@@ -16,15 +16,15 @@ impl World {
     /// Refuses while anything runs.
     pub(super) fn idle(&self) -> Result<(), Refusal> {
         if self.is_executing() {
-            return Err("something is being executed");
+            return Err("a program, motion or jog runs");
         }
-        if self.card.is_busy() { Err("the memory card is being read or written") } else { Ok(()) }
+        if self.card.is_busy() { Err("the memory card is in use") } else { Ok(()) }
     }
 
     fn startable(&self) -> Result<(), Refusal> {
         self.idle()?;
         self.unchanged()?;
-        if self.errors.current().is_some() { Err("there is an error: cancel it first") } else { Ok(()) }
+        if self.errors.current().is_some() { Err("an error is active: cancel it first") } else { Ok(()) }
     }
 
     /// Refuses execution after a change of parameter 2.
@@ -46,9 +46,9 @@ impl World {
 
     /// Starts the sequential program of task 1 at a step. 0 continues, or begins at the first step.
     pub(super) fn start_sequential(&mut self, step: usize) -> Result<(), Refusal> {
-        self.of_kind(Kind::Sequential, "it is not in sequential mode")?;
+        self.of_kind(Kind::Sequential, "the controller is not in sequential mode")?;
         if step > self.memory.size(0) || self.memory.size(0) == 0 {
-            return Err("there is no such step");
+            return Err("no such step");
         }
         self.memory.index_tags();
         self.jog_ready = false;
@@ -75,14 +75,14 @@ impl World {
 
     /// Starts or continues the palletizing program.
     pub(super) fn start_palletizing(&mut self) -> Result<(), Refusal> {
-        self.of_kind(Kind::Palletizing, "it is not in palletizing mode")?;
+        self.of_kind(Kind::Palletizing, "the controller is not in palletizing mode")?;
         self.powered_axes()?;
         if self.goes_on() {
             return Ok(());
         }
         match self.chosen_pallet() {
             Ok(program) => {
-                let routine = self.palletizing(program).ok_or("there is no such palletizing program")?;
+                let routine = self.palletizing(program).ok_or("no such palletizing program")?;
                 self.start_routine(0, Routine::Palletizing(Box::new(routine)));
             }
             Err(code) => self.fail(code),
@@ -92,7 +92,7 @@ impl World {
 
     /// Starts or continues the easy program.
     pub(super) fn start_easy(&mut self) -> Result<(), Refusal> {
-        self.of_kind(Kind::Easy, "easy mode is not chosen (M10)")?;
+        self.of_kind(Kind::Easy, "easy mode is not selected (M10)")?;
         self.powered_axes()?;
         if self.goes_on() {
             return Ok(());
@@ -106,7 +106,7 @@ impl World {
 
     /// Moves the axes of the current task to a row of its coordinate table.
     pub(super) fn start_point(&mut self, row: i32) -> Result<(), Refusal> {
-        self.of_kind(Kind::Point, "external point mode is not chosen (M10)")?;
+        self.of_kind(Kind::Point, "external point mode is not selected (M10)")?;
         self.powered_axes()?;
         self.start_routine(self.current, Routine::Point { row, begun: false });
         Ok(())
@@ -144,7 +144,7 @@ impl World {
         self.startable()?;
         self.powered_axes()?;
         if !self.machine.driver.contains(&Some(drive)) {
-            return Err("that axis drives none (E26)");
+            return Err("that axis has no driven axis (E26)");
         }
         self.reset_program();
         self.jog_ready = false;
@@ -162,9 +162,9 @@ impl World {
             }
             return Ok(());
         }
-        let [(axis, word)] = moving[..] else { return Err("one axis at a time can be jogged") };
+        let [(axis, word)] = moving[..] else { return Err("only one axis at a time can jog") };
         if words.contains(&"RS") {
-            return Err("axes that do not move are stopped (SP)");
+            return Err("all other axes must be stopped (SP)");
         }
         // A repetition changes nothing.
         if self.jog.is_some_and(|jog| jog.axis == axis && jog.word == *word && !word.ends_with('C')) {
@@ -211,7 +211,7 @@ impl World {
         self.unchanged()?;
         self.idle()?;
         if on && (self.switches.estop || self.errors.current().is_some()) {
-            return Err("there is an error: cancel it first");
+            return Err("an error is active: cancel it first");
         }
         self.switches.servo = std::array::from_fn(|axis| on && axis < self.axes);
         Ok(())
@@ -251,7 +251,7 @@ impl World {
     pub(super) fn choose_kind(&mut self, palletizing: bool) -> Result<(), Refusal> {
         self.idle()?;
         if self.settings.special != Special::None {
-            return Err("M10 has chosen easy or external point mode");
+            return Err("M10 selects easy or external point mode");
         }
         if palletizing != self.switches.palletizing {
             self.reset_program();
@@ -270,7 +270,7 @@ impl World {
     pub(super) fn supply(&mut self, task: usize, place: [f64; 4], speed: i32) -> Result<(), Refusal> {
         let slot = &mut self.tasks[task].supplied;
         if slot.is_some() {
-            return Err("coordinates that were sent before are still waiting");
+            return Err("earlier coordinates are still waiting");
         }
         *slot = Some((place, speed));
         Ok(())
@@ -280,7 +280,7 @@ impl World {
     pub(super) fn search_tag(&mut self, tag: usize) -> Result<(), Refusal> {
         self.idle()?;
         let task = self.current;
-        let step = self.memory.search(task, tag).ok_or("there is no such tag")?;
+        let step = self.memory.search(task, tag).ok_or("no such tag")?;
         self.arm.drop_held(task);
         let now = self.now;
         let found = &mut self.tasks[task];

@@ -40,16 +40,16 @@ pub struct Start {
 }
 
 /// A start state with all keys; each is optional.
-pub const EXAMPLE: &str = r#"model = "KCA-25-M10"            # or KCA-20-M00 and so on, or "other": without what some models have
+pub const EXAMPLE: &str = r#"model = "KCA-25-M10"            # or KCA-20-M00 and so on, or "other": without the extras of some models
 version = "4.00"
-robot_types = [0]               # that TYPE takes; the first one is in force
+robot_types = [0]               # valid for TYPE; the first one is active
 axes = 4                        # 1 to 4
 mode = "automatic"              # step, program
 palletizing = false
 host = false
 pendant = false
 servo = true
-origin = false                  # whether the axes know it
+origin = false                  # true: the origin is known
 position = [0.0, 0.0, 0.0, 0.0] # mm from the origin
 
 points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }      # by task and row, mm
@@ -61,8 +61,8 @@ outputs = { "0/02" = "10000000" }
 steps = { 1 = ["SPD V=05", "MOVP a PT=001 CN=00 S V=00 POST", "OUT STN=0 PN01=.......1", "END"] }  # by task
 write = ["WPAR M13 0/01/8", "WPLT 01 SNO=01 TAG=000 MOD=M-1", "WESY PNO=01 ST=000 START=000 LOOP=0000 END=000"]
 
-error = "13"                    # the error there is
-history = [{ code = "28", after_seconds = 45 }]       # the newest first; { power_cut = true } is one, too
+error = "13"                    # the active error
+history = [{ code = "28", after_seconds = 45 }]       # newest first; { power_cut = true } is also an entry
 hours = 123                     # power-on time before the start
 card = "none"                   # empty, written
 card_seconds = 2
@@ -70,8 +70,8 @@ card_seconds = 2
 seed = 0
 answer_delay_ms = 0             # up to 1000 on a real controller
 busy = 0.0                      # share of commands refused with @NG
-instruction_us = 1000           # time that an instruction takes
-eeprom_limit = 0                # writes that a cell takes before it keeps nothing any more; 0 for no limit
+instruction_us = 1000           # duration of an instruction
+eeprom_limit = 0                # number of writes until a memory cell fails; 0 for no limit
 
 [[event]]
 at_ms = 2000
@@ -124,7 +124,7 @@ impl Start {
 }
 
 #[derive(Debug, Deserialize)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent key")]
 #[serde(default, deny_unknown_fields)]
 struct Entries {
     model: Spanned<String>,
@@ -236,16 +236,16 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     source.each_of(&entries.counters, |number, count| {
         let counter = row(number, COUNTERS - 1)?;
         let value = Some(*count).filter(|count| *count <= 9999);
-        world.counters[counter] = value.ok_or("counters hold 0 to 9999")?;
+        world.counters[counter] = value.ok_or("counters must be from 0 to 9999")?;
         Ok(())
     })?;
     source.each_of(&entries.inputs, |name, bits| {
         let (port, mask) = port(name, bits)?;
-        if world.ports.set_input(port, mask) { Ok(()) } else { Err(format!("there is no input port {name}")) }
+        if world.ports.set_input(port, mask) { Ok(()) } else { Err(format!("no input port {name}")) }
     })?;
     source.each_of(&entries.outputs, |name, bits| {
         let (port, mask) = port(name, bits)?;
-        if world.ports.set_output(port, mask) { Ok(()) } else { Err(format!("there is no output port {name}")) }
+        if world.ports.set_output(port, mask) { Ok(()) } else { Err(format!("no output port {name}")) }
     })?;
     errors(&mut world, entries, source)?;
     if entries.card == Slot::Written {
@@ -262,25 +262,26 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
 fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     let model = entries.model.get_ref();
     if model != "other" && !KCA.contains(&model.as_str()) {
-        return Err(source.error(&entries.model, format!("a model is one of {}, or other", KCA.join(", "))));
+        return Err(source.error(&entries.model, format!("model must be one of {}, or other", KCA.join(", "))));
     }
     let axes = *entries.axes.get_ref();
     if !(1..=AXES).contains(&axes) {
-        return Err(source.error(&entries.axes, "a controller has 1 to 4 axes"));
+        return Err(source.error(&entries.axes, "axes must be from 1 to 4"));
     }
-    let version = source
-        .read(&entries.version, |version| hundredths(version).ok_or_else(|| "a version is like \"4.00\"".to_owned()))?;
+    let version = source.read(&entries.version, |version| {
+        hundredths(version).ok_or_else(|| "write a version as in \"4.00\"".to_owned())
+    })?;
     let types = entries.robot_types.get_ref();
     if types.is_empty() || types.iter().any(|number| !(0..=999_999).contains(number)) {
-        return Err(source.error(&entries.robot_types, "robot types are 0 to 999999, and there is one at least"));
+        return Err(source.error(&entries.robot_types, "robot_types must have at least one number, from 0 to 999999"));
     }
     let tick = *entries.instruction_us.get_ref();
     if !(1..=1_000_000).contains(&tick) {
-        return Err(source.error(&entries.instruction_us, "an instruction takes 1 to 1000000 microseconds"));
+        return Err(source.error(&entries.instruction_us, "instruction_us must be from 1 to 1000000"));
     }
     let position = *entries.position.get_ref();
     if !position.iter().all(|place| place.abs() <= 8000.0) {
-        return Err(source.error(&entries.position, "coordinates are within 8000 mm"));
+        return Err(source.error(&entries.position, "coordinates must be within 8000 mm"));
     }
     let mut arm = Arm::default();
     // Without a known origin an axis counts from its position.
@@ -360,7 +361,7 @@ fn step(line: &str) -> Result<Record, String> {
 /// Stores a program in a task, which gets the required number of steps.
 fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), String> {
     if !(1..=TASKS).contains(&task) {
-        return Err("tasks are 1 to 4".to_owned());
+        return Err("tasks must be from 1 to 4".to_owned());
     }
     let mut sizes: [usize; TASKS] = std::array::from_fn(|index| world.memory.size(index));
     sizes[task - 1] = sizes[task - 1].max(steps.len());
@@ -371,7 +372,7 @@ fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), Str
         sizes[0] = sizes[0].max(steps.len());
     }
     if sizes.iter().sum::<usize>() > MOST_STEPS {
-        return Err(format!("there are {MOST_STEPS} steps for all tasks together"));
+        return Err(format!("all tasks together have at most {MOST_STEPS} steps"));
     }
     let sizes = sizes.map(|size| format!("{size:04}"));
     let [one, two, three, four] = &sizes;
@@ -411,7 +412,7 @@ fn write(world: &mut World, command: &str) -> Result<(), String> {
     let request = Request::parse(&format!("@{command}")).map_err(|error| error.to_string())?;
     request.check().map_err(|error| error.to_string())?;
     if !matches!(request.command(), Command::Wpar | Command::Wstx | Command::Wplt | Command::Wesy) {
-        return Err("only WPAR, WSTX, WPLT and WESY write to the memory".to_owned());
+        return Err("only WPAR, WSTX, WPLT and WESY are possible".to_owned());
     }
     edit::carry_out(world, &request).map(|_| ())
 }
@@ -438,9 +439,9 @@ fn errors(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
 /// Parses `0/01` and eight bits.
 fn port(name: &str, bits: &str) -> Result<(Port, Mask), String> {
     let parts = name.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
-    let (station, port) = parts.ok_or_else(|| format!("'{name}' is not a port like 0/01"))?;
+    let (station, port) = parts.ok_or_else(|| format!("'{name}' is not a valid port, such as 0/01"))?;
     let eight = u8::from_str_radix(bits, 2).ok().filter(|_| bits.len() == 8);
-    Ok((Port { station, port }, Mask::all(eight.ok_or("a port has eight of 0 and 1")?)))
+    Ok((Port { station, port }, Mask::all(eight.ok_or("a port must have eight digits of 0 and 1")?)))
 }
 
 /// Parses a version such as `4.00` to hundredths.

@@ -38,7 +38,7 @@ pub(super) enum Flow {
 }
 
 #[derive(Debug, Clone)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub(super) struct Task {
     /// Started and not ended.
     pub(super) running: bool,

@@ -27,7 +27,7 @@ const VERSION_3_36: i32 = 336;
 
 /// States that operator or host can switch.
 #[derive(Debug, Clone)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent switch")]
 pub(super) struct Switches {
     pub(super) host: bool,
     pub(super) pendant: bool,
@@ -67,7 +67,7 @@ pub(super) struct Jog {
 }
 
 #[derive(Debug, Clone)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub(super) struct World {
     pub(super) now: Now,
     pub(super) model: String,

@@ -34,10 +34,10 @@ pub struct NamedAxis {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PositionTextError {
     /// Without kind and colon.
-    #[error("a position begins with its kind and a colon, e.g. 'base:x=...' or 'pulse:s=...'")]
+    #[error("a position must begin with its type and a colon, e.g. 'base:x=...' or 'pulse:s=...'")]
     NoKind,
     /// A kind that this variable does not have.
-    #[error("'{found}' is not a valid kind of position here; there are {allowed}")]
+    #[error("'{found}' is not a valid position type here; use {allowed}")]
     Kind {
         /// The invalid text.
         found: String,
@@ -45,13 +45,13 @@ pub enum PositionTextError {
         allowed: String,
     },
     /// A part that is not `key=value`.
-    #[error("'{found}' is not of the form key=value")]
+    #[error("'{found}' must be key=value")]
     Pair {
         /// The invalid text.
         found: String,
     },
     /// A key that this kind does not have.
-    #[error("'{found}' is not a part of this position; there are {allowed}")]
+    #[error("'{found}' is not a part of this position; use {allowed}")]
     Key {
         /// The invalid text.
         found: String,
@@ -59,7 +59,7 @@ pub enum PositionTextError {
         allowed: String,
     },
     /// A duplicate key.
-    #[error("'{key}' is given twice")]
+    #[error("'{key}' appears twice")]
     Twice {
         /// The key.
         key: String,

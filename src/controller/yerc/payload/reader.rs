@@ -18,7 +18,7 @@ pub enum PayloadError {
         found: usize,
     },
     /// Wrong number of elements.
-    #[error("{what}: {answered} elements answered, {asked} asked for")]
+    #[error("{what}: received {answered} elements, requested {asked}")]
     Count {
         /// Name of the payload.
         what: &'static str,

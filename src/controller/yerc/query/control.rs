@@ -225,7 +225,7 @@ fn check_group(model: Model, robot: u32, station: u32) -> Result<(), QueryError>
     match (robot, station) {
         (robot, 0) => in_range("the robot number", robot, 1, robots.into()).map(drop),
         (0, station) => in_range("the station number", station, 1, stations.into()).map(drop),
-        (_, station) => in_range("the station number beside a robot number", station, 0, 0).map(drop),
+        (_, station) => in_range("the station number in addition to a robot number", station, 0, 0).map(drop),
     }
 }
 

@@ -156,7 +156,7 @@ fn instance(model: Model, group: Group, coordinates: Coordinates) -> Result<u16,
     match coordinates {
         Coordinates::Pulse => Ok(group.instance()),
         Coordinates::Base => {
-            group.cartesian_instance().ok_or(QueryError::GroupKind { group, reason: "a station has pulses only" })
+            group.cartesian_instance().ok_or(QueryError::GroupKind { group, reason: "a station has only pulses" })
         }
     }
 }
@@ -198,7 +198,7 @@ impl ReadPosition {
         let instance = instance(model, group, coordinates)?;
         match (group, coordinates) {
             (Group::Base(_), Coordinates::Base) => {
-                Err(QueryError::GroupKind { group, reason: "a base can be read in pulses only" })
+                Err(QueryError::GroupKind { group, reason: "a base has only pulses" })
             }
             _ => Ok(Self { instance }),
         }
@@ -332,7 +332,7 @@ impl ReadSystemInfo {
     pub fn new(model: Model, part: SystemPart) -> Result<Self, QueryError> {
         let instance = match part {
             SystemPart::Group(group @ Group::Base(_)) => {
-                return Err(QueryError::GroupKind { group, reason: "there is no information about bases" });
+                return Err(QueryError::GroupKind { group, reason: "bases have no information" });
             }
             SystemPart::Group(group) => counter_offset(known_group(model, group)?),
             SystemPart::Application(number) => 100 + u16::from(number),

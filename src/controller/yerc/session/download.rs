@@ -15,7 +15,7 @@ const MOST_LINGERS: u32 = 8;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Violation {
     /// A block is missing.
-    #[error("block {found} came where block {expected} is due")]
+    #[error("received block {found} instead of block {expected}")]
     Gap {
         /// Number of the next block.
         expected: u32,

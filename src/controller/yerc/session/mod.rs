@@ -149,7 +149,7 @@ impl Counters {
             (self.garbage, "garbage"),
             (self.repeats, "repeated"),
             (self.busy, "busy"),
-            (self.damaged, "damaged on the way"),
+            (self.damaged, "damaged in transit"),
         ]
     }
 

@@ -9,17 +9,17 @@ use crate::yerc::payload::CycleMode;
 /// Lines of `help`.
 const HELP: &[(&str, &str)] = &[
     ("alarm CODE [DATA [TYPE]] [NAME]", "raise an alarm: alarm 4315 1 2 COLLISION DETECT"),
-    ("alarm clear", "take all alarms away"),
+    ("alarm clear", "remove all alarms"),
     ("error on|off", "show an error, or none"),
     ("mode teach|play", "turn the mode key"),
-    ("remote on|off", "take commands from outside, or not (CMD REMOTE)"),
+    ("remote on|off", "accept remote commands, or not (CMD REMOTE)"),
     ("servo on|off", "switch servo power"),
     ("cycle step|once|continuous", "select how jobs run"),
     ("hold pendant|external on|off", "press or release a HOLD"),
     ("estop [off]", "press or release the emergency stop"),
     ("guard on|off", "in-guard safe operation"),
-    ("edit on|off", "somebody edits a job at the pendant, or not"),
-    ("convert on|off", "coordinates are being converted, or not"),
+    ("edit on|off", "set whether a job is open for editing at the pendant"),
+    ("convert on|off", "set whether a coordinate conversion runs"),
     ("io SIGNAL on|off", "set a signal: io 20010 on"),
     ("register NUMBER VALUE", "set a register: register 0 17"),
 ];
@@ -138,7 +138,7 @@ fn register(world: &mut World, register: &str, value: &str) -> Result<String, St
         Some((register, value)) if world.memory.force_register(register, value) => {
             Ok(format!("register {register} is {value}"))
         }
-        _ => Err(format!("there is no register {register}")),
+        _ => Err(format!("no register {register}")),
     }
 }
 
@@ -180,7 +180,7 @@ fn state(world: &World) -> Vec<(String, String)> {
     let mut rows = vec![("now".to_owned(), summary(world))];
     let job = world.player.info();
     let selected = format!("{}, line {}, step {}", text(job.name.as_bytes()), job.line, job.step);
-    rows.push(("job".to_owned(), if job.name.is_empty() { "none is selected".to_owned() } else { selected }));
+    rows.push(("job".to_owned(), if job.name.is_empty() { "none selected".to_owned() } else { selected }));
     for alarm in world.alarms.active() {
         let told = format!("{} {} {}", alarm.code, text(alarm.name.as_bytes()), alarm.sub_code(world.model));
         rows.push(("alarm".to_owned(), told));

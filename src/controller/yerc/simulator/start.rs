@@ -43,7 +43,7 @@ servo = true
 cycle = "once"                  # step, once, continuous
 play_write = true               # S2C541 = 0: variables can be written in play mode
 clock = "2026/03/14 08:00"
-installed = "2025/10/10 15:49"  # when running times began to count
+installed = "2025/10/10 15:49"  # start of the running times
 hours = { control = 2345, servo = 1890, playback = 1234, motion = 987 }
 software = "DN2.07.00A(JP/US)-00"
 robot_model = "ES0165D-A0*"
@@ -58,7 +58,7 @@ job = "TESTJOB"                 # the job to execute
 
 variables = { B0 = 7, I1 = -2, D2 = 100000, R3 = 1.5, S4 = "HELLO", P5 = { type = "pulse", axes = [1, 2, 3] } }
 registers = { 10 = 4660 }
-ladder_registers = [540, 541]   # a write to these is accepted and does not last
+ladder_registers = [540, 541]   # writes to these are accepted, but do not last
 io = { 10010 = true }
 
 seed = 0
@@ -70,7 +70,7 @@ transfer_timeout_ms = 5000
 capacity = 268435456            # bytes for all files
 replace_jobs = false            # true: loading replaces a job of the same name
 plain_last_ack = false          # true: the last block of a load is acknowledged as 0x80000000
-stock = true                    # false: no files, variables and history but what is named here
+stock = true                    # false: only the files, variables and history that are listed here
 
 alarm = [{ code = 4315, data = 3, type = 1 }]
 history = [{ code = 9001, data = 5, type = 1, time = "2026/02/28 17:30", name = "PART MISSING", class = "user" }]
@@ -90,7 +90,7 @@ END
 
 [[file]]
 name = "BIG.DAT"
-size = 67108864                 # made up as it is read
+size = 67108864                 # content is generated
 
 [[event]]
 at_ms = 60000
@@ -139,7 +139,7 @@ impl Start {
 }
 
 #[derive(Debug, Deserialize)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent key")]
 #[serde(default, deny_unknown_fields)]
 struct Entries {
     #[serde(deserialize_with = "model")]
@@ -331,7 +331,7 @@ fn build(
     alarms(&mut world, entries);
     source.each(&entries.job, |job| {
         let name = sjis(job);
-        let program = world.files.program(&name).ok_or_else(|| format!("there is no job '{job}'"))?;
+        let program = world.files.program(&name).ok_or_else(|| format!("no job '{job}'"))?;
         world.player.select(&name, program, 0);
         Ok(())
     })?;
@@ -373,7 +373,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     let hours = |hours: u32| Duration::from_secs(3600 * u64::from(hours));
     let mut memory = Memory::new(entries.model);
     source.each(&entries.ladder_registers, |register| {
-        memory.register(*register).ok_or("registers are 0 to 999")?;
+        memory.register(*register).ok_or("registers must be from 0 to 999")?;
         memory.ladder.push(*register);
         Ok(())
     })?;
@@ -384,7 +384,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         Ok(())
     })?;
     let cycle = source.read(&entries.cycle, |name| {
-        console::cycle(name).ok_or_else(|| "cycle is step, once or continuous".to_owned())
+        console::cycle(name).ok_or_else(|| "cycle must be step, once or continuous".to_owned())
     })?;
     let time = |entry| source.time(entry, "%Y/%m/%d %H:%M", "2026/03/14 08:00");
     Ok(World {
@@ -431,7 +431,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
 
 fn groups(entries: &Entries, source: Source<'_>) -> Result<Vec<Group>, String> {
     let axes = source.read(&entries.robot_axes, |axes| {
-        Some(*axes).filter(|axes| (6..=7).contains(axes)).ok_or_else(|| "a robot has 6 or 7 axes".to_owned())
+        Some(*axes).filter(|axes| (6..=7).contains(axes)).ok_or_else(|| "robot_axes must be 6 or 7".to_owned())
     })?;
     let (robots, bases, stations) = crate::yerc::group::Group::counts(entries.model);
     let most = |family| match family {
@@ -444,7 +444,7 @@ fn groups(entries: &Entries, source: Source<'_>) -> Result<Vec<Group>, String> {
         let group = Group::parse(name, axes).filter(|group| group.number <= most(group.family));
         let group = group.ok_or_else(|| format!("'{name}' is not a group of this model"))?;
         if groups.iter().any(|other| other.name() == group.name()) {
-            return Err(format!("{} is listed twice", group.name()));
+            return Err(format!("{} appears twice", group.name()));
         }
         groups.push(group);
         Ok(())
@@ -520,13 +520,13 @@ fn file(
 ) -> Result<(), String> {
     let name = sjis(&entry.name);
     if check_stored_name(&name).is_err() {
-        return Err(format!("'{}' is not a file name a controller has", entry.name));
+        return Err(format!("'{}' is not a valid file name of a controller", entry.name));
     }
     let content = match (&entry.text, &entry.path, entry.size) {
         (Some(text), None, None) => sjis(&text.replace("\r\n", "\n").replace('\n', "\r\n")).into(),
         (None, Some(path), None) => read(path).map_err(|what| format!("{path}: {what}"))?.into(),
         (None, None, Some(size)) => Content::Generated { seed: size ^ name.len() as u64, size },
-        _ => return Err("a file has one of text, path and size".to_owned()),
+        _ => return Err("a file must have exactly one of text, path and size".to_owned()),
     };
     if name == variables::NAME {
         let bytes = content.piece(0, usize::try_from(content.size()).unwrap_or(usize::MAX));
@@ -537,7 +537,7 @@ fn file(
     world.files.install(&name, content);
     let stem = name.strip_suffix(b".JBI");
     if stem.is_some_and(|stem| world.files.program(stem).is_none()) {
-        return Err(format!("'{}' does not hold a job of that name", entry.name));
+        return Err(format!("'{}' does not contain a job of that name", entry.name));
     }
     Ok(())
 }

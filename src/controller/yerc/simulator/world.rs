@@ -130,7 +130,7 @@ impl Holds {
 
 /// Operator switches.
 #[derive(Debug, Clone)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent switch")]
 pub(super) struct Switches {
     pub(super) mode: Mode,
     /// Command remote (#82015).

@@ -8,7 +8,7 @@ const FILE_INTERNAL: &str =
     "An internal error of the controller, numbered among its file errors; no cause is published.";
 const LINK_INTERNAL: &str =
     "An internal error of the controller, numbered among its link errors; no cause is published.";
-const BUSY_CAUSE: &str = "The controller is still at work on another command, from this host or another one.";
+const BUSY_CAUSE: &str = "The controller still processes another command, from this or a different host.";
 const BUSY_REMEDY: &str = "Repeat after a moment. If it stays, find the other host that talks to this controller.";
 const FRAME_REMEDY: &str = "armctl never sends such a frame: record the exchange with --trace and report it. In other software, correct it there.";
 
@@ -27,7 +27,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Check or change the device. For the batch backup set S2C680 = 1 and restart the controller, so that it \
          makes the RAM disk."),
     row(0x6040, Class::Backup, BOTH, "unexpected auto-backup request",
-        "A backup was asked for that the controller did not expect in this state.",
+        "The controller did not expect a backup request in this state.",
         "Check the AUTO BACKUP SET screen on the pendant, then repeat."),
     row(0x6050, Class::Backup, BOTH, "CMOS size exceeds the RAM area",
         "The CMOS data are larger than the area kept for the backup.",
@@ -49,8 +49,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Correct the drive in the backup settings on the pendant."),
     row(0x6110, Class::Backup, BOTH, "wrong device",
         "The device chosen cannot be used for this.",
-        "Choose the right device in the AUTO BACKUP SET screen (for the batch backup the RAM disk); an active alarm \
-         bars the change, so reset it first."),
+        "Reset all alarms, because an active alarm blocks the change. Then select the right device in the AUTO \
+         BACKUP SET screen (for the batch backup, the RAM disk)."),
     row(0x6120, Class::Backup, BOTH, "system error",
         "An internal error of the controller, in the backup function.",
         SYSTEM_REMEDY),
@@ -71,7 +71,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Check the number against the controller's ranges and the set model; `armctl yerc axes` lists the control \
          groups."),
     row(0xA002, Class::Address, BOTH, "attribute error",
-        "The field asked for does not exist in this command. Some controllers want 0 where the manual lists 1.",
+        "The requested field does not exist in this command. Some controllers need 0 although the manual lists 1.",
         "With `armctl yerc raw`, try --attribute 0. Otherwise check the model and report the exchange with --trace."),
     row(0xA100, Class::Address, NONE, "answer data size error (hardware limit)",
         "The answer would not fit into one frame (hint: only Yaskawa's own packet dissector lists this code).",
@@ -94,14 +94,14 @@ pub(super) static ROWS: &[AddedRow] = &[
     row(0xB003, Class::Data, BOTH, "request data size error",
         "The request carries more or fewer bytes than the command takes; strings and moves differ between the \
          models.",
-        "Set the right model for this robot. An FS100 that refuses a cartesian move may want the 25 words of its \
+        "Set the right model for this robot. An FS100 that refuses a cartesian move may need the 25 words of its \
          manual: ?model=fs100&move_words=25. `armctl yerc raw --strict` compares lengths."),
     row(0xB004, Class::Data, BOTH, "outside the data range",
         "A value sent is outside what the data can hold, or number plus count runs past the end.",
         "Check value, first number and count against the limits of this controller."),
     row(0xB005, Class::Data, BOTH, "data undefined",
         "The data addressed were never set, such as an untaught position or an empty entry.",
-        "Set or teach it first, or address another one."),
+        "Set or teach it first, or use another address."),
     row(0xB006, Class::Data, BOTH, "specified application not registered",
         "The application number does not exist on this controller.",
         "List the ones that exist with `armctl yerc info` and `armctl yerc hours`, and use one of those."),
@@ -112,8 +112,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The control group of a move or position is wrong, or robot and station are both named.",
         "Name exactly one: a robot or a station. `armctl yerc axes` lists the groups that are fitted."),
     row(0xB009, Class::Data, BOTH, "speed setting error",
-        "The speed is out of range or of a kind that does not fit the move: percent for joint moves, mm/s or deg/s \
-         for linear moves.",
+        "The speed is out of range, or its unit does not match the move. Joint moves need percent, linear moves mm/s \
+         or deg/s.",
         "Correct speed and unit, and start low."),
     row(0xB00A, Class::Data, BOTH, "operating speed not set",
         "The move has no speed.",
@@ -122,9 +122,9 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The coordinate system of the move does not exist or does not fit the group.",
         "Use base, robot, tool or a taught user coordinate system."),
     row(0xB00C, Class::Data, BOTH, "type setting error",
-        "The form of a move (its words \"type\" and \"expanded type\") has bits that are not defined, or cannot be \
-         reached; in a position, its kind does not exist.",
-        "Check --form and --extended-form of the move, or the kind of the position (pulse, base, robot, tool, user)."),
+        "The form of a move (its words \"type\" and \"expanded type\") has undefined bits, or the robot cannot reach \
+         it. In a position, the position type does not exist.",
+        "Check --form and --extended-form of the move, or the type of the position (pulse, base, robot, tool, user)."),
     row(0xB00D, Class::Data, BOTH, "tool number setting error",
         "The tool number is out of range or the tool is not set up.",
         "Use a tool that exists on this controller (pendant: ROBOT > TOOL)."),
@@ -132,8 +132,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The user coordinate number is out of range or the system is not taught.",
         "Use 1 to 63 and a taught one (pendant: ROBOT > USER COORDINATE)."),
     row(0xC001, Class::System, BOTH, "address error",
-        "The controller failed inside while addressing the data (hint: Yaskawa's packet dissector calls it a data \
-         area setting error).",
+        "The controller had an internal error in the address of the data (hint: Yaskawa's packet dissector calls it \
+         a data area setting error).",
         "Check the number and count asked for. If they are right: clear the alarm and try again; if it stays, keep \
          a CMOS.BIN backup and call the service with this code."),
     row(0xC002, Class::System, BOTH, "system error",
@@ -150,7 +150,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "An internal error of the controller; no cause is published.",
         SYSTEM_REMEDY),
     row(0xCFFF, Class::System, BOTH, "other error",
-        "The controller refused for a reason that has no code of its own.",
+        "The controller refused for a reason without a code.",
         "Look at the pendant for an alarm or message, and repeat the request once that is cleared."),
     row(0xD8F1, Class::Busy, DX200, "busy: another command is being processed",
         BUSY_CAUSE,
@@ -180,7 +180,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Select another job, take the edit lock off, or delete the old file first (save it with `armctl yerc file \
          get`)."),
     row(0xE29C, Class::File, DX200, "requested file does not exist or is empty",
-        "There is no such file, or it has no content. It can come with an answer that otherwise says done.",
+        "The file does not exist, or it is empty. This code can come with an answer that otherwise reports success.",
         "Compare the name with `armctl yerc file list`, with its ending and in upper case; if it is there, it is \
          empty."),
     row(0xE29D, Class::File, DX200, "system error",
@@ -196,7 +196,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The path in the file name is not one the controller knows.",
         "Use the plain file name; a path only for the batch backup (/SPDRV/CMOSBK.BIN)."),
     row(0xE2A7, Class::File, DX200, "no file matches the list request",
-        "There is no file of the type asked for. It can come with an answer that otherwise says done.",
+        "No file of the requested type exists. This code can come with an answer that otherwise reports success.",
         "Nothing is wrong if there are none; otherwise check the type, such as *.JBI."),
     row(0xE2AA, Class::File, DX200, "system error",
         FILE_INTERNAL,
@@ -228,16 +228,16 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The file request has no usable name. A name that ends in a NUL byte has the same effect.",
         "Give a file name; with `armctl yerc raw`, leave out the NUL at its end."),
     row(0xE49E, Class::File, DX200, "format: frame too long",
-        "The controller received a frame longer than it accepts (data of at most 479 bytes).",
+        "The controller received a frame above its size limit (data of at most 479 bytes).",
         FRAME_REMEDY),
     row(0xE49F, Class::File, DX200, "format: frame size is 0",
         "The controller received a frame without any length.",
         FRAME_REMEDY),
     row(0xE4A1, Class::File, DX200, "format: block number",
-        "A block came out of turn: a lost or repeated packet, or two hosts at work on the same transfer.",
+        "A block came in the wrong order: a lost or repeated packet, or two hosts with the same transfer.",
         "Repeat the transfer, and let only one host talk to the file server. If it comes again, check the network."),
     row(0xE4A2, Class::File, DX200, "format: ACK",
-        "An acknowledgement did not fit the transfer: a lost or repeated packet, or a transfer that had ended.",
+        "An acknowledgement did not match the transfer: a lost or repeated packet, or a transfer that had ended.",
         "Repeat the transfer, and let only one host talk to the file server. If it comes again, check the network."),
     row(0xE4A3, Class::File, DX200, "format: processing division",
         "The controller received a frame whose division is not that of the port (robot 10040, file 10041).",
@@ -252,10 +252,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The controller received a frame that does not begin with YERC.",
         FRAME_REMEDY),
     row(0xE4A7, Class::File, DX200, "format: size in the header differs from the bytes received",
-        "The controller received a frame whose stated size is not the number of bytes that arrived, often cut on \
-         the way.",
-        "Check switches, VPN and firewall on the way for cut or split packets; then record with --trace and report \
-         it."),
+        "The stated size of a frame differs from the number of received bytes; often the network truncated the frame.",
+        "Check switches, VPN and firewall for truncated or split packets; then record with --trace and report it."),
     row(0xE4A8, Class::File, DX200, "system error",
         FILE_INTERNAL,
         SYSTEM_REMEDY),
@@ -278,7 +276,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         LINK_INTERNAL,
         SYSTEM_REMEDY),
     row(0xFFF6, Class::Busy, DX200, "busy: too many requests",
-        "More requests came than the controller can queue, from this host or from all of them together.",
+        "The controller received more requests than its queue can hold, from this host or from all hosts together.",
         "Slow down: longer --watch intervals, and fewer programs that ask the same controller."),
     row(0xFFF7, Class::System, DX200, "system error",
         LINK_INTERNAL,
@@ -288,5 +286,5 @@ pub(super) static ROWS: &[AddedRow] = &[
         SYSTEM_REMEDY),
     row(0xFFFE, Class::System, DX200, "remote mode detected, communication closed",
         "The remote mode changed while the connection was in use, and the controller dropped it.",
-        "Leave the mode key alone during transfers; check the mode with `armctl yerc status` and start again."),
+        "Do not turn the mode key during transfers; check the mode with `armctl yerc status` and start again."),
 ];

@@ -60,16 +60,16 @@ static STATUSES: [StatusRow; 5] = [
         code: 0x1F,
         models: added::DX200,
         name: "refused, see the added status",
-        cause: "The controller refused; the added status beside this code says why.",
-        remedy: "Look up the added status: `armctl explain yerc CODE`. If there is none, read the pendant and \
+        cause: "The controller refused; the added status gives the reason.",
+        remedy: "Look up the added status: `armctl explain yerc CODE`. Without an added status, read the pendant and \
                  `armctl yerc alarm list`.",
     },
     StatusRow {
         code: 0x28,
         models: added::DX200,
         name: "array (instance) number does not exist",
-        cause: "What the request addresses is not there: a number beyond the last variable, signal, group or task, or \
-                number plus count running past the end (hint).",
+        cause: "The address does not exist: a number above the last variable, signal, group or task, or number plus \
+                count above the end (hint).",
         remedy: "Check the number against this controller's ranges and the set model.",
     },
 ];
@@ -196,11 +196,10 @@ fn unknown_added(code: u32) -> Explanation {
         models: added::NONE,
         known: false,
         name: "unknown added status code".into(),
-        cause: "No source lists this added status; a newer controller or an option may have codes of its own.".into(),
-        remedy:
-            "Look for a message on the pendant. The number of an alarm is no added status: `armctl yerc alarm list` \
+        cause: "No source lists this added status; a newer controller or an option may have more codes.".into(),
+        remedy: "Look for a message on the pendant. An alarm number is not an added status: `armctl yerc alarm list` \
                  shows its text."
-                .into(),
+            .into(),
     }
 }
 

@@ -6,8 +6,8 @@ use super::added::{AddedRow, BOTH, Class, row};
 #[rustfmt::skip] // Eight lines per row would hide the table.
 pub(super) static ROWS: &[AddedRow] = &[
     row(0x1010, Class::Operand, BOTH, "command error",
-        "The controller took the request but not the command in it. Often an option that is not installed, or a \
-         command of another model.",
+        "The controller accepted the request, but not its command. Often an option is not installed, or the command \
+         belongs to another model.",
         "Check that the model (fs100 or dx200) is the right one and that the option is installed; `armctl yerc raw` \
          and `-vvv` show the bytes."),
     row(0x1011, Class::Operand, BOTH, "wrong number of operands",
@@ -26,13 +26,13 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Shorten the text, or set the right model: strings have 16 bytes on FS100 and 32 on DX200."),
     row(0x1020, Class::Operand, BOTH, "no room for more files",
         "The controller's file store has no free entry left.",
-        "Back the files up, then delete jobs that nobody needs, on the pendant or with `armctl yerc file delete`."),
+        "Back the files up, then delete unused jobs, on the pendant or with `armctl yerc file delete`."),
     row(0x2010, Class::State, BOTH, "manipulator is moving",
         "The robot moves or a job runs, and the request is only taken at standstill.",
         "Wait until the job has ended, or stop it with hold. `armctl yerc status` shows whether it is running."),
     row(0x2020, Class::State, BOTH, "hold by programming pendant",
         "The HOLD key of the pendant is pressed, so nothing may start.",
-        "Find out who pressed it and why, release HOLD on the pendant, then repeat."),
+        "Find the reason for the HOLD, release HOLD on the pendant, then repeat."),
     row(0x2030, Class::State, BOTH, "hold by playback panel",
         "The hold button of the playback panel is pressed.",
         "Release the hold button on the panel, then repeat."),
@@ -42,7 +42,7 @@ pub(super) static ROWS: &[AddedRow] = &[
          clear it there."),
     row(0x2050, Class::State, BOTH, "hold by command",
         "HOLD was switched on by a command over the network, by this program or by another host.",
-        "Make sure that nobody relies on it, then send `armctl yerc hold off`."),
+        "Make sure that no person or program needs the hold, then send `armctl yerc hold off`."),
     row(0x2060, Class::State, BOTH, "an error or alarm is active",
         "The controller is in alarm or shows an error and refuses the request until it is cleared.",
         "Read it with `armctl yerc alarm list`, remove its cause, then `armctl yerc alarm reset` (an error message: \
@@ -52,8 +52,8 @@ pub(super) static ROWS: &[AddedRow] = &[
          or a door.",
         "Check that the cell is clear and the safety circuit closed, then `armctl yerc servo on`."),
     row(0x2080, Class::State, BOTH, "wrong mode",
-        "The mode key does not allow the request. Starts, moves and most writes want remote mode (hint: which codes \
-         guard writes is not spelt out).",
+        "The mode key does not allow the request. Starts, moves and most writes need remote mode (hint: the codes \
+         for writes are not documented).",
         "Turn the mode key of the pendant to REMOTE and repeat; for writes in play mode see also S2C541 and RS029."),
     row(0x2090, Class::State, BOTH, "another function is using the file",
         "Another function or another host has the job or file open at the moment.",
@@ -64,16 +64,16 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Turn the mode key to REMOTE. In management mode open IN/OUT > PSEUDO INPUT SIGNAL and set #82015 CMD \
          REMOTE SEL on ([INTER LOCK]+[SELECT])."),
     row(0x2110, Class::State, BOTH, "data may not be accessed",
-        "The data are protected at the moment: writing in play mode or under edit lock is barred, or this address \
-         is read-only.",
-        "Set S2C541 = 0 (play mode) or S2C542 = 0 (edit lock), or write in another mode; check the address too \
-         (hint: this code's exact causes are not documented)."),
+        "The data are protected at the moment: the controller blocks writes in play mode or under edit lock, or this \
+         address is read-only.",
+        "Set S2C541 = 0 (play mode) or S2C542 = 0 (edit lock), or write in another mode. Check the address too \
+         (hint: the exact causes of this code are not documented)."),
     row(0x2120, Class::State, BOTH, "data may not be loaded",
         "Loading this file is not allowed in the present state, for instance during playback, under edit lock or at \
          this security level.",
         "Stop the job, set RS029 = 1 (load during playback), check edit lock and the security mode, then repeat."),
     row(0x2130, Class::State, BOTH, "editing in progress",
-        "Somebody is editing on the pendant, which locks jobs and data.",
+        "A job or data is open for editing on the pendant, which locks jobs and data.",
         "Finish or cancel the editing on the pendant, go back to the main screen and repeat."),
     row(0x2150, Class::State, BOTH, "coordinate conversion function is running",
         "A conversion or teaching screen is open on the pendant (shift, mirror, PAM, PMT, gun, bend, 4-point), or a \
@@ -103,7 +103,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Find out why the PLC forbids the start, clear that, then start again."),
     row(0x3350, Class::Servo, BOTH, "user coordinate not taught",
         "The user coordinate system that the request names was never taught.",
-        "Name another one, or teach it on the pendant: ROBOT > USER COORDINATE."),
+        "Use a different one, or teach it on the pendant: ROBOT > USER COORDINATE."),
     row(0x3360, Class::Servo, BOTH, "user coordinate data destroyed",
         "The stored user coordinate system is damaged.",
         "Teach it again or load UFRAME.CND from a backup, then check it at low speed."),
@@ -111,7 +111,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The request names a control group (robot, base, station) that this controller or this job does not have.",
         "List the fitted groups with `armctl yerc axes` and name one of them."),
     row(0x3380, Class::Servo, BOTH, "wrong base axis data",
-        "The base axis values do not fit the base axis of this robot, or there is none.",
+        "The base axis values do not match the base axis of this robot, or the robot has no base axis.",
         "Check the base number and its values; leave the base out on a robot without one."),
     row(0x3390, Class::Servo, BOTH, "relative job conversion prohibited (CVTRJ)",
         "The job may not be converted to a relative job.",
@@ -124,7 +124,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The master job cannot be called while the robot is in operation.",
         "Wait for the running job to end, or stop it, then call the master job."),
     row(0x3420, Class::Servo, BOTH, "master job call prohibited by teach lock",
-        "Teach lock is on and bars the call of the master job.",
+        "Teach lock is on and blocks the call of the master job.",
         "Switch teach lock off on the pendant, then repeat."),
     row(0x3430, Class::Servo, BOTH, "robot calibration data not defined",
         "Robots that work together were not calibrated to each other, so the request cannot be computed.",
@@ -164,8 +164,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The job or variable has no position where one is needed.",
         "Teach or write the position first, then repeat."),
     row(0x4140, Class::Job, BOTH, "wrong position variable type",
-        "The position variable holds another kind of position (pulse or coordinates) than the request or job uses.",
-        "Read it with `armctl yerc var get`, and write it in the kind that is needed."),
+        "The position variable holds another position type (pulse or coordinates) than the request or job uses.",
+        "Read it with `armctl yerc var get`, and write it in the required type."),
     row(0x4150, Class::Job, BOTH, "END instruction for a job that is not the master job",
         "The job reached END, but it is not the master job and was started in a way that needs one.",
         "Check which job is the master job and from where this one is called."),
@@ -230,8 +230,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Compare with a job saved from this controller and correct it."),
     row(0x5430, Class::Syntax, BOTH, "system data differs",
         "The file was saved on a controller with other system data (robot, axes, options or software).",
-        "Load only files of this controller or of one set up alike; carry jobs over by hand."),
+        "Load only files of this controller or of one with the same setup; copy jobs by hand."),
     row(0x5480, Class::Syntax, BOTH, "wrong welding function type",
-        "The file belongs to another kind of welding than this controller is set up for.",
+        "The welding type of the file differs from that of this controller.",
         "Use a file for the welding function installed here."),
 ];

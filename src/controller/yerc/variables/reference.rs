@@ -117,7 +117,7 @@ pub struct Reference {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ReferenceError {
     /// Unknown letters.
-    #[error("'{found}' names no variable; there are B, I, D, R, S, P, BP and EX with a number, e.g. B0 or B0..B99")]
+    #[error("'{found}' is not a variable; use B, I, D, R, S, P, BP or EX with a number, e.g. B0 or B0..B99")]
     Kind {
         /// The invalid text.
         found: String,
@@ -129,7 +129,7 @@ pub enum ReferenceError {
         found: String,
     },
     /// A range with two different kinds.
-    #[error("'{found}' is not a valid range; both ends name the same kind, the lower one first")]
+    #[error("'{found}' is not a valid range; both ends must have the same type, the lower one first")]
     Range {
         /// The invalid text.
         found: String,

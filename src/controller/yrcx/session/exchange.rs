@@ -81,8 +81,8 @@ pub enum Silence {
 impl fmt::Display for NotSentReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoImage => f.write_str("the controller shows nothing"),
-            Self::LinkLost => f.write_str("the link is down"),
+            Self::NoImage => f.write_str("the controller sends no data"),
+            Self::LinkLost => f.write_str("the connection is down"),
             Self::NotReady(status) => write!(f, "the controller is not ready for a command, its status is: {status}"),
             Self::Interrupted => f.write_str("interrupted"),
         }
@@ -92,12 +92,12 @@ impl fmt::Display for NotSentReason {
 impl fmt::Display for Silence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::LinkLost => f.write_str("the link went down"),
-            Self::NotTaken => f.write_str("the controller did not take it"),
-            Self::TooLong => f.write_str("it still ran when patience was over"),
-            Self::Vanished => f.write_str("the controller stopped showing that it runs, and showed no end"),
-            Self::Undocumented(word) => write!(f, "the controller shows the undocumented status {word:#06x}"),
-            Self::Interrupted => f.write_str("its end was not seen in the time for a stop"),
+            Self::LinkLost => f.write_str("the connection was lost"),
+            Self::NotTaken => f.write_str("the controller did not start it"),
+            Self::TooLong => f.write_str("it still ran at the end of the wait"),
+            Self::Vanished => f.write_str("the controller ended the run status without a result"),
+            Self::Undocumented(word) => write!(f, "the controller reports the undocumented status {word:#06x}"),
+            Self::Interrupted => f.write_str("its end was not confirmed in the time for a stop"),
         }
     }
 }

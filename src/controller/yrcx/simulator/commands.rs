@@ -46,7 +46,7 @@ pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault>
 
 /// A command in the wrong module of the simulator.
 pub(super) fn not_here(request: &Request) -> Fault {
-    Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("the simulator does not know {}", request.row.id))
+    Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("the simulator does not support {}", request.row.id))
 }
 
 fn done((): ()) -> Work {

@@ -13,16 +13,16 @@ use crate::yrcx::alarm::Alarm;
 const HELP: &[(&str, &str)] = &[
     ("estop on|off", "press or release the emergency stop"),
     ("mode auto|manual", "turn the mode key"),
-    ("box on|off", "the programming box has control, or not"),
-    ("inputs on|off", "take dedicated inputs, or not"),
+    ("box on|off", "give control to the programming box, or not"),
+    ("inputs on|off", "accept dedicated inputs, or not"),
     ("warning on|off", "show a warning, or none"),
     ("alarm GROUP.CATEGORY [fatal]", "raise an alarm: alarm 12.600"),
     ("DI(20)=1, DO2()=255", "set a port or a bit of it"),
-    ("obstacle R1A3 PULSES|off", "block an axis of a robot at a place, or free it"),
+    ("obstacle R1A3 PULSES|off", "block an axis of a robot at a position, or free it"),
     ("load R1A3 PERCENT", "set the load of an axis"),
     ("power", "switch the controller off and on"),
-    ("why", "say why the last command was refused"),
-    ("journal", "list the images that masters showed since the last `journal`"),
+    ("why", "show the reason for the last refusal"),
+    ("journal", "list the images from masters since the last `journal`"),
 ];
 
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
@@ -32,7 +32,7 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
         ["robot" | "state"] => return Ok(console::table(&state(world))),
         ["why"] => {
             let why = world.why.as_ref().map(ToString::to_string);
-            return Ok(why.unwrap_or_else(|| "nothing was refused".to_owned()));
+            return Ok(why.unwrap_or_else(|| "no command was refused".to_owned()));
         }
         ["estop", on] => {
             world.switches.estop = on_off(on)?;
@@ -48,12 +48,12 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
         ["power"] => world.power_cycle(),
         ["obstacle", axis, "off"] => find_axis(world, axis)?.obstacle = None,
         ["obstacle", axis, place] => {
-            let place = place.parse::<i32>().map_err(|_| format!("'{place}' is not a number of pulses"))?;
+            let place = place.parse::<i32>().map_err(|_| format!("'{place}' is not a valid number of pulses"))?;
             find_axis(world, axis)?.obstacle = Some(place.into());
         }
         ["load", axis, load] => {
             let load = load.parse().ok().filter(|load| (-100..=100).contains(load));
-            find_axis(world, axis)?.load = load.ok_or("a load is -100 to 100 %")?;
+            find_axis(world, axis)?.load = load.ok_or("a load must be from -100 to 100 %")?;
         }
         [port] if port.contains('=') => return set_port(world, port),
         _ => return Err(unknown(line)),
@@ -77,7 +77,7 @@ fn raise(world: &mut World, number: &str, fatal: bool) -> Result<(), String> {
 
 fn set_port(world: &mut World, text: &str) -> Result<String, String> {
     let found = assigned(text).filter(|(port, _)| port.kind != SI);
-    let (port, value) = found.ok_or_else(|| format!("'{text}' sets no port; the master has SI"))?;
+    let (port, value) = found.ok_or_else(|| format!("'{text}' is not a port to set; the master sets SI"))?;
     world.memory.set_output(port, value);
     world.restless = true;
     let byte = world.memory.port(port.kind, port.port);

@@ -181,7 +181,7 @@ pub(super) fn along_tool(pose: &Four, by: &Four) -> Four {
 }
 
 /// Rounds to the nearest integer in range.
-#[expect(clippy::cast_possible_truncation, reason = "a number out of range becomes the nearest one within")]
+#[expect(clippy::cast_possible_truncation, reason = "a number out of range becomes the nearest limit")]
 pub(super) fn whole(number: f64) -> i32 {
     number.round() as i32
 }

@@ -182,7 +182,7 @@ impl Memory {
         let pallet = self.pallet(number)?;
         let [nx, ny, nz] = pallet.counts;
         if i64::from(place) > i64::from(nx) * i64::from(ny) * i64::from(nz) {
-            let why = format!("pallet {number} has {nx} x {ny} x {nz} places, not {place}");
+            let why = format!("pallet {number} has {nx} x {ny} x {nz} positions, not {place}");
             return Err(Fault::new(NO_PALLET, AlarmSource::Controller, why));
         }
         let corner = |offset: u16| {
@@ -297,7 +297,7 @@ fn unit_differs(what: &str) -> Fault {
 }
 
 fn too_large() -> Fault {
-    Fault::new(ARITHMETIC, AlarmSource::Controller, "the result does not fit")
+    Fault::new(ARITHMETIC, AlarmSource::Controller, "the result is out of range")
 }
 
 #[expect(

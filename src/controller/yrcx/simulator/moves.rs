@@ -227,7 +227,7 @@ impl World {
         let arc = Path::arc(&start, &geometry.pose(&via), &end, arm.unwrap_or(robot.arm));
         let (path, way) = arc
             .filter(|_| arm == geometry.arm(&to))
-            .ok_or_else(|| Fault::new(NO_PATH, AlarmSource::Robot(number), "there is no arc over these points"))?;
+            .ok_or_else(|| Fault::new(NO_PATH, AlarmSource::Robot(number), "these points do not form an arc"))?;
         self.tool_leg(number, path, way, end[3] - start[3], speed)
     }
 
@@ -421,5 +421,5 @@ fn sum(a: &Four, b: &Four) -> Four {
 }
 
 fn out_of_reach(number: usize) -> Fault {
-    Fault::new(OUT_OF_REACH, AlarmSource::Robot(number), "no position of the axes puts the tool there")
+    Fault::new(OUT_OF_REACH, AlarmSource::Robot(number), "the axes cannot move the tool to this position")
 }

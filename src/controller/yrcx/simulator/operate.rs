@@ -104,7 +104,7 @@ fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
     }
     let turns = axis.pulses / RESET_PITCH;
     if (turns - turns.round()).abs() * RESET_PITCH > 1.0 {
-        let why = format!("axis {} is not where an absolute reset is possible", at + 1);
+        let why = format!("axis {} is not at a position for an absolute reset", at + 1);
         return Err(Fault::new(NO_ABSOLUTE_RESET, AlarmSource::Axis(number, at), why));
     }
     axis.origin = true;
@@ -155,7 +155,7 @@ impl Chosen {
             Self::Program(program) => task.program == program,
             Self::Task(number) => task.number == number,
         });
-        at.ok_or_else(|| Fault::new(NO_TASK, AlarmSource::Controller, "it is not registered in a task"))
+        at.ok_or_else(|| Fault::new(NO_TASK, AlarmSource::Controller, "the program is not registered in a task"))
     }
 }
 
@@ -168,7 +168,7 @@ fn chosen(world: &World, request: &Request) -> Result<Chosen, Fault> {
         // The whole name. If all 16 characters are given: the lowest program number whose name begins with them.
         _ => world.programs.iter().find(|(_, program)| program.short_name() == name).map(|(number, _)| *number),
     };
-    let none = || Fault::new(NO_PROGRAM, AlarmSource::Controller, "there is no such program");
+    let none = || Fault::new(NO_PROGRAM, AlarmSource::Controller, "no such program");
     found.map(Chosen::Program).ok_or_else(none)
 }
 
@@ -194,7 +194,7 @@ fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fau
 
 /// State of a stopped program (4.6.4).
 fn show(world: &World, at: usize) -> Result<Values, Fault> {
-    let none = || Fault::new(NO_TASK, AlarmSource::Controller, "it is not registered in a task");
+    let none = || Fault::new(NO_TASK, AlarmSource::Controller, "the program is not registered in a task");
     let task = world.tasks.get(at).ok_or_else(none)?;
     if task.state == State::Running {
         return Err(Fault::new(super::alarms::RUNNING, AlarmSource::Task(task.number), "the program runs"));

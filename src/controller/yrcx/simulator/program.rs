@@ -67,7 +67,7 @@ impl Program {
             program.lines.push(parsed);
         }
         if program.lines.is_empty() || program.lines.len() > MAX_LINES {
-            return Err(format!("{name} has {} lines; 1 to {MAX_LINES} are possible", program.lines.len()));
+            return Err(format!("{name} has {} lines; it must have 1 to {MAX_LINES}", program.lines.len()));
         }
         Ok(program)
     }

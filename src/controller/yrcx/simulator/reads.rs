@@ -87,8 +87,7 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Values, Fault> 
         }
         Command::Slots => {
             let controller = u8::try_from(request.int(Key::Controller)).unwrap_or_default();
-            let none =
-                || Fault::new(NO_CONTROLLER, AlarmSource::Controller, format!("there is no controller {controller}"));
+            let none = || Fault::new(NO_CONTROLLER, AlarmSource::Controller, format!("no controller {controller}"));
             let slots = world.slots.get(&controller).ok_or_else(none)?;
             [Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4].into_iter().zip(*slots).collect()
         }

@@ -83,7 +83,7 @@ impl Request {
         for field in self.row.answer().filter(|field| counts(field, look)) {
             // Fields of the command are repeated in the answer.
             if let Some(value) = values.value(field.key).or_else(|| self.values.value(field.key)) {
-                field.write(&mut words, value).expect("what the simulator answers fits its field");
+                field.write(&mut words, value).expect("the answer of the simulator fits its field");
             }
         }
         words[0] = status.word();
@@ -99,13 +99,13 @@ impl Request {
                 if (1..=32_767).contains(&places) {
                     return Ok(());
                 }
-                Err(Fault::of_words(format!("a pallet of {places} places")))
+                Err(Fault::of_words(format!("a pallet of {places} positions")))
             }
             Command::ParamSet | Command::ParamGet => {
                 let parameter = Parameter::from_number(self.int(Key::Parameter));
                 let parameter = parameter.ok_or_else(|| Fault::of_words("WI2: no such parameter"))?;
                 if parameter.per_axis != (self.int(Key::Axes) != 0) {
-                    return Err(Fault::of_words(format!("WI3: {} and this axis", parameter.name)));
+                    return Err(Fault::of_words(format!("WI3: {} is not possible with this axis", parameter.name)));
                 }
                 let (least, most) = parameter.span;
                 if self.row.command == Command::ParamSet && !(least..=most).contains(&self.int(Key::Value)) {

@@ -65,7 +65,7 @@ impl Dedicated {
             let alone = (rose | fell).is_power_of_two();
             let result = match (world.switches.inputs && !world.switches.boxed, too_soon || !alone || back) {
                 (false, _) => Err(ignored(*signal, "dedicated inputs have no effect now")),
-                (_, true) => Err(ignored(*signal, "it came less than 100 ms after another edge")),
+                (_, true) => Err(ignored(*signal, "less than 100 ms after another edge")),
                 _ => react(world),
             };
             match result {

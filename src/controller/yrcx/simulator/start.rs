@@ -36,27 +36,27 @@ pub struct Start {
 
 /// A start state with all keys; each is optional.
 pub const EXAMPLE: &str = r#"mode = "auto"                   # or "manual"
-servo = true                    # motor power and servos; a real controller starts without
+servo = true                    # motor power and servos; off at the start of a real controller
 box = false                     # true: the programming box has control
 inputs = true                   # false: a safety setting disables dedicated inputs and remote commands
 sequence = false                # true: there is a sequence program for SI(10)
 di17 = "abs"                    # or "abs/org": SI(17) returns incremental axes as well
-movei_start = "keep"            # or "reset": a relative motion that was stopped begins anew
+movei_start = "keep"            # or "reset": a stopped relative motion starts again from its beginning
 clock = "2026/03/14 08:00:00"
 link_within_ms = 60000          # alarm if no master comes; without this key, none
-run_scans = 0                   # quick commands show the run status for up to so many scans, by the seed
+run_scans = 0                   # quick commands show the run status for up to this number of scans, by the seed
 seed = 0
 versions = { host = "V1.08", revision = 48, fpga = "V1.001", drivers = ["V1.01", "V1.01", "V1.01", "V1.01"] }
 slots = { 1 = ["EtherNet/IP", "DIO NPN general-purpose input", "none", "none"] }
 variables = { SGI5 = 50, SGR0 = 1.5 }
 ports = { "DI2()" = 127, "DO(20)" = 1 }
-stock = true                    # false: no points, programs and so on but what is named here
+stock = true                    # false: only the points, programs and so on that are listed here
 
 [[robot]]
 kind = "cartesian"              # or "scara"; arms = [225, 175] in mm
 axes = 4
 model = 2000                    # its number in 4.7.2
-pulses_per_unit = [1000, 1000, 1000, 1000]  # a mm or a degree
+pulses_per_unit = [1000, 1000, 1000, 1000]  # per mm or degree
 limits = [[-1000000, 1000000], [-1000000, 1000000], [-500000, 500000], [-360000, 360000]]  # pulses
 speeds = [1000, 1000, 500, 720] # mm or degrees a second
 motors = ["absolute", "absolute", "absolute", "absolute"]  # incremental, semi-absolute
@@ -64,8 +64,8 @@ methods = ["mark", "mark", "mark", "mark"]  # sensor, stroke
 origin = [true, true, true, true]
 position = [0, 0, 0, 0]         # pulses
 servos = ["servo", "servo", "servo", "servo"]  # brake, free; with servo = true
-load = [0, 0, 20, 0]            # torque at rest, % of the greatest
-obstacles = { 3 = 9000 }        # pulses at which a push of that axis meets something
+load = [0, 0, 20, 0]            # torque at rest, % of the maximum
+obstacles = { 3 = 9000 }        # position in pulses where a push of that axis meets an obstacle
 payload_g = 1000
 max_payload_g = 10000
 auto_speed = 100
@@ -144,7 +144,7 @@ impl Start {
 }
 
 #[derive(Debug, Deserialize)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent key")]
 #[serde(default, deny_unknown_fields)]
 struct Entries {
     mode: Mode,

@@ -314,7 +314,7 @@ impl World {
                 let spot = self.label(program, &label)?;
                 let task = self.tasks.get_mut(at).ok_or_else(no_task)?;
                 if task.calls.len() >= MAX_CALLS {
-                    return Err(Fault::new(CALLS, AlarmSource::Controller, "too many calls within each other"));
+                    return Err(Fault::new(CALLS, AlarmSource::Controller, "too many nested calls"));
                 }
                 task.calls.push((program, line + 1));
                 return Ok(Flow::To(spot));
@@ -370,7 +370,7 @@ impl World {
             let (number, found) = self.programs.iter().find(|(_, program)| program.name == COMMON)?;
             found.labels.get(label).map(|line| (*number, *line))
         };
-        let missing = || Fault::new(CALLS, AlarmSource::Controller, format!("there is no label *{label}"));
+        let missing = || Fault::new(CALLS, AlarmSource::Controller, format!("no label *{label}"));
         own.or_else(common).ok_or_else(missing)
     }
 

@@ -34,7 +34,7 @@ pub(super) enum Mode {
 
 /// Operator switches and relevant parameters.
 #[derive(Debug, Clone)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent switch")]
 pub(super) struct Switches {
     pub(super) mode: Mode,
     /// The programming box has control.
@@ -139,7 +139,10 @@ impl World {
         if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(self.link_alarm.too_long(), AlarmSource::Slot, "no master came in time"), false);
+            self.raise(
+                &Fault::new(self.link_alarm.too_long(), AlarmSource::Slot, "no master connected in time"),
+                false,
+            );
         }
         while let Some(line) = self.events.take(now) {
             // The lines were checked when the start state was parsed; an impossible line has no effect now.
@@ -244,7 +247,7 @@ impl World {
 
     /// Fault of the link loss, for running commands.
     pub(super) fn link_fault(&self) -> Fault {
-        Fault::new(self.link_alarm, AlarmSource::Slot, "the master is gone")
+        Fault::new(self.link_alarm, AlarmSource::Slot, "the master has disconnected")
     }
 
     /// Whether motor power can be switched on.
@@ -296,7 +299,7 @@ impl World {
             ));
         }
         if robot.motion.is_some() {
-            return Err(Fault::new(MOVING, AlarmSource::Robot(number), format!("robot {} moves already", number + 1)));
+            return Err(Fault::new(MOVING, AlarmSource::Robot(number), format!("robot {} already moves", number + 1)));
         }
         Ok(())
     }
@@ -391,5 +394,5 @@ fn active(alarm: Alarm) -> Fault {
 }
 
 fn no_robot(number: usize) -> Fault {
-    Fault::new(NO_ROBOT, AlarmSource::Controller, format!("there is no robot {}", number + 1))
+    Fault::new(NO_ROBOT, AlarmSource::Controller, format!("no robot {}", number + 1))
 }

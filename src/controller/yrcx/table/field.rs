@@ -297,7 +297,7 @@ impl Field {
                     put(at, u16::from_le_bytes([pair[0], pair[1]]));
                 }
             }
-            _ => return Err("not the kind of value that this field takes".to_owned()),
+            _ => return Err("this field needs another value type".to_owned()),
         }
         Ok(())
     }
@@ -316,17 +316,17 @@ impl Field {
                         Err(format!("{number} is not defined; {}", self.allowed()))
                     }
                     Form::Bits { width, show: Show::Set { least, most }, .. } => match number.count_ones() {
-                        _ if number >> width != 0 => Err(format!("{}: there are 1 to {width}", self.show(value))),
+                        _ if number >> width != 0 => Err(format!("{}: must be from 1 to {width}", self.show(value))),
                         count if count < least || count > most => Err(format!("{count} named; {}", self.allowed())),
                         _ => Ok(()),
                     },
                     Form::Bits { show: Show::Fixed(fixed), .. } if i32::from(fixed) != *number => {
-                        Err(format!("{number} where {fixed} is fixed"))
+                        Err(format!("{number} instead of the fixed value {fixed}"))
                     }
                     _ => Ok(()),
                 }
             }
-            (Value::Real(number), _) if !number.is_finite() => Err(format!("{number} is not a number to send")),
+            (Value::Real(number), _) if !number.is_finite() => Err(format!("{number} is not a valid number")),
             (Value::Text(text), Form::Text(charset)) => charset.accept(text),
             _ => Ok(()),
         }
@@ -337,13 +337,13 @@ impl Field {
         let spans = match self.form {
             Form::Bits { show: Show::Choice(choices), .. } => {
                 let names = choices.iter().map(|(code, name)| format!("{code} = {name}"));
-                return format!("there are {}", names.collect::<Vec<_>>().join(", "));
+                return format!("use {}", names.collect::<Vec<_>>().join(", "));
             }
             Form::Bits { show: Show::Set { least, most }, .. } if least == most => {
                 return format!("name exactly {least}");
             }
             Form::Bits { show: Show::Set { least, most }, .. } => return format!("name {least} to {most}"),
-            Form::Bits { show: Show::Fixed(fixed), .. } => return format!("it is always {fixed}"),
+            Form::Bits { show: Show::Fixed(fixed), .. } => return format!("it must be {fixed}"),
             Form::Text(charset) => return charset.allowed().to_owned(),
             Form::Real => return "allowed: a single-precision number".to_owned(),
             _ if !self.spans.is_empty() => self.spans,

@@ -257,7 +257,7 @@ pub enum PortError {
         path: String,
     },
     /// The adapter was disconnected.
-    #[error("{path} is gone: {why}")]
+    #[error("{path} was disconnected: {why}")]
     Gone {
         /// Path of the adapter.
         path: String,
@@ -265,13 +265,13 @@ pub enum PortError {
         why: String,
     },
     /// The adapter sends more than a bus can carry.
-    #[error("{path} sends without end, as no adapter does")]
+    #[error("{path} sends without end; it is not a CAN adapter")]
     Flooded {
         /// Path of the adapter.
         path: String,
     },
     /// The adapter accepts no more frames.
-    #[error("{path} takes no more frames to send")]
+    #[error("{path} accepts no more frames")]
     Stuck {
         /// Path of the adapter.
         path: String,

@@ -102,7 +102,7 @@ impl Pipe {
             while !arrived.is_closed() {
                 let mut bytes = vec![0; PIECE];
                 let read = match reader.read(&mut bytes) {
-                    Ok(0) => Err(vanished("its end was reached")),
+                    Ok(0) => Err(vanished("it has ended")),
                     Ok(len) => {
                         bytes.truncate(len);
                         Ok(bytes)

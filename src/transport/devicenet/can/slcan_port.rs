@@ -70,7 +70,7 @@ impl SlcanPort {
         let about = port.ask(b"V\r", |said| matches!(said, Said::About(_))).await?;
         let rate = port.ask(bitrate_command(bitrate), |said| *said == Said::Done).await?;
         if rate == Some(Said::No) {
-            return Err(port.wrong(&format!("the adapter does not take {bitrate}")));
+            return Err(port.wrong(&format!("the adapter refuses the bit rate {bitrate}")));
         }
         let open = if listens { b"L\r" } else { b"O\r" };
         let opened = port.ask(open, |said| *said == Said::Done).await?;
@@ -80,7 +80,7 @@ impl SlcanPort {
                 return Err(port.wrong(&format!("the adapter refuses to {what}")));
             }
             (None, None, None) if port.hears => {
-                return Err(port.wrong("it sends something else than the answers of an SLCAN adapter"));
+                return Err(port.wrong("it does not answer as an SLCAN adapter"));
             }
             (None, None, None) => return Err(PortError::Mute { path: port.path.clone() }),
             _ => {}

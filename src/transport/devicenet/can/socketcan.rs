@@ -13,8 +13,8 @@ use super::{BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
 const MOST_WAITING: usize = 256;
 fn advice(interface: &str) -> Cow<'static, str> {
     format!(
-        "set the interface up: `ip link set {interface} up type can bitrate 500000 restart-ms 100` (as root; the bit rate is \
-         that of the bus); `ip -br link show type can` lists those there are"
+        "set up the interface as root, with the bit rate of the bus: `ip link set {interface} up type can bitrate \
+         500000 restart-ms 100`. List the interfaces: `ip -br link show type can`"
     )
     .into()
 }
@@ -43,10 +43,10 @@ impl SocketCan {
     pub fn open(interface: &str) -> Result<Self, PortError> {
         let failed = |error: &io::Error| {
             let (why, advice) = match error.raw_os_error() {
-                Some(NO_DEVICE) => ("there is no such interface".to_owned(), advice(interface)),
+                Some(NO_DEVICE) => ("no such interface".to_owned(), advice(interface)),
                 Some(NO_FAMILY) => (
-                    "this system knows no CAN".to_owned(),
-                    "load the module can_raw, or use an SLCAN adapter: slcan://".into(),
+                    "this system does not support CAN".to_owned(),
+                    "load the kernel module can_raw, or use an SLCAN adapter: slcan://".into(),
                 ),
                 _ => (error.to_string(), advice(interface)),
             };
@@ -59,7 +59,7 @@ impl SocketCan {
 
     fn gone(&self, error: &io::Error) -> PortError {
         let why = match error.raw_os_error() {
-            Some(IS_DOWN) => format!("the interface is down: `ip link set {} up` (as root)", self.interface),
+            Some(IS_DOWN) => format!("the interface is down; run as root: `ip link set {} up`", self.interface),
             _ => error.to_string(),
         };
         PortError::Gone { path: self.interface.clone(), why }
@@ -152,7 +152,7 @@ mod tests {
         let error = SocketCan::open("there-is-none0").unwrap_err();
         let PortError::Open { path, why, advice } = error else { panic!("{error:?}") };
         assert_eq!(path, "there-is-none0");
-        assert!(why == "there is no such interface" || why == "this system knows no CAN", "{why}");
+        assert!(why == "no such interface" || why == "this system does not support CAN", "{why}");
         assert!(advice.contains("ip link") || advice.contains("slcan"), "{advice}");
     }
 }

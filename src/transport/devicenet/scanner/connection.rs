@@ -23,11 +23,11 @@ const BACKOFF: [Duration; 3] = [Duration::from_secs(1), Duration::from_secs(2), 
 /// Keepalive interval. The slave closes an explicit connection after 10 s of silence.
 const KEEP_ALIVE: Duration = Duration::from_secs(3);
 const ALLOCATION: &str = "the allocation of its connections";
-const OWNER: &str = "who has its connections";
+const OWNER: &str = "the read of the owner of its connections";
 const RELEASE: &str = "the release of its connections";
-const PRODUCED: &str = "the size of its image";
-const CONSUMED: &str = "the size of the image to it";
-const RATE: &str = "the packet rate";
+const PRODUCED: &str = "the read of its image size";
+const CONSUMED: &str = "the read of its output image size";
+const RATE: &str = "the setting of the packet rate";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
@@ -300,7 +300,7 @@ impl Connection {
                 if let Some(token) = self.asking.take() {
                     let reply = match outcome {
                         Outcome::Answer(answer) => Ok(answer),
-                        _ => answer("a question").map(|data| Answer::Done { service: 0, data }),
+                        _ => answer("a request").map(|data| Answer::Done { service: 0, data }),
                     };
                     self.replies.push_back((token, reply));
                 }
@@ -376,7 +376,7 @@ impl Connection {
             return Err(Error::Size { mac, produced, consumed, known });
         };
         if self.view.details.size.is_some_and(|size| size != profile.resting.len()) {
-            let known = format!("the {} from before", self.view.details.size.unwrap_or_default());
+            let known = format!("the earlier {}", self.view.details.size.unwrap_or_default());
             return Err(Error::Size { mac, produced, consumed, known });
         }
         self.image.clone_from(&profile.resting);
@@ -495,6 +495,6 @@ const PACKET_RATE: u8 = 9;
 
 /// Decodes an answer of two bytes.
 fn word(data: &[u8], mac: Mac, what: &'static str) -> Result<u16, Error> {
-    let bytes = data.try_into().map_err(|_| Error::Senseless { mac, what, why: "it has not two bytes" })?;
+    let bytes = data.try_into().map_err(|_| Error::Senseless { mac, what, why: "it does not have two bytes" })?;
     Ok(u16::from_le_bytes(bytes))
 }

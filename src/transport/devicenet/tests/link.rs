@@ -303,7 +303,7 @@ fn settings_that_cannot_be_are_refused_before_a_frame_leaves() {
     let mut world = World::new(Vec::new(), 1);
     let Purpose::Images(usual) = images(5).purpose else { panic!() };
     for (settings, part) in [
-        (images(1), "this master's own"),
+        (images(1), "the MAC of this master"),
         (
             Settings {
                 purpose: Purpose::Images(crate::devicenet::settings::Images { cycle: Duration::ZERO, ..usual.clone() }),

@@ -175,7 +175,7 @@ async fn a_wrong_bit_rate_and_bus_off_are_told() {
     let slow = Adapter { bitrate: Bitrate::K125, ..adapter(place(&hub), 1) };
     let network = Network::open(&slow, Tap::default()).await.unwrap();
     let error = network.connect(images(5)).await.unwrap_err().to_string();
-    assert!(error.contains("nobody acknowledges"), "{error}");
+    assert!(error.contains("no node acknowledges"), "{error}");
     drop(network);
     let network = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
     let mut connection = network.connect(images(5)).await.unwrap();

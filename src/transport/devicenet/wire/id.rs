@@ -47,7 +47,7 @@ impl FromStr for Mac {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let number = text.parse().ok().and_then(Self::new);
-        number.ok_or_else(|| format!("a MAC ID is a number from 0 to {}, not '{text}'", Self::LAST))
+        number.ok_or_else(|| format!("a MAC ID must be a number from 0 to {}, not '{text}'", Self::LAST))
     }
 }
 

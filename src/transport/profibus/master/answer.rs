@@ -7,14 +7,14 @@ use super::super::wire::{Control, Frame, Status};
 /// Returns the data of an answer.
 pub(super) fn data(station: u8, asked: &'static str, answer: Answer) -> Result<(Status, Vec<u8>), ProfibusError> {
     let why = match answer {
-        Answer::Short => "no more than an acknowledgement came".to_owned(),
+        Answer::Short => "it is only an acknowledgement".to_owned(),
         Answer::Frame(Frame { control: Control::Answer(_, status), data, .. }) => match status {
             Status::Data | Status::DataHigh | Status::DataNoResource | Status::DataHighNoResource => {
                 return Ok((status, data));
             }
             status => return Err(ProfibusError::Refused { station, asked, status }),
         },
-        Answer::Frame(_) => "a request came".to_owned(),
+        Answer::Frame(_) => "it is a request".to_owned(),
     };
     Err(ProfibusError::Malformed { station, asked, why })
 }

@@ -155,7 +155,7 @@ impl Master {
     pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfibusError> {
         if image.len() != self.settings.output_size {
             let (len, size) = (image.len(), self.settings.output_size);
-            return Err(ProfibusError::Settings(format!("an image of {len} bytes where {size} belong")));
+            return Err(ProfibusError::Settings(format!("the image has {len} bytes, not {size}")));
         }
         self.view.check(generation)?;
         self.image = image.to_vec();
@@ -356,7 +356,7 @@ impl Master {
     /// Name of the current request.
     fn asked(&self) -> &'static str {
         match self.step {
-            Step::Find => "the question for its state",
+            Step::Find => "the status request",
             Step::Diagnose | Step::Confirm => sap::name(Some(sap::SLAVE_DIAG)),
             Step::Ask => sap::name(Some(sap::GET_CFG)),
             Step::Parameters => sap::name(Some(sap::SET_PRM)),

@@ -174,17 +174,23 @@ fn nothing_but_the_resting_image_comes_first_and_images_go_both_ways() {
 #[test]
 fn every_fault_of_a_slave_has_a_message_of_its_own() {
     for (fault, message) in [
-        (SlaveFault::Mute, "did not answer the question for its state (4 attempts, 10 ms each; nothing was heard)"),
-        (SlaveFault::Locked, "station 5 belongs to master 9"),
+        (
+            SlaveFault::Mute,
+            "no answer from station 5 to the status request (4 attempts, 10 ms each; no bytes received)",
+        ),
+        (SlaveFault::Locked, "master 9 owns station 5"),
         (SlaveFault::OtherIdent, "station 5 has ident number 0x1235, not 0x1234"),
-        (SlaveFault::OtherSize, "the configuration C0C7C7 has 16 bytes from station 5 and 16 to it, not 48 and 48"),
-        (SlaveFault::NoConfiguration, "does not take the configuration C0D7D7; it wants C0D7D7"),
-        (SlaveFault::NoParameters, "does not take the user parameters 000000"),
+        (
+            SlaveFault::OtherSize,
+            "the configuration C0C7C7 has 16 input bytes from station 5 and 16 output bytes, not 48 and 48",
+        ),
+        (SlaveFault::NoConfiguration, "refuses the configuration C0D7D7; it needs C0D7D7"),
+        (SlaveFault::NoParameters, "refuses the user parameters 000000"),
         (SlaveFault::NotReady, "is not ready for data after 50"),
         (SlaveFault::WrongSize, "station 5 sent 47 bytes of data, not 48"),
         (SlaveFault::Inactive, "station 5 refused Slave_Diag: RS, service not active"),
         (SlaveFault::Master, "station 5 is a master, not a slave"),
-        (SlaveFault::Token, "another master, station 9, is on the bus (it passed the token)"),
+        (SlaveFault::Token, "another master is on the bus: station 9 (it passed the token)"),
     ] {
         let settings = Settings { ident: Some(0x1234), ..Settings::new(5, RATES[5], resting()) };
         let mut world = World::with(settings, "");
@@ -252,7 +258,7 @@ fn a_silent_slave_is_lost_and_found_again() {
     let view = world.open();
     world.slave.misbehave(Some(SlaveFault::Mute));
     let lost = world.run(SEC, |view| view.state == State::Lost);
-    assert!(lost.trouble.unwrap().to_string().contains("did not answer Data_Exchange (4 attempts"));
+    assert!(lost.trouble.unwrap().to_string().contains("to Data_Exchange (4 attempts"));
     world.slave.misbehave(None);
     let again = world.run(5 * SEC, |view| view.state == State::Open);
     assert_eq!((again.state, again.generation), (State::Open, view.generation + 1));
@@ -262,10 +268,10 @@ fn a_silent_slave_is_lost_and_found_again() {
 #[test]
 fn a_master_says_nothing_where_another_one_speaks() {
     for (heard, message) in [
-        ("DC 03 04 DC 04 03", "another master, station 4, is on the bus (it passed the token)"),
-        ("10 05 04 49 52 16", "another master, station 4, is on the bus (it sent a request)"),
-        ("10 04 05 00 09 16", "another master, station 4, is on the bus (it was answered by a station)"),
-        ("00 81 FF 03", "there is traffic on the bus that cannot be read at this bit rate (4 bytes)"),
+        ("DC 03 04 DC 04 03", "another master is on the bus: station 4 (it passed the token)"),
+        ("10 05 04 49 52 16", "another master is on the bus: station 4 (it sent a request)"),
+        ("10 04 05 00 09 16", "another master is on the bus: station 4 (a station answered it)"),
+        ("00 81 FF 03", "cannot decode the traffic on the bus at this bit rate (4 bytes)"),
     ] {
         let mut world = World::new("500k", "");
         world.master.handle(MS, &hex(heard));
@@ -285,7 +291,7 @@ fn a_master_that_hears_another_one_falls_silent_until_it_is_gone() {
     world.run(100 * MS, |_| false);
     world.master.handle(world.now, &hex("10 07 04 49 54 16"));
     let lost = world.master.view();
-    assert_eq!(lost.trouble.unwrap().to_string(), "another master, station 4, is on the bus (it sent a request)");
+    assert_eq!(lost.trouble.unwrap().to_string(), "another master is on the bus: station 4 (it sent a request)");
     let (said, until) = (world.sent.len(), world.now + 3 * SEC);
     while world.now < until {
         world.run(500 * MS, |_| false);
@@ -306,7 +312,7 @@ fn adapters_that_hand_back_what_is_sent_do_no_harm() {
     // With crossed wires or a dead slave, the echo is not taken for an answer.
     let mut world = World::new("500k", "echo");
     world.slave.misbehave(Some(SlaveFault::Mute));
-    assert!(world.fails().contains("only the echo of the adapter was heard"));
+    assert!(world.fails().contains("only the echo of the adapter received"));
 }
 
 #[test]

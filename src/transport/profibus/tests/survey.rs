@@ -35,7 +35,7 @@ fn a_slave_is_found_and_nothing_about_it_changes() {
     let [slave] = &found[..] else { panic!("{found:?}") };
     assert_eq!((slave.station, slave.kind), (5, Station::Slave));
     let diagnosis = slave.diagnosis.as_ref().unwrap().to_string();
-    assert_eq!(diagnosis, "not ready for data, wants parameters, no master, ident 0x1234");
+    assert_eq!(diagnosis, "not ready for data, needs parameters, no master, ident 0x1234");
     assert_eq!(slave.configuration.as_deref().unwrap(), [0xC0, 0xD7, 0xD7]);
     assert_eq!(slave.inputs, Err(Unknown::Refused(Status::NoService)));
     assert_eq!((world.slave.owner(), world.slave.peer().history.len()), (None, 0));

@@ -140,7 +140,7 @@ async fn an_adapter_that_is_pulled_out_is_a_loss_and_is_opened_again() {
 #[tokio::test]
 async fn what_is_no_port_is_an_error() {
     let error = Connection::open(settings(), opener("/dev/there-is-no-such-port"), None).await.unwrap_err();
-    assert_eq!(error.to_string(), "/dev/there-is-no-such-port: there is no such port");
+    assert_eq!(error.to_string(), "/dev/there-is-no-such-port: no such port");
     let error = Connection::open(settings(), opener("/dev/null"), None).await.unwrap_err();
     assert_eq!(error.to_string(), "/dev/null: this is not a serial port");
 }

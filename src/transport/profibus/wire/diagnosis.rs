@@ -67,13 +67,13 @@ const FLAGS: [(Flag, usize, u8, &str); 15] = [
     (Flag::InvalidAnswer, 0, 0x20, "invalid answer"),
     (Flag::ParameterFault, 0, 0x40, "wrong parameters"),
     (Flag::Locked, 0, 0x80, "locked by another master"),
-    (Flag::ParametersWanted, 1, 0x01, "wants parameters"),
+    (Flag::ParametersWanted, 1, 0x01, "needs parameters"),
     (Flag::Static, 1, 0x02, "no valid data"),
     (Flag::Watchdog, 1, 0x08, "watchdog on"),
     (Flag::Freeze, 1, 0x10, "inputs frozen"),
     (Flag::Sync, 1, 0x20, "outputs held by sync"),
     (Flag::Deactivated, 1, 0x80, "deactivated"),
-    (Flag::Overflow, 2, 0x80, "more diagnosis than fits"),
+    (Flag::Overflow, 2, 0x80, "diagnosis overflow"),
 ];
 
 /// A bit that is always set.
@@ -183,7 +183,7 @@ impl Diagnosis {
 }
 
 impl fmt::Display for Diagnosis {
-    /// Format: `not ready for data, wants parameters, no master, ident 0x1234`.
+    /// Format: `not ready for data, needs parameters, no master, ident 0x1234`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for text in self.words() {
             write!(f, "{text}, ")?;

@@ -156,8 +156,8 @@ fn frame(bytes: &[u8], at: usize, len: usize) -> Result<Parsed, WireError> {
         rest += 1;
         Ok(Some(sap))
     };
-    let to_sap = sap(body[0], "service access point there")?;
-    let from_sap = sap(body[1], "service access point here")?;
+    let to_sap = sap(body[0], "service access point of the receiver")?;
+    let from_sap = sap(body[1], "service access point of the sender")?;
     let frame = Frame {
         to: body[0] & !EXTENDED,
         from: body[1] & !EXTENDED,

@@ -96,7 +96,10 @@ fn what_is_wrong_is_named() {
         ("DC 7E 02", "address at offset 1: is 0x7e"),
         ("00", "start delimiter at offset 0: is 0x00"),
         ("10 05 02 C9 D0 16", "function code at offset 3: is 0xc9"),
-        ("10 85 02 49 D0 16", "service access point there at offset 4: needs 1 bytes, 0 are there"),
+        (
+            "10 85 02 49 D0 16",
+            "service access point of the receiver at offset 4: needs 1 bytes, but only 0 are present",
+        ),
     ] {
         assert_eq!(Telegram::parse(&hex(text)).unwrap_err().to_string(), message, "{text}");
     }
@@ -105,15 +108,15 @@ fn what_is_wrong_is_named() {
 #[test]
 fn a_diagnosis_reads_in_words() {
     let text = |data: &str| Diagnosis::parse(&hex(data)).unwrap().to_string();
-    assert_eq!(text("02 05 00 FF 12 34"), "not ready for data, wants parameters, no master, ident 0x1234");
+    assert_eq!(text("02 05 00 FF 12 34"), "not ready for data, needs parameters, no master, ident 0x1234");
     assert_eq!(text("00 0C 00 02 12 34"), "watchdog on, master 2, ident 0x1234");
     assert_eq!(
         text("C8 04 80 09 00 01 03 AA BB 42 05 83 45 26 C1"),
-        "wrong parameters, locked by another master, more diagnosis than fits, master 9, ident 0x0001, device AABB, \
+        "wrong parameters, locked by another master, diagnosis overflow, master 9, ident 0x0001, device AABB, \
          modules 0 2, module 3 input channel 5: line break, revision 1"
     );
     let error = Diagnosis::parse(&hex("08 04 00 FF 12 34 05 01")).unwrap_err();
-    assert_eq!(error.to_string(), "block of the diagnosis at offset 6: needs 5 bytes, 2 are there");
+    assert_eq!(error.to_string(), "block of the diagnosis at offset 6: needs 5 bytes, but only 2 are present");
 }
 
 #[test]

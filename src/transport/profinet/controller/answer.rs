@@ -65,10 +65,10 @@ impl Controller {
             match response {
                 Response::Ar { uuid, session_key, mac: card } => {
                     if *uuid != ar.uuid || *session_key != ar.session_key {
-                        return Err(senseless("it is for another connection"));
+                        return Err(senseless("it belongs to another connection"));
                     }
                     if *card != mac {
-                        return Err(senseless("another card answers than the one that was found"));
+                        return Err(senseless("the answer is from another network card"));
                     }
                     has_ar = true;
                 }
@@ -85,19 +85,19 @@ impl Controller {
             }
         }
         if !has_ar {
-            return Err(senseless("it does not name the connection"));
+            return Err(senseless("it does not contain the connection"));
         }
         let (Some(input), Some(output)) = (input, output) else {
-            return Err(senseless("it does not name the cyclic data of both directions"));
+            return Err(senseless("it does not contain the cyclic data of both directions"));
         };
         let range = match self.settings.startup {
             Startup::Advanced => id::RT_CLASS_1,
             Startup::Legacy => id::RT_CLASS_1_LEGACY,
         };
         if !range.contains(&input) || !range.contains(&output) {
-            return Err(senseless("the FrameIDs are not those of the class that was asked for"));
+            return Err(senseless("the FrameIDs do not match the requested class"));
         }
-        let alarm = alarm.ok_or_else(|| senseless("it does not name the alarms"))?;
+        let alarm = alarm.ok_or_else(|| senseless("it does not contain the alarm channel"))?;
         ar.input_id = input;
         ar.io = Some(Io {
             output_id: output,
@@ -128,12 +128,12 @@ impl Controller {
         let blocks = block::walk(&blocks).map_err(malformed)?;
         let senseless = |why| ProfinetError::Senseless { what: PRM_END, why };
         let found = blocks.iter().find(|block| block.kind == BlockType::PRM_END.answer());
-        let control = Control::parse(found.ok_or_else(|| senseless("its block is missing"))?).map_err(malformed)?;
+        let control = Control::parse(found.ok_or_else(|| senseless("the block is missing"))?).map_err(malformed)?;
         if control.ar != self.uuid() {
-            return Err(senseless("it is for another connection"));
+            return Err(senseless("it belongs to another connection"));
         }
         if control.command != Control::DONE {
-            return Err(senseless("it is not done"));
+            return Err(senseless("the device did not confirm it"));
         }
         self.await_ready(now);
         Ok(())

@@ -34,7 +34,7 @@ fn a_file_that_others_wrote_is_the_layout_it_was_written_for() {
     assert_eq!(head.parameters(&chosen), Ok(Vec::new()));
     assert_eq!(head.choose(46, 48), None);
     let swapped = [(2, chosen[0].1)];
-    assert!(head.layout(&swapped).unwrap_err().contains("does not fit slot 2"));
+    assert!(head.layout(&swapped).unwrap_err().contains("is not possible in slot 2"));
 }
 
 const OWN: &str = r#"<?xml version="1.0" encoding="iso-8859-1"?>
@@ -104,15 +104,15 @@ fn mistakes_are_named_with_line_and_element() {
         ("VendorID=\"0x0123\"", "", 3, "DeviceIdentity", "VendorID is missing"),
         ("DeviceID=\"77\"", "DeviceID=\"70000\"", 3, "DeviceIdentity", "above 65535"),
         ("ModuleIdentNumber=\"0x40\"", "ModuleIdentNumber=\"x\"", 14, "ModuleItem", "not a number: 'x'"),
-        ("ModuleItemTarget=\"N\"", "ModuleItemTarget=\"Q\"", 8, "ModuleItemRef", "no ModuleItem 'Q'"),
-        ("DataType=\"Unsigned16\"/", "DataType=\"Blob\"/", 16, "DataItem", "'Blob' is not known"),
+        ("ModuleItemTarget=\"N\"", "ModuleItemTarget=\"Q\"", 8, "ModuleItemRef", "ModuleItem 'Q' is missing"),
+        ("DataType=\"Unsigned16\"/", "DataType=\"Blob\"/", 16, "DataItem", "'Blob' is unknown"),
         ("PhysicalSlots=\"0..3\"", "PhysicalSlots=\"a..3\"", 5, "DeviceAccessPointItem", "not a valid list of numbers"),
         ("FixedInSlots=\"1\"", "FixedInSlots=\"0..65535 0..65535\"", 8, "ModuleItemRef", "more than 4096"),
-        ("ID=\"MS\"", "FixedInSubslots=\"1..600\"", 15, "VirtualSubmoduleItem", "512 submodules are the most"),
-        ("Data=\"0x01,0x02\"", "Data=\"0x01,0x200\"", 18, "Const", "are no bytes"),
-        ("ByteOffset=\"5\"", "ByteOffset=\"8\"", 20, "Ref", "does not fit its record"),
+        ("ID=\"MS\"", "FixedInSubslots=\"1..600\"", 15, "VirtualSubmoduleItem", "at most 512 submodules are possible"),
+        ("Data=\"0x01,0x02\"", "Data=\"0x01,0x200\"", 18, "Const", "is not a list of bytes"),
+        ("ByteOffset=\"5\"", "ByteOffset=\"8\"", 20, "Ref", "too long for its record"),
         ("DefaultValue=\"258\"", "DefaultValue=\"65536000\"", 19, "Ref", "is no Unsigned16"),
-        ("</ModuleList>", "", 24, "file", "no XML"),
+        ("</ModuleList>", "", 24, "file", "not XML"),
     ];
     for (from, to, line, element, problem) in cases {
         let broken = OWN.replacen(from, to, 1);
@@ -124,7 +124,7 @@ fn mistakes_are_named_with_line_and_element() {
     }
     assert!(Gsdml::parse(b"").is_err());
     let bomb = "<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>";
-    assert!(Gsdml::parse(bomb.as_bytes()).unwrap_err().problem.contains("no XML"));
+    assert!(Gsdml::parse(bomb.as_bytes()).unwrap_err().problem.contains("not XML"));
 }
 
 proptest! {

@@ -377,9 +377,9 @@ pub fn describe_error(error: u8) -> &'static str {
         2 => "the station does not have this setting, or no value for it",
         3 => "the station did not take the value",
         4 => "the station is out of resources",
-        5 => "not possible for reasons of the station's own",
+        5 => "not possible at the moment, for a reason in the station",
         6 => "not while a controller is connected to the station",
-        _ => "an error without a name",
+        _ => "an unknown error",
     }
 }
 
@@ -402,7 +402,7 @@ pub fn check_name(name: &str) -> Result<(), String> {
     }
     let first = name.split('.').next().unwrap_or_default();
     if is_port(first) {
-        return Err(format!("'{first}' is kept for names of ports"));
+        return Err(format!("'{first}' is reserved for port names"));
     }
     if name.split('.').count() == 4 && name.split('.').all(|label| label.parse::<u16>().is_ok()) {
         return Err("it looks like an IP address".to_owned());
@@ -510,8 +510,8 @@ mod tests {
             ("a..b", "the part ''"),
             ("-a.b", "begins or ends"),
             ("a.b-", "begins or ends"),
-            ("port-001", "names of ports"),
-            ("port-001-00002.cell", "names of ports"),
+            ("port-001", "port names"),
+            ("port-001-00002.cell", "port names"),
             ("192.168.0.1", "IP address"),
         ];
         for (name, reason) in cases {

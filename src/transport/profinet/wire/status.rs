@@ -61,11 +61,11 @@ const BLOCKS: [(u8, &str, Fields); 8] = [
             (0x15, "the number of data objects"),
             (0x16, "a slot of a data object"),
             (0x17, "a subslot of a data object"),
-            (0x18, "the place of a data object"),
+            (0x18, "the offset of a data object"),
             (0x19, "the number of consumer statuses"),
             (0x1A, "a slot of a consumer status"),
             (0x1B, "a subslot of a consumer status"),
-            (0x1C, "the place of a consumer status"),
+            (0x1C, "the offset of a consumer status"),
         ],
     ),
     (
@@ -110,21 +110,21 @@ const BLOCKS: [(u8, &str, Fields); 8] = [
     (0x14, "the control block", &[(0x00, "its type"), (0x04, "ARUUID"), (0x05, "SessionKey"), (0x08, "the command")]),
     (0x16, "ApplicationReady", &[]),
     (0x28, "the release block", &[]),
-    (0x3D, "the state of the device", &[(0x00, "it does not fit the call")]),
+    (0x3D, "the state of the device", &[(0x00, "it does not match the call")]),
 ];
 
 /// Errors of the RPC layer (code 1 is 0x40), by code 2.
 const RPC: [(u8, &str); 10] = [
     (0x00, "the length of the arguments is wrong"),
-    (0x01, "there are blocks that it does not know"),
-    (0x02, "cyclic data of a direction is missing"),
-    (0x03, "alarms are asked for in a wrong number"),
-    (0x04, "it has no room for another connection: another controller has it, or the last one has not run out yet"),
-    (0x05, "it does not know the connection: it has ended"),
-    (0x06, "the call does not fit its state"),
-    (0x07, "it could not begin: memory or timers are short"),
-    (0x08, "its resources ran out"),
-    (0x09, "another connection has its ports"),
+    (0x01, "it contains unknown blocks"),
+    (0x02, "the cyclic data of one direction is missing"),
+    (0x03, "wrong number of alarm channels"),
+    (0x04, "no free connection: another controller uses the device, or the last connection has not timed out yet"),
+    (0x05, "unknown connection: it has ended"),
+    (0x06, "the state does not allow this call"),
+    (0x07, "it could not start: not enough memory or timers"),
+    (0x08, "it has no free resources"),
+    (0x09, "another connection uses its ports"),
 ];
 
 /// Errors of record access, by code 1.
@@ -135,11 +135,11 @@ const RECORDS: [(u8, &str); 18] = [
     (0xA7, "the device is busy"),
     (0xA8, "version conflict"),
     (0xA9, "not supported"),
-    (0xB0, "there is no such record"),
+    (0xB0, "no such record"),
     (0xB1, "the length is wrong"),
-    (0xB2, "there is no such slot or subslot"),
-    (0xB3, "the type does not fit"),
-    (0xB4, "there is no such area"),
+    (0xB2, "no such slot or subslot"),
+    (0xB3, "the type does not match"),
+    (0xB4, "no such area"),
     (0xB5, "not in this state"),
     (0xB6, "access is denied"),
     (0xB7, "a value is out of its range"),
@@ -176,11 +176,11 @@ const REASONS: [(u8, &str); 32] = [
     (0x17, "Write failed"),
     (0x18, "a control call failed: mostly ApplicationReady was not answered (is UDP 34964 open on this machine?)"),
     (0x19, "the device asked for a pull or plug of a module"),
-    (0x1A, "the application of the device went away"),
+    (0x1A, "the application of the device has ended"),
     (0x1B, "the link is down"),
-    (0x1C, "a MAC address could not be had"),
+    (0x1C, "a MAC address could not be resolved"),
     (0x1D, "synchronisation was lost"),
-    (0x1E, "the ports of the device do not fit"),
+    (0x1E, "the ports of the device do not match"),
     (0x1F, "the name or the address of the station was changed"),
     (0x20, "the device was reset to factory settings"),
 ];
@@ -232,12 +232,12 @@ impl Status {
             [_, 0x81, 0x01 | 0x40, _] => &["connect again"],
             [_, 0x81, 0x02, 0x07] => &["try startup=legacy in the target"],
             [_, 0x81, 0x02, 0x08 | 0x16..=0x1C] | [_, 0x81, 0x03, _] => {
-                &["compare layout= or gsdml= of the target with what the device has"]
+                &["compare layout= or gsdml= of the target with the modules of the device"]
             }
             [_, 0x81, 0x02, 0x0A..=0x10] => &["set a longer cycle= or another watchdog= in the target"],
             [0xCF, 0x81, 0xFD, 0x05 | 0x06] => &["set a longer watchdog= or cycle= in the target", "check the cable"],
-            [0xCF, 0x81, 0xFD, 0x18] => &["let UDP port 34964 in through the firewall of this machine"],
-            [0xCF, 0x81, 0xFD, 0x1F | 0x20] => &["look the station up again: its name or address was changed"],
+            [0xCF, 0x81, 0xFD, 0x18] => &["open UDP port 34964 in the firewall of this computer"],
+            [0xCF, 0x81, 0xFD, 0x1F | 0x20] => &["search for the station again: its name or address has changed"],
             _ => &[],
         }
     }
@@ -253,8 +253,8 @@ impl Status {
             (0x81, _) => {
                 let (_, block, fields) = BLOCKS.iter().find(|block| block.0 == code1)?;
                 Some(match named(fields, code2) {
-                    Some(field) => format!("it does not take {block}: {field}"),
-                    None => format!("it does not take {block}: field {code2:#04x}"),
+                    Some(field) => format!("it refuses {block}: {field}"),
+                    None => format!("it refuses {block}: field {code2:#04x}"),
                 })
             }
             _ => None,
@@ -280,11 +280,11 @@ mod tests {
     #[test]
     fn statuses_are_told_with_their_bytes() {
         let cases = [
-            (0xDB81_0209, "it does not take cyclic data (IOCRBlockReq): FrameID (DB 81 02 09)"),
-            (0xDB81_01FF, "it does not take the connection (ARBlockReq): field 0xff (DB 81 01 FF)"),
-            (0xDE80_B000, "there is no such record (DE 80 B0 00)"),
+            (0xDB81_0209, "it refuses cyclic data (IOCRBlockReq): FrameID (DB 81 02 09)"),
+            (0xDB81_01FF, "it refuses the connection (ARBlockReq): field 0xff (DB 81 01 FF)"),
+            (0xDE80_B000, "no such record (DE 80 B0 00)"),
             (0xCF81_FD05, "no cyclic data came in time (watchdog or data hold) (CF 81 FD 05)"),
-            (0xDC81_4005, "it does not know the connection: it has ended (DC 81 40 05)"),
+            (0xDC81_4005, "unknown connection: it has ended (DC 81 40 05)"),
             (0x1234_5678, "(12 34 56 78)"),
         ];
         for (status, text) in cases {

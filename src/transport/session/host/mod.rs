@@ -285,7 +285,7 @@ impl Host {
     fn refuse(&mut self, id: u64) {
         if let Some(client) = self.clients.get(&id) {
             let by = client.peer(client.since);
-            (self.say)(&format!("client {} was refused: the robot is read-only ({})", by.pid, by.command));
+            (self.say)(&format!("refused client {}: the robot is read-only ({})", by.pid, by.command));
         }
         let shown = self.held.images().map(|images| images.shown.clone());
         if let Some(client) = self.clients.get(&id) {
@@ -314,7 +314,9 @@ impl Host {
         };
         let refused = if hello.version != VERSION {
             let host = std::process::id();
-            Some(format!("the session is of another version of armctl (process {host}): close it, and open it again"))
+            Some(format!(
+                "the session belongs to another version of armctl (process {host}): close it, and open it again"
+            ))
         } else if hello.key != self.key {
             Some("the session is for another device".to_owned())
         } else {
@@ -381,7 +383,7 @@ impl Host {
         stop(why);
         self.stop_first = Some(Instant::now() + STOP_FIRST);
         if let Some(id) = self.line.filter(|id| !self.is_stop(*id)) {
-            self.break_to(id, &io::Error::new(io::ErrorKind::NotConnected, "the robot is being stopped first"));
+            self.break_to(id, &io::Error::new(io::ErrorKind::NotConnected, "armctl stops the robot first"));
             self.held.pause(id);
             self.line = None;
         }
@@ -448,14 +450,14 @@ impl Host {
         if died {
             let mut what = vec![format!("client {} has died ({})", by.pid, by.command)];
             if self.motion == Some(id) {
-                what.push("it was moving the robot".to_owned());
+                what.push("it moved the robot".to_owned());
             }
             if leaves && !orphans {
-                what.push("the command that it gave is left as it is".to_owned());
+                what.push("its command stays active".to_owned());
             }
             let will = client.will.clone().filter(|will| self.may_show(will));
             if let Some(will) = will.and_then(|will| self.held.images()?.change(will, false)) {
-                what.push("what it was to be stopped by is shown".to_owned());
+                what.push("armctl sends its stop signals".to_owned());
                 orphans = false;
                 self.others(id).for_each(|other| other.send(Frame::Show(will.clone())));
             }
@@ -520,7 +522,7 @@ impl Host {
         let status = self.status();
         let moves = match &status.motion {
             Some(Peer { pid, command, .. }) => Some(format!("client {pid} moves the robot ({command})")),
-            None if status.under_way => Some("the controller shows that something is under way".to_owned()),
+            None if status.under_way => Some("the controller reports a running motion".to_owned()),
             None => None,
         };
         let Some(client) = self.clients.get(&id) else { return false };
@@ -549,22 +551,22 @@ impl Host {
             }
             Happening::Broken { to, error } => self.break_to(to, &error),
             Happening::Lost(why) => {
-                (self.say)(&format!("the link was lost: {why}; it is being opened again"));
+                (self.say)(&format!("the connection was lost: {why}; armctl opens it again"));
                 self.showing.clear();
                 let mover = self.motion.and_then(|id| self.clients.get(&id));
                 // A device with an image link stops by itself after a loss.
                 self.was_lost_in_motion |=
                     mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion) && self.held.images().is_none();
                 if self.leftover.take().is_some() {
-                    (self.say)("what a client had left under way went with it");
+                    (self.say)("the command that a client left active has ended too");
                 }
                 self.everybody(|| Frame::Control(Control::Lost(why.clone())));
             }
             Happening::Reopened => {
                 self.reopenings = self.reopenings.saturating_add(1);
-                (self.say)("the link is open again");
+                (self.say)("the connection is open again");
                 if std::mem::take(&mut self.was_lost_in_motion) {
-                    self.stop_before_all("the link was lost while a client moved the robot");
+                    self.stop_before_all("the connection was lost while a client moved the robot");
                 }
                 if let Some(images) = self.held.images() {
                     let (generation, shown) = (images.generation, images.shown.clone());

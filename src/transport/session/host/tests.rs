@@ -330,7 +330,7 @@ async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
         let stop = async {
             drop(line);
             let (mut line, _) = device.accept().await.unwrap();
-            assert!(orders.recv().await.unwrap().contains("the link was lost"));
+            assert!(orders.recv().await.unwrap().contains("the connection was lost"));
             mover.over();
             let Found::Session(mut stop) = attach_at(&spot, "key", "stop", Purpose::Stop).await.unwrap() else {
                 panic!("the session is there")

@@ -289,10 +289,10 @@ impl Node {
     /// Handles a STATE message of the host.
     fn host_says(&mut self, message: &Message, now_ms: u64) -> Reaction {
         let Ok(state) = StateBirthDeathCertificate::try_from(&message.payload[..]) else {
-            return ignored("a state of the host that cannot be read");
+            return ignored("an unreadable state of the host");
         };
         if self.host.is_some_and(|(known, _)| state.timestamp < known) {
-            return ignored("a state of the host that is older than the one before");
+            return ignored("a state of the host that is older than the last one");
         }
         self.host = Some((state.timestamp, state.online));
         let name = self.names.host.clone().unwrap_or_default();
@@ -309,7 +309,7 @@ impl Node {
                     messages: vec![self.death(now_ms)],
                     note: Some((
                         Level::Notice,
-                        format!("the primary host {name} is offline: what is found waits for it"),
+                        format!("the primary host {name} is offline: armctl stores the data for it"),
                     )),
                     leaves: true,
                 }
@@ -325,24 +325,27 @@ impl Node {
     /// Handles a command of the host. Only rebirth is supported.
     fn ordered(&mut self, message: &Message, now_ms: u64) -> Reaction {
         let Ok(payload) = Payload::decode(&message.payload[..]) else {
-            return ignored("a command that cannot be read");
+            return ignored("an unreadable command");
         };
         let is_rebirth = |metric: &Metric| {
             metric.name.as_deref() == Some(NODE_CONTROL_REBIRTH) && metric.value == Some(Value::BooleanValue(true))
         };
         if !payload.metrics.iter().any(is_rebirth) {
-            return ignored("a command: armctl publishes, and takes no orders");
+            return ignored("a command: armctl only publishes");
         }
         if !self.is_born || now_ms.saturating_sub(self.born_ms) < BIRTHS_MS {
-            return ignored("an order to be born again, right behind a birth");
+            return ignored("a rebirth command directly after a birth");
         }
-        let note = Some((Level::Detail, "a host asks for the births again".to_owned()));
+        let note = Some((Level::Detail, "a host requested a rebirth".to_owned()));
         Reaction { messages: self.births(now_ms), note, leaves: false }
     }
 }
 
 fn ignored(what: &str) -> Reaction {
-    Reaction { note: Some((Level::Detail, format!("ignored from the broker: {what}"))), ..Reaction::default() }
+    Reaction {
+        note: Some((Level::Detail, format!("ignored a message from the broker: {what}"))),
+        ..Reaction::default()
+    }
 }
 
 fn named(name: &str, kind: DataType, value: Value, now_ms: u64) -> Metric {
@@ -393,7 +396,7 @@ impl Speech for Node {
         } else if message.topic == self.topic(&NodeMessage::NCmd) {
             self.ordered(message, now_ms)
         } else {
-            ignored("something that nobody asked for")
+            ignored("an unexpected topic")
         }
     }
 

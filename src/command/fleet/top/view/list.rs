@@ -93,7 +93,7 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
         }
     }
     if listed.is_empty() {
-        painter.left(after(line_of(room, 1), 2), "no robot fits the filter", painter.palette.quiet());
+        painter.left(after(line_of(room, 1), 2), "no robot matches the filter", painter.palette.quiet());
     } else if area.height > 2 {
         trouble(painter, line_of(area, area.height - 1), model);
     }

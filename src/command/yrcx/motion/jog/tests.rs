@@ -53,15 +53,15 @@ fn a_jog_is_stopped_even_if_an_interrupt_shall_leave_what_moves() {
 
 #[test]
 fn an_end_by_itself_is_told_as_it_is() {
-    // At a limit.
+    // Ended by a soft limit.
     let (outcome, peer) = run_on(Scripted::new([ends(100, &[0x4000, 2, 334])]), &TWO_SECONDS);
     let failure = outcome.unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("2.334")));
     assert_eq!(peer.bits, [REST]);
-    // By somebody else's stop input.
+    // Ended by the stop input of another client.
     let (outcome, _) = run_on(Scripted::new([Reply::Ends(100, answer("4.2.6-pulse"))]), &TWO_SECONDS);
     assert_eq!(outcome.unwrap_err().code.as_deref(), Some("12.400"));
-    // With the normal end that the manual has a layout for.
+    // Ended with the normal reply of the manual.
     let (outcome, _) = run_on(Scripted::new([ends(100, &[0x0200, 0, 0, 0, 5])]), &TWO_SECONDS);
     assert_eq!(outcome.unwrap()["position"]["joints"][0]["pulses"], 5);
 }
@@ -75,12 +75,12 @@ fn what_does_not_end_leaves_the_stop_input_off() {
         assert!(failure.message.contains("the stop input SI(06) stays off"), "{failure}");
         assert_eq!(peer.bits, [REST, HELD]);
     };
-    // It goes on in spite of the stop input.
+    // The axis does not stop with the stop input.
     stays(ends(u32::MAX, &[0]), &TWO_SECONDS);
-    // It is not seen to have been taken, or not any more.
+    // The command is not accepted, or its run status disappears.
     stays(Reply::Ignores, &JOG);
     stays(ends(20, &[0]), &JOG);
-    // The status is none that there is.
+    // The status is invalid.
     stays(ends(20, &[0x1234]), &JOG);
 }
 
@@ -106,7 +106,7 @@ fn a_link_that_is_lost_rests_with_the_stop_input_off() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(1)), ends(0, &[0x0200])]));
     let failure = bench.run(&JOG).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.contains("it is up again, and the stop input SI(06) is off"), "{failure}");
+    assert!(failure.message.contains("the connection is up again, and the stop input SI(06) is off"), "{failure}");
     bench.run(&["alarm", "reset"]).unwrap();
     assert_eq!(bench.peer(|peer| peer.bits.clone()), [REST, HELD]);
     bench.run(&["io", "set", "stop=on"]).unwrap();
@@ -118,12 +118,12 @@ fn a_link_that_stays_down_promises_nothing_of_the_stop_input() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(3600))]));
     let failure = bench.run(&JOG).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.ends_with("the link went down; it is still down"), "{failure}");
+    assert!(failure.message.ends_with("the connection was lost; it is still down"), "{failure}");
 }
 
 #[test]
 fn what_cannot_be_meant_is_rejected() {
-    assert!(words(&["jog", "tool", "5", "+"]).unwrap_err().message.contains("there are 1 to 4"));
+    assert!(words(&["jog", "tool", "5", "+"]).unwrap_err().message.contains("must be from 1 to 4"));
     assert!(words(&["jog", "tool", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
     assert!(objection(&["jog", "pulse", "1"]).contains("<DIRECTION>"));
     assert!(objection(&["jog", "pulse", "1", "+", "--for", "0s"]).contains("no time"));

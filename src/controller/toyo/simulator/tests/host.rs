@@ -50,7 +50,7 @@ fn everything_else_is_answered_without_the_host() {
         let mut bench = Bench::new("card = \"written\"\nwrite = [\"WPAR M10 E\"]");
         let answer = bench.ask(&format!("@{}", row.word));
         assert!(Request::bare(row.command).answer(&answer).is_ok(), "{}: {answer}", row.word);
-        assert_eq!(bench.console("why"), "nothing was refused", "{}", row.word);
+        assert_eq!(bench.console("why"), "no command was refused", "{}", row.word);
     }
 }
 
@@ -71,7 +71,7 @@ fn the_pendant_takes_the_hosts_place() {
 #[test]
 fn the_start_input_counts_while_the_host_is_off() {
     let mut bench = Bench::with(&["CNT+ CN01=0001", "END"], "");
-    assert!(bench.sim.console(bench.now, "start").unwrap_err().contains("host is on"));
+    assert!(bench.sim.console(bench.now, "start").unwrap_err().contains("host is ON"));
     bench.console("input 0/SY/2 on");
     bench.rest();
     assert_eq!(bench.counter(1), 0);

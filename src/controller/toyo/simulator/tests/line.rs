@@ -46,14 +46,14 @@ fn what_the_line_damaged_has_no_answer() {
 #[test]
 fn what_is_no_command_is_refused() {
     let mut bench = Bench::ready("");
-    bench.ng("@XXXX", "no command");
-    bench.ng("@stas SNO=0", "no command");
+    bench.ng("@XXXX", "unknown command");
+    bench.ng("@stas SNO=0", "unknown command");
     bench.ng("@STAS SNO=5", "out of range");
-    bench.ng("@STAS  SNO=0", "not in form");
+    bench.ng("@STAS  SNO=0", "wrong format");
     bench.ng("@WSTX 0001 SPD V=5", "is not a number");
     bench.ng("@WPAR M01 0/1/1", "is not a number");
     bench.ng("@MINT PR=5", "PR=");
-    bench.ng("@WSTX 0001 JUMP TAG=001", "no instruction");
+    bench.ng("@WSTX 0001 JUMP TAG=001", "unknown instruction");
     assert_eq!(bench.ask("@HTSK TASK=02"), "@OK", "as the list of commands has it");
     let long = [b"@WSTX 0001 NOP".as_slice(), &[b' '; 200], b"\r"].concat();
     assert_eq!(sent(&mut bench, &long), b"@NG\r\n");

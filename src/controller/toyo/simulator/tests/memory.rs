@@ -33,7 +33,7 @@ fn steps_are_shared_out() {
     assert_eq!(bench.ask("@RSTX 0003"), "@RSTX 0003 NOP", "what was cut off is gone");
     assert_eq!(bench.ask("@RSTX 5000"), "@RSTX 5000 NOP");
     assert_eq!(bench.ask("@RESY PNO=01 ST=000"), "@RESY PNO=01 ST=000 START=000 LOOP=0000 END=000");
-    bench.ng("@WESY PNO=01 ST=000 START=001 LOOP=0002 END=003", "no such place");
+    bench.ng("@WESY PNO=01 ST=000 START=001 LOOP=0002 END=003", "no such memory address");
 }
 
 #[test]
@@ -56,10 +56,10 @@ fn steps_are_inserted_deleted_and_copied() {
     assert_eq!(list(&mut bench), ["SPD V=03", "NOP", "NOP", "NOP", "NOP"]);
     bench.ok("@CPSS TASK=01 STA=0001 END=0001 TASK=02 TOP=0003");
     assert_eq!(bench.sim.step(2, 3).unwrap().written(), "SPD V=03");
-    bench.ng("@CPSS TASK=01 STA=0001 END=0005 TASK=02 TOP=0003", "no such place");
-    bench.ng("@DSTL STA=0003 END=0001", "no such place");
+    bench.ng("@CPSS TASK=01 STA=0001 END=0005 TASK=02 TOP=0003", "no such memory address");
+    bench.ng("@DSTL STA=0003 END=0001", "no such memory address");
     bench.ok("@CTSK TASK=02");
-    bench.ng("@ISTX 0001", "no such place");
+    bench.ng("@ISTX 0001", "no such memory address");
 }
 
 #[test]
@@ -151,11 +151,11 @@ fn memory_is_cleared_in_part_or_whole() {
 fn the_card_takes_its_time_and_brings_everything_back() {
     let mut bench = Bench::ready(&format!("card = \"empty\"\n{FULL}"));
     assert_eq!(bench.page(3), 0b0011_0001);
-    bench.ng("@RMCA", "no memory card that was written");
+    bench.ng("@RMCA", "no memory card with data");
     bench.ok("@WMCA");
     assert_eq!(bench.page(3), 0b1011_0001);
-    bench.ng("@WPAR M09 E", "being read or written");
-    bench.ng("@SPST 0001", "being read or written");
+    bench.ng("@WPAR M09 E", "in use");
+    bench.ng("@SPST 0001", "in use");
     assert_eq!(bench.ask("@RPAR M09"), "@RPAR M09 J");
     bench.pass(2000);
     assert_eq!(bench.page(3), 0b0011_0001);
@@ -184,7 +184,7 @@ fn a_card_that_is_taken_out_is_an_error() {
     bench.ng("@WMCA", "no memory card");
     bench.console("card in");
     bench.ok("@CERR");
-    bench.ng("@RMCA", "no memory card that was written");
+    bench.ng("@RMCA", "no memory card with data");
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn line_speed_is_along_the_line_and_axis_speed_that_of_the_longest_way() {
 fn override_counts_while_nothing_runs() {
     let mut bench = Bench::with(&[TO_100, "END"], "");
     bench.ok("@SPST 0001");
-    bench.ng("@WOVR OV=050", "being executed");
+    bench.ng("@WOVR OV=050", "or jog runs");
     bench.rest();
     bench.ok("@WOVR OV=050");
     assert_eq!(bench.ask("@ROVR"), "@ROVR OV=050");
@@ -212,7 +212,7 @@ fn a_move_needs_origin_and_servo_power() {
     bench.ng("@HOME", "servo power is off");
     bench.run();
     assert_eq!(bench.error(), Some(0x62));
-    bench.ng("@SPST 0001", "there is an error");
+    bench.ng("@SPST 0001", "an error is active");
     bench.ok("@CERR");
     bench.ok("@SVON");
     bench.run();
@@ -291,7 +291,7 @@ fn the_origin_is_sought_axis_by_axis() {
     assert_eq!(bench.page(0), 0b0010_0000);
     bench.ok("@HOME");
     assert_eq!(bench.page(0), 0b0000_1010, "it is executed, returns, and is not complete");
-    bench.ng("@SPST 0001", "being executed");
+    bench.ng("@SPST 0001", "or jog runs");
     bench.pass(500);
     bench.at([0.0, 0.0, bench.sim.state().position[2], 0.0]);
     assert!(bench.sim.state().position[2] < -5.0, "Z comes first (P07)");
@@ -341,7 +341,7 @@ fn jog_is_reset_first_and_moves_one_axis() {
     bench.ng("@JGST X=+H Y=RS Z=SP R=SP", "SP");
     bench.ok("@JGST X=+H Y=SP Z=SP R=SP");
     bench.ok("@JGST X=+H Y=SP Z=SP R=SP");
-    bench.ng("@JGST X=-H Y=SP Z=SP R=SP", "being executed");
+    bench.ng("@JGST X=-H Y=SP Z=SP R=SP", "or jog runs");
     bench.pass(1000);
     bench.ok("@JGST X=SP Y=SP Z=SP R=SP");
     assert_eq!(bench.page(0) & 0b10, 0b10);
@@ -553,7 +553,7 @@ fn synchronized_axes_move_together() {
     bench.run();
     assert_eq!(bench.error(), Some(0x64));
     bench.ok("@CERR");
-    bench.ng("@SORG 2", "drives none");
+    bench.ng("@SORG 2", "no driven axis");
     bench.ok("@SORG 1");
     bench.rest();
     bench.run();

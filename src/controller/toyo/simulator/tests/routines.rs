@@ -157,7 +157,7 @@ fn external_points_are_moved_to() {
     let mut bench = Bench::ready(&toml);
     assert_eq!(bench.page(2) & 0b11, 0b10);
     bench.ok("@EXTP PT=007");
-    bench.ng("@EXTP PT=007", "being executed");
+    bench.ng("@EXTP PT=007", "or jog runs");
     bench.rest();
     bench.at([70.0, 7.0, 0.0, 0.0]);
     bench.ok("@EXTP PT=008");

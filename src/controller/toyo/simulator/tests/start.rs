@@ -21,19 +21,19 @@ fn the_example_is_a_start_state() {
 fn every_key_of_the_example_is_explained_by_its_mistake() {
     for (toml, what) in [
         ("modell = 1", "line 1: unknown field"),
-        ("axes = 5", "line 1: a controller has 1 to 4 axes"),
-        ("\nmodel = \"X\"", "line 2: a model is one of"),
+        ("axes = 5", "line 1: axes must be from 1 to 4"),
+        ("\nmodel = \"X\"", "line 2: model must be one of"),
         ("version = \"x\"", "line 1: a version"),
         ("busy = 2.0", "line 1: busy"),
         ("instruction_us = 0", "line 1: an instruction"),
-        ("steps.1 = [\n\"NOP\",\n\"JUMP\"]", "line 3: there is no instruction 'JUMP'"),
+        ("steps.1 = [\n\"NOP\",\n\"JUMP\"]", "line 3: unknown instruction 'JUMP'"),
         ("steps.1 = [\n\"SPD V=11\"]", "line 2: speed: 11 is out of range"),
         ("steps.5 = [\"NOP\"]", "line 1: '5' is not a number from 1 to 4"),
         ("points.1.1000 = [0.0, 0.0, 0.0, 0.0]", "line 1: '1000' is not a number from 1 to 999"),
         ("points.1.1 = [9000.0, 0.0, 0.0, 0.0]", "line 1: x: 9000.00 is out of range"),
         ("speeds = { 1 = 0.0 }", "line 1: speed: 0.0 is out of range"),
         ("counters = { 1 = 10000 }", "line 1: counters"),
-        ("inputs = { \"0/24\" = \"00000000\" }", "line 1: there is no input port 0/24"),
+        ("inputs = { \"0/24\" = \"00000000\" }", "line 1: no input port 0/24"),
         ("inputs = { \"1\" = \"00000000\" }", "line 1: '1' is not a port"),
         ("outputs = { \"0/01\" = \"2\" }", "line 1: a port has eight"),
         ("write = [\"SPST 0001\"]", "line 1: only WPAR"),
@@ -41,8 +41,8 @@ fn every_key_of_the_example_is_explained_by_its_mistake() {
         ("history = [{ }]", "line 1: an entry has a code"),
         ("robot_types = []", "line 1: robot types"),
         ("position = [9000.0, 0.0, 0.0, 0.0]", "line 1: coordinates"),
-        ("[[event]]\nat_ms = 1\ndo = \"dance\"", "line 1: no such line: 'dance'"),
-        ("[[event]]\nat_ms = 1\ndo = \"input 0/24/1 on\"", "line 1: there is no input port 0/24"),
+        ("[[event]]\nat_ms = 1\ndo = \"dance\"", "line 1: unknown command: 'dance'"),
+        ("[[event]]\nat_ms = 1\ndo = \"input 0/24/1 on\"", "line 1: no input port 0/24"),
     ] {
         let error = Start::parse(toml).map(|_| ()).unwrap_err();
         assert!(error.starts_with(what), "{toml}: {error}");
@@ -76,7 +76,7 @@ fn events_happen_in_their_time() {
     // A scheduled line that became impossible is reported.
     let mut bench = Bench::new("[[event]]\nat_ms = 1000\ndo = \"servo on\"\n[[event]]\nat_ms = 500\ndo = \"estop\"");
     bench.pass(2000);
-    assert_eq!(bench.console("why"), "servo on: there is an error: cancel it first");
+    assert_eq!(bench.console("why"), "servo on: an error is active: cancel it first");
 }
 
 #[test]
@@ -95,14 +95,14 @@ fn the_console_tells_how_it_is() {
     bench.ng("@JGST X=+L Y=SP Z=SP R=SP", "not reset");
     assert_eq!(bench.console("why"), "@JGST X=+L Y=SP Z=SP R=SP: JOG was not reset (RS)");
     for (line, what) in [
-        ("dance", "no such line: 'dance'"),
-        ("input 0/24/1 on", "there is no input port 0/24"),
+        ("dance", "unknown command: 'dance'"),
+        ("input 0/24/1 on", "no input port 0/24"),
         ("input 0/01/9 on", "'9' is not a number from 1 to 8"),
         ("input 0/01/1 up", "'up' is not on or off"),
-        ("error XX", "an error has a code from 01 to FF"),
+        ("error XX", "the code of an error must be from 01 to FF"),
         ("obstacle Q 1", "'Q' is not X, Y, Z or R"),
         ("obstacle X nan", "'nan' is not a coordinate in mm, or off"),
-        ("start 1", "the host is on: it alone starts programs"),
+        ("start 1", "the host is ON: only the host starts programs"),
     ] {
         assert_eq!(bench.sim.console(bench.now, line).unwrap_err(), what);
     }

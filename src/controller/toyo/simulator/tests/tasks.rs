@@ -185,10 +185,10 @@ fn reset_begins_anew() {
     assert_eq!(bench.ask("@RSTX 0000"), "@RSTX 0001 OUT STN=0 PN01=.......1");
     bench.ok("@WSTX 0002 TIM TM=100.0");
     bench.ok("@SPST 0000");
-    bench.ng("@REST", "being executed");
-    bench.ng("@WSTX 0001 NOP", "being executed");
-    bench.ng("@MSTP", "being executed");
-    bench.ng("@HOME", "being executed");
+    bench.ng("@REST", "or jog runs");
+    bench.ng("@WSTX 0001 NOP", "or jog runs");
+    bench.ng("@MSTP", "or jog runs");
+    bench.ng("@HOME", "or jog runs");
 }
 
 #[test]

@@ -200,10 +200,10 @@ fn mistakes_in_a_start_state_are_told_with_their_line() {
         ("variables = { B0 = 256 }", "line 1: B0: the value must be 0 to 255"),
         ("variables = { Q0 = 1 }", "'Q0' is not a valid variable"),
         ("\nio = { 10018 = true }", "line 2: '10018' is not a signal"),
-        ("\n[[event]]\nat_ms = 0\ndo = 'alrm 1'", "no such line: 'alrm 1'"),
+        ("\n[[event]]\nat_ms = 0\ndo = 'alrm 1'", "unknown command: 'alrm 1'"),
         ("[[file]]\nname = 'A.JBI'\ntext = 'x'", "'A.JBI' does not hold a job"),
         ("[[file]]\nname = 'A.DAT'\npath = 'nowhere'", "nowhere: no nowhere here"),
-        ("job = 'NOBODY'", "there is no job 'NOBODY'"),
+        ("job = 'NOBODY'", "no job 'NOBODY'"),
         ("groups = ['R1', 'R9']", "'R9' is not a group"),
     ];
     for (text, expected) in cases {
@@ -219,7 +219,7 @@ fn the_console_says_what_is_wrong() {
     assert_eq!(wrong("servo maybe"), "'maybe' is not on or off");
     assert_eq!(wrong("io 10018 on"), "#10018: robot user output signals end in 0 to 7");
     assert_eq!(wrong("alarm 0"), "'0' is not a number from 1 to 9999");
-    assert!(wrong("dance").starts_with("no such line: 'dance'"));
+    assert!(wrong("dance").starts_with("unknown command: 'dance'"));
     bench.set_word(0x83, 3, 1);
     assert_eq!(bench.simulator.console(Now::ZERO, "mode teach"), Err("the pendant is locked by HLOCK".into()));
     assert!(bench.console("robot").contains("play mode, command remote, servo on, one cycle, hlock"));

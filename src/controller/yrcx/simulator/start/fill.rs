@@ -31,7 +31,7 @@ pub(super) fn robots(
 ) -> Result<(), String> {
     source.each(entries, |entry| {
         if world.robots.len() >= ROBOTS {
-            return Err(format!("there are {ROBOTS} robots at most"));
+            return Err(format!("at most {ROBOTS} robots are possible"));
         }
         world.robots.push(robot(entry, power)?);
         Ok(())
@@ -40,7 +40,7 @@ pub(super) fn robots(
 
 fn robot(entry: &RobotEntry, power: bool) -> Result<Robot, String> {
     if !(1..=AXES).contains(&entry.axes) {
-        return Err(format!("a robot has 1 to {AXES} axes"));
+        return Err(format!("a robot must have 1 to {AXES} axes"));
     }
     let longest = [
         entry.pulses_per_unit.len(),
@@ -55,18 +55,18 @@ fn robot(entry: &RobotEntry, power: bool) -> Result<Robot, String> {
     ];
     if longest.iter().chain(entry.parameters.values().map(Vec::len).collect::<Vec<_>>().iter()).any(|n| *n > entry.axes)
     {
-        return Err(format!("a list for more than the {} axes of this robot", entry.axes));
+        return Err(format!("the list is longer than the {} axes of this robot", entry.axes));
     }
     let positive = |number: &f64| number.is_finite() && *number > 0.0;
     if !entry.pulses_per_unit.iter().chain(&entry.speeds).chain(&entry.arms).all(positive) {
-        return Err("pulses_per_unit, speeds and arms are greater than 0".to_owned());
+        return Err("pulses_per_unit, speeds and arms must be above 0".to_owned());
     }
     let percents = [entry.auto_speed, entry.manual_speed, entry.program_speed];
     if !percents.iter().all(|percent| (1..=100).contains(percent)) || !(1..=10_000).contains(&entry.inching) {
-        return Err("speeds are 1 to 100 %, inching is 1 to 10000".to_owned());
+        return Err("speeds must be from 1 to 100 %, inching from 1 to 10000".to_owned());
     }
     if entry.payload_g < 0 || entry.payload_g > entry.max_payload_g || entry.shift >= SHIFTS {
-        return Err("payload_g is 0 to max_payload_g, shift is 0 to 39".to_owned());
+        return Err("payload_g must be from 0 to max_payload_g, shift from 0 to 39".to_owned());
     }
     let [first, second] = entry.arms;
     Ok(Robot {
@@ -94,7 +94,7 @@ fn axis(entry: &RobotEntry, number: usize, power: bool) -> Result<Axis, String> 
     let usual = if entry.kind == KindEntry::Scara { SCARA[number] } else { CARTESIAN[number] };
     let limits = entry.limits.get(number).copied().unwrap_or([-usual.limit, usual.limit]);
     if limits[0] >= limits[1] {
-        return Err(format!("limits of axis {} are the wrong way round", number + 1));
+        return Err(format!("the limits of axis {} are in the wrong order", number + 1));
     }
     let servo = match entry.servos.get(number).copied().unwrap_or(ServoEntry::Servo) {
         _ if !power => Servo::Brake,
@@ -155,7 +155,7 @@ pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -
         let number = numbered("pallets", number, 0..=SHIFTS - 1)?;
         let places: i64 = counts.iter().map(|count| i64::from(*count)).product();
         if counts.iter().any(|count| *count < 1) || places > 32_767 || first > POINTS - 5 {
-            return Err("a pallet has 1 to 32767 places, and its points end at 29999".to_owned());
+            return Err("a pallet must have 1 to 32767 positions, and its last point is at most 29999".to_owned());
         }
         world.memory.pallets[number] = Some(Pallet { counts, first });
         Ok(())
@@ -167,7 +167,7 @@ pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -
     source.each_of(&entries.hands, |number, hand| {
         let number = numbered("hands", number, 0..=HANDS - 1)?;
         let owner = hand.robot.checked_sub(1).filter(|owner| *owner < ROBOTS);
-        let owner = owner.ok_or("robots are 1 to 4")?;
+        let owner = owner.ok_or("robots must be from 1 to 4")?;
         world.memory.hands[number] = Some(Hand { owner, data: hand.data });
         Ok(())
     })?;
@@ -199,7 +199,7 @@ pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -
 fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     source.each(&entries.programs, |program| {
         if !(1..=100).contains(&program.number) {
-            return Err("programs are 1 to 100".to_owned());
+            return Err("programs must be from 1 to 100".to_owned());
         }
         let parsed = Program::parse(&program.name, program.text.trim_end())?;
         world.programs.insert(program.number, parsed);
@@ -207,10 +207,10 @@ fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<
     })?;
     source.each(&entries.tasks, |task| {
         let program = world.programs.get(&task.program);
-        let program = program.ok_or_else(|| format!("there is no program {}", task.program))?;
+        let program = program.ok_or_else(|| format!("no program {}", task.program))?;
         let fits = (1..=TASKS).contains(&task.number) && (1..=64).contains(&task.priority);
         if !fits || !(1..=program.lines.len()).contains(&task.line) {
-            return Err("tasks are 1 to 16, priorities 1 to 64, lines those of the program".to_owned());
+            return Err("tasks must be from 1 to 16, priorities from 1 to 64, and lines in the program".to_owned());
         }
         let mut new = Task::new(task.number, task.program, task.priority);
         new.set_line(task.line - 1);
@@ -243,7 +243,7 @@ fn point(entry: &PointEntry) -> Result<Point, String> {
         (None, Some(values)) => {
             Ok(Point { unit: PointUnit::Mm, hand_system, values: values.map(|place| whole(place * STEPS)) })
         }
-        _ => Err("a point has either pulse or mm".to_owned()),
+        _ => Err("a point must have either pulse or mm".to_owned()),
     }
 }
 

@@ -114,15 +114,15 @@ fn the_example_names_every_key() {
         ("\nmodel = 1", "line 2: unknown field `model`"),
         ("[[event]]\nat_ms = 1\ndo = \"x\"", "line 1: no such line"),
         ("[points]\n30000 = { pulse = [0, 0, 0, 0] }", "line 2: points are 0 to 29999"),
-        ("[points]\n1 = { }", "line 2: a point has either pulse or mm"),
-        ("[[robot]]\naxes = 5", "line 1: a robot has 1 to 4 axes"),
-        ("[[robot]]\naxes = 1\nposition = [0, 0]", "line 1: a list for more than the 1 axes"),
+        ("[points]\n1 = { }", "line 2: a point must have either pulse or mm"),
+        ("[[robot]]\naxes = 5", "line 1: a robot must have 1 to 4 axes"),
+        ("[[robot]]\naxes = 1\nposition = [0, 0]", "line 1: the list is longer than the 1 axes"),
         ("[[robot]]\nhand = 7", "line 1: hand 7 is not defined for robot 1"),
-        ("[[robot]]\n[[robot]]\n[[robot]]\n[[robot]]\n[[robot]]", "line 5: there are 4 robots at most"),
+        ("[[robot]]\n[[robot]]\n[[robot]]\n[[robot]]\n[[robot]]", "line 5: at most 4 robots are possible"),
         ("slots = { 1 = [\"Profinet\", \"none\", \"none\", \"none\"] }", "line 1: 'Profinet' is unknown"),
         ("variables = { SGX1 = 1 }", "line 1: 'SGX1' is not a valid variable"),
         ("ports = { \"DO(28)\" = 1 }", "line 1: 'DO(28)' is not a valid port"),
-        ("[[task]]\nnumber = 1\nprogram = 77", "line 1: there is no program 77"),
+        ("[[task]]\nnumber = 1\nprogram = 77", "line 1: no program 77"),
         ("[latest_remote]\nalarm = \"2\"", "line 1: '2' is not a valid alarm number"),
     ] {
         let found = Start::parse(text).unwrap_err();
@@ -135,7 +135,7 @@ fn the_console_tells_what_it_does_not_know() {
     let mut bench = Bench::default();
     assert!(bench.console("help").contains("box on|off"));
     assert!(bench.console("robot").contains("robot 2  0 9000 0 0 pulses, servos ++++"));
-    assert_eq!(bench.console("why"), "nothing was refused");
+    assert_eq!(bench.console("why"), "no command was refused");
     assert_eq!(bench.console("DI(25)=1"), "DI2() is 127");
     for line in ["", "estop", "estop x", "alarm 1", "obstacle R9A1 1", "load R1A1 101", "SI(20)=1", "mode x"] {
         assert!(bench.simulator.console(bench.now, line).is_err(), "{line}");

@@ -139,9 +139,9 @@ fn an_error_stops_every_program_and_is_remembered() {
     let keys = [Key::AlarmGroup, Key::AlarmCategory, Key::Place1, Key::Place2, Key::Place2Number];
     assert_eq!(keys.map(|key| entry.int(key).unwrap()), [2, 904, 2, 4, 7]);
     for (text, why) in [
-        ("GOTO *NOWHERE", "there is no label"),
+        ("GOTO *NOWHERE", "no label"),
         ("RETURN", "RETURN without GOSUB"),
-        ("*A:\nGOSUB *A", "too many calls"),
+        ("*A:\nGOSUB *A", "too many nested calls"),
         ("SGI1=1/0", "division by zero"),
     ] {
         let mut bench = Bench::new(&format!(
