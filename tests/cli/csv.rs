@@ -18,8 +18,6 @@ const LEFT_OUT: [&str; 12] = [
     "diff",
     "dump",
     "file",
-    "--csv",
-    "--toml",
     " -t ",
     "program get",
 ];
