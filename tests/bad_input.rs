@@ -198,7 +198,7 @@ fn existing_files_are_kept_with_one_exit_code() {
         [("v.json", "yerc var dump v.json"), ("TESTJOB.JBI", "yerc file get TESTJOB.JBI"), ("c", "yerc file cmos c")]
     {
         std::fs::write(home.path().join(name), "mine").unwrap();
-        fails(&armctl(home.path(), &format!("--sim {words}")), 1, &["was kept", "--force"]);
+        fails(&armctl(home.path(), &format!("--sim {words}")), 1, &["was not changed", "--force"]);
         assert_eq!(std::fs::read(home.path().join(name)).unwrap(), b"mine");
     }
 }

@@ -29,7 +29,7 @@ impl Desk {
     /// At the prompt.
     fn repl(&self, line: &str) -> Terminal {
         let mut repl = Terminal::start(self.command(line), 100, 30).expect("a terminal");
-        repl.says("leaves.");
+        repl.says("ends the prompt.");
         repl
     }
 

@@ -430,7 +430,7 @@ fn on_interrupt_leave_sends_nothing_and_says_so() {
     interrupt(&child);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130));
-    assert!(stderr(&output).contains("goes on"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("continues"), "{}", stderr(&output));
     assert_eq!(controller.changes().len(), 1);
 }
 
@@ -443,7 +443,7 @@ fn ctrl_c_before_the_order_leaves_the_robot_alone() {
     interrupt(&child);
     let output = child.wait_with_output().unwrap();
     assert_eq!((output.status.code(), controller.changes()), (Some(130), Vec::new()), "{}", stderr(&output));
-    assert!(stderr(&output).contains("nothing was sent"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("no motion command was sent"), "{}", stderr(&output));
 }
 
 /// A capture file that cannot be begun is told before anything is sent.

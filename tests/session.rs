@@ -297,7 +297,7 @@ fn what_a_dead_client_has_left_is_told_and_dealt_with() {
     // The motion ends a moment after the stop; until then its words are taken.
     let mut next = (0..100).map(|_| desk.run("-r cell yrcx info servo"));
     let next = next.find(|next| next.status.success()).expect("the motion ends");
-    assert!(stderr(&next).contains("another client left move-mm running"), "{}", stderr(&next));
+    assert!(stderr(&next).contains("another client left move-mm "), "{}", stderr(&next));
     assert_eq!(desk.listed()["leftover"], Value::Null);
 }
 
@@ -434,7 +434,7 @@ fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
 
 #[test]
 fn a_motion_whose_link_was_lost_says_how_the_stop_input_stands_after_it_came_back() {
-    const TOLD: &str = "the connection was lost; it is up again, and the stop input SI(06) is on";
+    const TOLD: &str = "the connection was lost; the connection is up again, and the stop input SI(06) is on";
     // Through a session, and on a connection of the command's own.
     for is_held in [true, false] {
         let (simulator, desk) = cell();
@@ -495,7 +495,7 @@ fn datagrams_go_through_a_session() {
     let moving = Running::start(desk.command(slow), false);
     let pid = desk.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
     assert_eq!(pid, moving.process.id());
-    fails(&desk.run("-r cell --yes yerc servo on"), 7, "another client moves the robot");
+    fails(&desk.run("-r cell --yes yerc servo on"), 7, "another client is moving the robot");
     assert!(desk.run("-r cell yerc hold on").status.success(), "a hold gets through");
     moving.signal("INT");
     assert_eq!(moving.end().0, Some(130));
@@ -512,7 +512,7 @@ fn a_line_goes_from_client_to_client() {
     let pid = desk.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
     assert_eq!(pid, homing.process.id());
     assert!(desk.run("-r cell toyo status").status.success(), "questions get through");
-    fails(&desk.run("-r cell toyo servo on --yes"), 7, "another client moves the robot");
+    fails(&desk.run("-r cell toyo servo on --yes"), 7, "another client is moving the robot");
     let stopped = desk.run("-r cell toyo stop");
     assert!(stopped.status.success(), "{}", stderr(&stopped));
     assert_eq!(homing.end().0, Some(8), "stopped by somebody else");

@@ -136,7 +136,7 @@ fn line(desk: &Desk, words: &[&str]) -> Terminal {
 fn a_name_that_is_missing_is_chosen() {
     let desk = Desk::new();
     let mut select = line(&desk, &["--sim", "yerc", "job", "select"]);
-    select.says("NAME");
+    select.says("> COUNT");
     select.press("WAIT\r");
     // The terminal is narrower than the line.
     select.says("the same command without the question: armctl --config robots.toml --sim yerc job select");

@@ -217,7 +217,7 @@ fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
         // Before that, a terminal in its usual mode may take Enter for something else.
         teach.shows("step 0.1 mm");
         teach.press("g5\r");
-        teach.shows("y goes to point 5");
+        teach.shows("y moves to point 5");
         teach.press("y");
         teach.shows("MOVING");
         let x = || desk.told("toyo position")["positions"][0]["x_mm"].as_f64().expect("a number");

@@ -123,7 +123,7 @@ fn names_stand_for_numbers_in_the_text_of_a_program() {
     let wrong = desk.command(&["insert", "2", "MOVP", "pikc"]).output().expect("armctl runs");
     assert_eq!(wrong.status.code(), Some(2));
     assert!(
-        String::from_utf8_lossy(&wrong.stderr).contains("there is no point called 'pikc'\n\nhint: did you mean pick?"),
+        String::from_utf8_lossy(&wrong.stderr).contains("no point has the name 'pikc'\n\nhint: did you mean pick?"),
         "{wrong:?}"
     );
 }

@@ -237,7 +237,7 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
     let argument = command.get_arguments().find(is_missing);
     if typed.path == ["robots", "discover"] {
-        return Some("robots discover ends by itself: leave --for out".to_owned());
+        return Some("robots discover ends by itself: remove --for".to_owned());
     }
     if missing.iter().any(|argument| argument.starts_with("--until")) {
         return Some("add a condition such as --until idle; --for limits its time".to_owned());
@@ -514,7 +514,7 @@ mod tests {
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
             ("armctl yerc job start --name WELD", "type NAME without --name"),
             ("armctl yrcx move 19", "type the value after its flag: --point, --to, --to-pulse"),
-            ("armctl robots discover --for 3s", "robots discover ends by itself: leave --for out"),
+            ("armctl robots discover --for 3s", "robots discover ends by itself: remove --for"),
             (
                 "armctl toyo run point 1 --speed 10",
                 "the speed override scales all speeds: see `armctl toyo override -h`",

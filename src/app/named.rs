@@ -52,7 +52,7 @@ mod tests {
             ("armctl --sim yerc io get 20018", "from 0 to 7"),
             ("armctl --sim yerc io set GRIPPER=maybe", "use on or off"),
             ("armctl --sim yerc var set PARTS_DONE=x", "not a number from 0 to 255"),
-            ("armctl --sim yerc var set PARTS_DONE", "'=' and a value are expected"),
+            ("armctl --sim yerc var set PARTS_DONE", "write a variable, '=' and a value"),
             ("armctl --sim yrcx io get GRIPPER", "not a valid signal"),
         ] {
             let told = parsed(line).err().unwrap_or_default();

@@ -80,7 +80,7 @@ mod tests {
             assert!(parse(text).is_err(), "{text}");
         }
         for text in ["0", "0ms", "0.0"] {
-            assert!(parse_some(text).unwrap_err().contains("no time"), "{text}");
+            assert!(parse_some(text).unwrap_err().contains("is zero"), "{text}");
         }
     }
 }

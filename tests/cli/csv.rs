@@ -9,20 +9,8 @@ use armctl::output::csv::{RowsOf, Sheet};
 use serde_json::Value;
 
 /// What writes files, waits, or wants another target than a simulator.
-const LEFT_OUT: [&str; 12] = [
-    "watch",
-    "--for",
-    "--continuous",
-    "auto-mode",
-    "backup",
-    "diff",
-    "dump",
-    "file",
-    "--csv",
-    "--toml",
-    " -t ",
-    "program get",
-];
+const LEFT_OUT: [&str; 12] =
+    ["watch", "--for", "--continuous", "auto-mode", "backup", "diff", "dump", "file", " -t ", "program get"];
 
 /// stdout of a line on the simulator, if it was done.
 fn printed(line: &str, format: &str, folder: &Path) -> Option<String> {

@@ -83,7 +83,7 @@ fn parameters_of_another_controller_are_refused_by_both_commands() {
     assert_eq!(desk.run("-r cell yerc backup saved").exit, Some(0));
     let url = &other.url;
     for restore in ["restore saved --machine", "yerc restore saved --machine"] {
-        desk.fails(&format!("-t {url} {restore} --yes"), 7, "the backup is of ");
+        desk.fails(&format!("-t {url} {restore} --yes"), 7, "the backup is from ");
     }
 }
 

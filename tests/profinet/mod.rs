@@ -77,7 +77,7 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
         ("--yes session open --background", "0", &["held by process"]),
         ("yrcx io get", "0", &["CPU_OK"]),
         ("yrcx position", "0", &["mm"]),
-        ("yrcx io get servo-on", "0", &["servo-on on"]),
+        ("yrcx io get servo-on", "0", &["servo-on off"]),
         ("--yes session open", "4", &["a session is already open"]),
         ("--yes yrcx info system", "4", &["UDP port 34964", "ss -lunp"]),
         ("session close", "0", &["closed"]),

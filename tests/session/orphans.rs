@@ -126,7 +126,7 @@ impl Moving {
                 let mut command = desk.command("-r a --yes -vv repl");
                 command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
                 let mut prompt = Terminal::start(command, 200, 50).unwrap();
-                prompt.says("leaves.");
+                prompt.says("ends the prompt.");
                 prompt.press(&format!("{}\r", motion.words));
                 prompt.says(motion.moves);
                 return Self::Prompt(Box::new(prompt));

@@ -164,7 +164,7 @@ fn who_keeps_a_link_to_himself_is_named() {
     super::fails(
         &blocked,
         4,
-        &format!("process {} (`armctl -r cell toyo jog X + low --for 60s --yes`) has it", jog.process.id()),
+        &format!("process {} (`armctl -r cell toyo jog X + low --for 60s --yes`) is connected", jog.process.id()),
     );
     assert_eq!(server.conflicts.load(Ordering::Relaxed), 0);
     jog.signal("INT");

@@ -385,7 +385,7 @@ mod tests {
         let failure = report.failure().unwrap();
         assert_eq!(failure.kind, Kind::Mixed, "one was saved");
         assert_eq!(failure.message, "2 of 4 failed, 1 not tried: c: silence");
-        assert_eq!(failure.hint.as_deref(), Some("cable\n--resume reads what is missing"));
+        assert_eq!(failure.hint.as_deref(), Some("cable\nread the missing parts with --resume"));
         let text = render::text(&report.view(), 80, false);
         assert_eq!(text, "NAME  RESULT\na     saved\nb     2 written; then no\nc     silence\nd     not tried\n");
     }

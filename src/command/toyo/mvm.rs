@@ -182,7 +182,8 @@ impl Store for Groups {
         let texts = self.texts(sheets);
         let joined = [&texts[..4], &texts[4..7], &texts[7..10]].map(|part| Cell::from(part.join(" ")));
         let numbers = texts[11..].iter().map(Cell::number);
-        joined.into_iter().chain([Cell::from(texts[10].as_str())]).chain(numbers).collect()
+        let approach = Cell::from(Group::of(sheets).approach);
+        joined.into_iter().chain([approach]).chain(numbers).collect()
     }
 
     fn value(&self, sheets: &Vec<Record>) -> Option<Group> {

@@ -88,7 +88,7 @@ fn numbered(
 async fn programs(robot: &dyn Ask, candidate: fn(&str, &str, &str) -> Candidate) {
     for (task, state) in tasks(robot).await {
         if let Some(shown) = robot.data(&["yrcx", "program", "show", "--task", &task]).await {
-            let (number, name) = (text(&shown, "program"), text(&shown, "name"));
+            let (number, name) = (text(&shown, "number"), text(&shown, "program"));
             robot.tell(candidate(&number, &name, &format!("task {task}, {state}")));
         }
     }

@@ -210,7 +210,7 @@ mod tests {
             ("profibus:///dev/ttyUSB0?station=5&cfg=C0D", "cfg must be bytes in hexadecimal"),
             ("profibus:///dev/ttyUSB0?station=5&prm=GG", "prm must be bytes in hexadecimal"),
             ("profibus:///dev/ttyUSB0?station=5&module=M", "add gsd=FILE"),
-            ("profibus:///dev/ttyUSB0?station=5&words=middle", "words is le or be"),
+            ("profibus:///dev/ttyUSB0?station=5&words=middle", "words must be le or be"),
             ("profibus:///dev/ttyUSB0?station=5&speed=1", "unknown parameter 'speed'"),
         ] {
             let message = profibus(url).unwrap_err();

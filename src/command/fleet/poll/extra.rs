@@ -91,7 +91,7 @@ fn wrong(text: &str, why: &str, hint: &str) -> Failure {
 }
 
 fn takes_files(text: &str) -> Failure {
-    wrong(text, "is about a file or folder of this machine", "choose a command that reads the robot alone")
+    wrong(text, "uses a file or folder of this computer", "use a command that only reads from the robot")
 }
 
 /// Parses words into a command; the first word is the family.
@@ -162,14 +162,14 @@ mod tests {
             ("toyo ports", "does not read from a robot"),
             ("yerc var get B0; yerc hold on", "is more than one command"),
             ("yerc status ; yerc hold on", "is more than one command"),
-            ("yerc var dump x.json", "is about a file or folder"),
-            ("yerc file get A.JBI --dir x", "is about a file or folder"),
-            ("yerc file diff A.JBI", "is about a file or folder"),
-            ("yerc diff", "is about a file or folder"),
-            ("yrcx diff", "is about a file or folder"),
-            ("yerc file get A.JBI", "is about a file or folder"),
-            ("yrcx backup x", "is about a file or folder"),
-            ("toyo point dump x.csv", "is about a file or folder"),
+            ("yerc var dump x.json", "uses a file or folder"),
+            ("yerc file get A.JBI --dir x", "uses a file or folder"),
+            ("yerc file diff A.JBI", "uses a file or folder"),
+            ("yerc diff", "uses a file or folder"),
+            ("yrcx diff", "uses a file or folder"),
+            ("yerc file get A.JBI", "uses a file or folder"),
+            ("yrcx backup x", "uses a file or folder"),
+            ("toyo point dump x.csv", "uses a file or folder"),
         ] {
             let failure = Extra::parse(text).unwrap_err();
             assert!(failure.message.contains(why) && failure.hint.is_some(), "{text}: {failure:?}");

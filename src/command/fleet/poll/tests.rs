@@ -281,7 +281,7 @@ async fn a_name_in_a_command_line_is_that_of_each_robot() {
     let address = |robot: &str| told[robot].as_ref().unwrap()["items"][0]["name"].clone();
     assert_eq!((address("a"), address("b")), ("B5".into(), "B6".into()));
     let failure = told["c"].as_ref().unwrap_err();
-    assert!(failure.message.contains("'parts' names no variable"), "{failure}");
+    assert!(failure.message.contains("'parts' is not a variable"), "{failure}");
 }
 
 #[tokio::test(start_paused = true)]

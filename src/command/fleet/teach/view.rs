@@ -46,11 +46,7 @@ pub(super) fn render(buffer: &mut Buffer, area: Rect, model: &Model, robot: &Rob
     let shown: Vec<_> = KEYS.iter().filter(|key| !key.short.is_empty()).collect();
     painter.keys(foot, &shown);
     if model.has_help {
-        painter.help(
-            area,
-            "Each key moves one axis by one step. The next key has an effect after the end of the step.",
-            KEYS.iter(),
-        );
+        painter.help(area, "Each key moves one axis by one step. The next key works after that step.", KEYS.iter());
     }
     if !palette.is_unicode {
         to_ascii(painter.buffer);
@@ -96,10 +92,10 @@ fn question(model: &Model, asked: &Asked) -> String {
         Asked::Point(Use::Store, typed) => format!("Store the current position as: {typed}_  (number, Enter; Esc)"),
         Asked::Point(Use::Go, typed) => format!("Move to: {typed}_  (number, Enter; Esc)"),
         Asked::Sure(Use::Store, number, old) => {
-            format!("y stores it as {}, Esc cancels; current content: {old}", point(*number))
+            format!("y stores it as {}, Esc cancels; now: {old}", point(*number))
         }
         Asked::Sure(Use::Go, number, place) => {
-            format!("y moves to {} in one motion, Esc cancels; the point is {place}", point(*number))
+            format!("y moves to {} in one motion, Esc cancels; it is {place}", point(*number))
         }
         Asked::Release => "y releases the hold, Esc cancels; a stopped motion may continue".to_owned(),
     }

@@ -327,5 +327,5 @@ fn axes_of_another_machine_are_refused_before_anything_is_written() {
     // Name and address are those of the list, as with `armctl restore`.
     let failed = blocks(&["restore", &folder]).unwrap_err();
     assert_eq!(failed.kind, Kind::Rejected);
-    assert!(failed.message.contains("the backup is of sim (sim:), not of tcp://127.0.0.1:1"), "{failed}");
+    assert!(failed.message.contains("the backup is from sim (sim:), not from tcp://127.0.0.1:1"), "{failed}");
 }

@@ -201,7 +201,7 @@ impl Store for Records {
     }
 
     fn headings(&self) -> Vec<&'static str> {
-        vec!["record", "value"]
+        vec!["number", "value"]
     }
 
     fn cells(&self, Key(pallet): Key, record: &Record) -> Vec<view::Cell> {

@@ -307,7 +307,7 @@ mod tests {
         assert!(error("name,value\nB0,256\n").contains("not a number from 0 to 255"));
         assert!(error("name,value\nB0,1\nB000,2\n").contains("B0 is already in line 2"));
         assert!(error("name,value\nP0,1\n").contains("P0 is a position"));
-        assert!(error("name,x_mm\nB0,1\n").contains("B0 is no position"));
+        assert!(error("name,x_mm\nB0,1\n").contains("B0 is not a position"));
         assert!(error("name,value\nQ0,1\n").starts_with("line 2, column 1"));
     }
 }

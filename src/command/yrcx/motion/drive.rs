@@ -203,7 +203,7 @@ mod tests {
             ("drive --axis 1 --to 3000000", "target"),
             ("drivei --axis 1 --by 0.0001", "distance"),
             ("drivei --axis 1 --by 1 --speed 0", "allowed: 1 to 100 %"),
-            ("drivei --axis 1 --by 1 --speed 10mm/s", "along a line"),
+            ("drivei --axis 1 --by 1 --speed 10mm/s", "a linear or circular move"),
         ] {
             let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
             assert_eq!(failure.kind, Kind::Usage, "{line}");

@@ -115,7 +115,7 @@ mod tests {
             ("movei --by 1,2", "2 numbers for 4 axes"),
             ("movei --by-pulse 1.5,2,3,4", "axis_1"),
             ("movei --point 30000", "out of range"),
-            ("movei --point 1 --speed 9mm/s", "along a line"),
+            ("movei --point 1 --speed 9mm/s", "a linear or circular move"),
             ("movei --by 1,2,3,4 --decel 10", "movei-mm has neither"),
         ] {
             let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();

@@ -223,7 +223,7 @@ mod tests {
     fn an_axis_that_is_there_needs_its_column() {
         assert_eq!(
             errors("name,x_mm,y_mm,z_mm\n1,0,0,0"),
-            ["line 1, column 21: error: column r_mm is missing (the first line must be name,x_mm,y_mm,z_mm,r_mm)"]
+            ["line 1, column 20: error: column r_mm is missing (the first line must be name,x_mm,y_mm,z_mm,r_mm)"]
         );
         assert_eq!(rows("name,x_mm\n1,0.01", 1), [(1, vec![1, 0, 0, 0], 2)]);
     }
@@ -232,8 +232,8 @@ mod tests {
     fn mistakes_are_told_with_their_place() {
         for (text, expected) in [
             ("", "line 1, column 1: error: the file is empty (the first line must be name,x_mm,y_mm,z_mm,r_mm)"),
-            ("name,x_mm,y_mm,z_mm,r_mm,x_mn\n", "line 1, column 27: error: unknown column 'x_mn' (did you mean x_mm?)"),
-            ("name,x_mm,y_mm,z_mm,r_mm,X_MM\n", "line 1, column 27: error: column X_MM appears twice"),
+            ("name,x_mm,y_mm,z_mm,r_mm,x_mn\n", "line 1, column 26: error: unknown column 'x_mn' (did you mean x_mm?)"),
+            ("name,x_mm,y_mm,z_mm,r_mm,X_MM\n", "line 1, column 26: error: column X_MM appears twice"),
         ] {
             assert_eq!(errors(text), [expected]);
         }

@@ -208,7 +208,7 @@ fn unknown_name(field: &Field, text: &str, known: &Names) -> Option<(String, Str
     let alike = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
     let hint = nearest(text, alike).map(|near| format!("did you mean {near}?"));
     let hint = hint.unwrap_or_else(|| format!("define names in robots.toml: {} = \"{prefix}1\"", shown(text)));
-    Some((format!("there is no {} called '{}'", kind.word(), shown(text)), hint))
+    Some((format!("no {} has the name '{}'", kind.word(), shown(text)), hint))
 }
 
 fn value(field: &Field, text: &str) -> Result<Value, FieldError> {

@@ -32,7 +32,7 @@ fn an_interrupt_ends_it_and_tells_where_it_stands() {
         let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-cartesian"))]));
         bench.interrupt(&["jog", "cartesian", "1", "-"], Duration::from_millis(ms));
         let told = bench.halt().unwrap();
-        assert!(told.ends_with("on again; it stands at 12.345, -0.123, 2.000, 0.000 mm"), "{told}");
+        assert!(told.ends_with("on again; position: 12.345, -0.123, 2.000, 0.000 mm"), "{told}");
         assert_eq!(bench.into_peer().bits, [REST, HELD, REST]);
     }
 }
@@ -118,7 +118,7 @@ fn a_link_that_stays_down_promises_nothing_of_the_stop_input() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(3600))]));
     let failure = bench.run(&JOG).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.ends_with("the connection was lost; it is still down"), "{failure}");
+    assert!(failure.message.ends_with("the connection was lost; the connection is still down"), "{failure}");
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn what_cannot_be_meant_is_rejected() {
     assert!(words(&["jog", "tool", "5", "+"]).unwrap_err().message.contains("must be from 1 to 4"));
     assert!(words(&["jog", "tool", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
     assert!(objection(&["jog", "pulse", "1"]).contains("<DIRECTION>"));
-    assert!(objection(&["jog", "pulse", "1", "+", "--for", "0s"]).contains("no time"));
+    assert!(objection(&["jog", "pulse", "1", "+", "--for", "0s"]).contains("is zero"));
     assert!(objection(&["jog", "pulse", "1", "+", "--no-wait"]).contains("--no-wait"));
     assert_eq!(
         intent(&["jog", "tool", "3", "+", "--for", "1.5s", "--unit", "2"]),

@@ -23,7 +23,7 @@ fn every_key_of_the_example_is_explained_by_its_mistake() {
         ("modell = 1", "line 1: unknown field"),
         ("axes = 5", "line 1: axes must be from 1 to 4"),
         ("\nmodel = \"X\"", "line 2: model must be one of"),
-        ("version = \"x\"", "line 1: a version"),
+        ("version = \"x\"", "line 1: write a version"),
         ("busy = 2.0", "line 1: busy"),
         ("instruction_us = 0", "line 1: an instruction"),
         ("steps.1 = [\n\"NOP\",\n\"JUMP\"]", "line 3: unknown instruction 'JUMP'"),

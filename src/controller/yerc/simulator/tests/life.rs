@@ -201,7 +201,7 @@ fn mistakes_in_a_start_state_are_told_with_their_line() {
         ("variables = { Q0 = 1 }", "'Q0' is not a valid variable"),
         ("\nio = { 10018 = true }", "line 2: '10018' is not a signal"),
         ("\n[[event]]\nat_ms = 0\ndo = 'alrm 1'", "unknown command: 'alrm 1'"),
-        ("[[file]]\nname = 'A.JBI'\ntext = 'x'", "'A.JBI' does not hold a job"),
+        ("[[file]]\nname = 'A.JBI'\ntext = 'x'", "'A.JBI' does not contain a job"),
         ("[[file]]\nname = 'A.DAT'\npath = 'nowhere'", "nowhere: no nowhere here"),
         ("job = 'NOBODY'", "no job 'NOBODY'"),
         ("groups = ['R1', 'R9']", "'R9' is not a group"),
