@@ -9,7 +9,7 @@ use armctl::output::csv::{RowsOf, Sheet};
 use serde_json::Value;
 
 /// What writes files, waits, or wants another target than a simulator.
-const LEFT_OUT: [&str; 12] =
+const LEFT_OUT: [&str; 10] =
     ["watch", "--for", "--continuous", "auto-mode", "backup", "diff", "dump", "file", " -t ", "program get"];
 
 /// stdout of a line on the simulator, if it was done.
