@@ -106,6 +106,7 @@ fn escape_and_signals_write_nothing_and_give_the_terminal_back() {
         let desk = Desk::new();
         let mut setup = desk.setup();
         setup.says("no robot yet: use a simulator");
+        setup.reads_keys();
         match way {
             "escape" => setup.press("\x1b"),
             "ctrl-c" => setup.press("\x03"),
@@ -137,9 +138,10 @@ fn a_name_that_is_missing_is_chosen() {
     let desk = Desk::new();
     let mut select = line(&desk, &["--sim", "yerc", "job", "select"]);
     select.says("> COUNT");
+    select.reads_keys();
     select.press("WAIT\r");
     // The terminal is narrower than the line.
-    select.says("the same command without the question: armctl --config robots.toml --sim yerc job select");
+    select.says("the same command without the question: armctl --config robots.toml --sim yerc");
     select.says("WAITIN is selected");
     assert_eq!(select.end().code(), Some(0));
     gives_back(&select, "chosen");
@@ -147,6 +149,7 @@ fn a_name_that_is_missing_is_chosen() {
     std::fs::write(desk.folder.path().join("robots.toml"), robots).unwrap();
     let mut status = line(&desk, &["status", "-r"]);
     status.says("cell3");
+    status.reads_keys();
     status.press("\r");
     status.says("armctl --config robots.toml status -r cell3");
     assert_eq!(status.end().code(), Some(0));
@@ -157,6 +160,7 @@ fn what_deletes_is_not_chosen_by_enter_alone() {
     let desk = Desk::new();
     let mut delete = line(&desk, &["--sim", "yerc", "file", "delete"]);
     delete.says("COUNT.JBI");
+    delete.reads_keys();
     delete.press("\r\x1b");
     assert_eq!(delete.end().code(), Some(130), "Enter took nothing, Esc left");
     gives_back(&delete, "left");

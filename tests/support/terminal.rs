@@ -134,6 +134,17 @@ impl Terminal {
         self.master.write_all(keys.as_bytes()).expect("the terminal takes keys");
     }
 
+    /// Waits until the program reads single keys: what is pressed before is lost.
+    pub fn reads_keys(&self) {
+        let is_canonical = || {
+            let modes = tcgetattr(&self.slave).expect("a terminal has modes");
+            modes.local_modes.contains(LocalModes::ICANON)
+        };
+        while is_canonical() {
+            std::thread::yield_now();
+        }
+    }
+
     /// Sends a signal to the program.
     pub fn signal(&self, signal: &str) {
         let pid = self.child.id().to_string();
