@@ -2,7 +2,6 @@
 //! kept, and how little a put reads.
 
 #![cfg(unix)]
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use std::collections::BTreeMap;
 use std::process::{Command, Output, Stdio};

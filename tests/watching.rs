@@ -1,7 +1,6 @@
 //! Watches of several robots, one of which cannot be reached.
 
 #![cfg(unix)]
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use std::io::{BufRead as _, BufReader};
 use std::net::TcpListener;
