@@ -11,6 +11,7 @@ const WIDTH: usize = 100;
 fn redacted(text: &str) -> String {
     let text = replaced(text, "\"time\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
     let text = replaced(&text, "\"elapsed_ms\":", |value| value.find([',', '}']));
+    let text = replaced(&text, "\"round_trip_ms\":", |value| value.find([',', '}']));
     let text = replaced(&text, "\"pid\":", |value| value.find([',', '}']));
     let text = replaced(&text, "\"since\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
     let text = replaced(&text, "process ", |value| value.find(|c: char| !c.is_ascii_digit()).filter(|end| *end > 0));
