@@ -195,7 +195,7 @@ fn what_the_model_cannot_do_is_told_before_anybody_is_asked() {
 fn existing_files_are_kept_with_one_exit_code() {
     let home = tempfile::tempdir().unwrap();
     for (name, words) in
-        [("v.json", "yerc var dump v.json"), ("TESTJOB.JBI", "yerc file get TESTJOB.JBI"), ("c", "yerc file cmos c")]
+        [("v.csv", "yerc var dump v.csv"), ("TESTJOB.JBI", "yerc file get TESTJOB.JBI"), ("c", "yerc file cmos c")]
     {
         std::fs::write(home.path().join(name), "mine").unwrap();
         fails(&armctl(home.path(), &format!("--sim {words}")), 1, &["was not changed", "--force"]);

@@ -33,6 +33,7 @@ const YERC: &[&str] = &[
     "torque",
     "var get",
     "var set",
+    "var copy",
     "var dump",
     "var restore",
     "io get",

@@ -92,13 +92,20 @@ fn variables_are_restored_after_a_yes_with_old_and_new() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     assert_eq!(desk.run("-r cell yerc var set B7=7 R3=1.5").exit, Some(0), "to set one is a write");
-    assert_eq!(desk.run("-r cell yerc var dump saved.json --kinds B,R").exit, Some(0));
-    let data = desk.data("-r cell yerc var restore saved.json");
-    assert_eq!((&data["written"], &data["unchanged"]), (&0.into(), &200.into()));
+    assert_eq!(desk.run("-r cell yerc var set P7=pulse:s=1,l=2,u=3,r=4,b=5,t=6").exit, Some(0), "nothing was taught");
+    assert_eq!(desk.run("-r cell yerc var dump saved.csv B,R,P7").exit, Some(0));
+    let written = |data: &Value| {
+        let items = data["items"].as_array().unwrap().iter().filter(|item| item["written"] == true);
+        items.map(|item| item["name"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    let data = desk.data("-r cell yerc var restore saved.csv");
+    assert_eq!((data["items"].as_array().unwrap().len(), written(&data)), (201, vec![]));
     assert_eq!(desk.run("-r cell yerc var set B7=9").exit, Some(0));
-    desk.fails("-r cell yerc var restore saved.json", 7, "would overwrite 1 variable (B7: 9 -> 7)");
-    let data = desk.data("-r cell yerc var restore saved.json --yes");
-    assert_eq!((&data["written_names"], &data["unchanged"]), (&"B7".into(), &199.into()));
+    assert_eq!(written(&desk.data("-r cell yerc var restore saved.csv")), ["B7"]);
+    assert_eq!(desk.run("-r cell yerc var set B7=9 P7.axis1=9 --yes").exit, Some(0));
+    desk.fails("-r cell yerc var restore saved.csv", 7, "would overwrite a variable (P7: pulse:s=9,");
+    let data = desk.data("-r cell yerc var restore saved.csv --yes");
+    assert_eq!(written(&data), ["B7", "P7"]);
 }
 
 #[test]

@@ -30,6 +30,11 @@ impl Client {
         self
     }
 
+    /// Dry run: takes the purpose of the next requests.
+    pub fn take_purpose(&mut self) -> Option<&'static str> {
+        self.purpose.take()
+    }
+
     /// Dry run: plans reads whose answers are then unknown.
     pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Error> {
         if !self.is_dry() || queries.is_empty() {

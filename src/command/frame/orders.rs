@@ -13,6 +13,8 @@ use crate::output::view::View;
 
 /// Purpose of a read before a write, in a dry run.
 pub const BEFORE: &str = "old value";
+/// Condition of a write in a dry run.
+pub const IF_DIFFERENT: &str = "whether the old value differs";
 
 /// Failure before any write.
 pub fn unwritten(failure: Failure) -> Failure {

@@ -97,6 +97,9 @@ pub struct Items<V, M = Plain> {
     /// Number of requested items; the table has only these.
     #[serde(skip)]
     asked: usize,
+    /// Reasons why items that were read have no value; they count if no item has one.
+    #[serde(skip)]
+    undefined: Vec<ItemError>,
     #[serde(skip)]
     columns: Columns,
 }
@@ -104,13 +107,19 @@ pub struct Items<V, M = Plain> {
 impl<V, M> Items<V, M> {
     /// Items with the headings of their table.
     pub fn new(columns: Columns, items: Vec<Item<V, M>>) -> Self {
-        Self { asked: items.len(), items, columns }
+        Self { asked: items.len(), items, undefined: Vec::new(), columns }
     }
 
     /// Sets the number of items that were requested, if the others were not read because they would fail alike.
     #[must_use]
     pub fn asked(self, asked: usize) -> Self {
         Self { asked, ..self }
+    }
+
+    /// Sets the reasons why items have no value. If no item has one, the command fails with these.
+    #[must_use]
+    pub fn undefined(self, undefined: Vec<ItemError>) -> Self {
+        Self { undefined, ..self }
     }
 
     /// The failure, if there is only one item and it was not read.
@@ -156,7 +165,8 @@ impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for Items<V, M
     }
 
     fn failure(&self) -> Option<Failure> {
-        let failure = verdict(self.items.len(), self.errors())?;
+        let has_none = self.items.iter().all(|item| item.value.is_none());
+        let failure = verdict(self.items.len(), self.errors().chain(self.undefined.iter().filter(|_| has_none)))?;
         Some(match self.items.len() - self.asked.min(self.items.len()) {
             0 => failure,
             rest => Failure { message: format!("{}; {rest} were not read", failure.message), ..failure },

@@ -7,7 +7,7 @@ use super::rows::Listed;
 use crate::command::ValueKind;
 use crate::command::commands;
 use crate::command::frame::store::{
-    Answers, Field, Get, Ids, List, Single, Store, Words, Writable, ids, table_commands,
+    Answers, Differing, Field, Get, Ids, List, Row, Single, Store, Words, Writable, ids, table_commands,
 };
 use crate::command::frame::watch::Watch;
 use crate::command::toyo::complete;
@@ -23,10 +23,7 @@ use crate::output::Screen;
 
 table_commands! {
     /// What can be done with counters.
-    Counter of Counters {
-        /// Print each change of counters
-        Watch(Watch<Get<Counters>>),
-    }
+    Counter of Counters {}
 }
 
 commands! {
@@ -146,29 +143,31 @@ impl Writable for Counters {
         record.map_err(|error| wrong(&error))
     }
 
-    async fn plan(&self, link: &mut Link, counter: i32, draft: &Option<i32>) -> Result<(), Failure> {
-        let text = match draft {
-            Some(count) => order(counter, *count).text(),
-            None => format!("@MCST {}=?", Self::name(counter)),
-        };
-        link.plan_overwriting(&read(counter), &text).await
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+        for (counter, draft) in rows {
+            let text = match draft {
+                Some(count) => order(*counter, *count).text(),
+                None => format!("@MCST {}=?", Self::name(*counter)),
+            };
+            link.plan_overwriting(&read(*counter), &text).await?;
+        }
+        Ok(())
     }
 
-    async fn write(
-        &self,
-        link: &mut Link,
-        _screen: &Screen,
-        counter: i32,
-        (_, new): (Option<&Record>, &Record),
-    ) -> Result<(), Failure> {
-        let wanted = count(new).unwrap_or_default();
-        let order = order(counter, wanted);
-        link.ask(&order).await?;
-        match count(&read_back(link, &order, &read(counter)).await?) {
-            Some(found) if found != wanted => Err(not_held(&order, &format!("it stands at {found}"))
-                .hint("a program that runs may count on it meanwhile")),
-            _ => Ok(()),
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+        for (counter, _, new) in rows {
+            let wanted = count(new).unwrap_or_default();
+            let order = order(*counter, wanted);
+            link.ask(&order).await?;
+            match count(&read_back(link, &order, &read(*counter)).await?) {
+                Some(found) if found != wanted => {
+                    return Err(not_held(&order, &format!("it stands at {found}"))
+                        .hint("a program that runs may count on it meanwhile"));
+                }
+                _ => {}
+            }
         }
+        Ok(())
     }
 }
 

@@ -10,7 +10,9 @@ use super::numbers::Numbers;
 use super::rows::{Listed, WRITING, texts};
 use super::stores::{parameter_cell, parameter_sketch};
 use super::values::{Changes, word};
-use crate::command::frame::store::{Answers, Field, Ids, Single, Store, Words, Writable, ids, table_commands};
+use crate::command::frame::store::{
+    Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids, table_commands,
+};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{self, Value};
 use crate::controller::toyo::layout::Record;
@@ -243,30 +245,28 @@ impl Writable for Groups {
         draft.iter().enumerate().map(record).collect()
     }
 
-    async fn plan(&self, link: &mut Link, group: i32, draft: &Vec<Changes>) -> Result<(), Failure> {
-        let reads = reads(group)?;
-        // A copy knows no values before.
-        let is_copy = draft.iter().all(|changes| changes.values().iter().all(Option::is_none));
-        for (index, changes) in draft.iter().enumerate() {
-            if is_copy || changes.values().iter().any(Option::is_some) {
-                let sketch = parameter_sketch(sheet(index), Some(group), changes.values());
-                link.plan_overwriting(&reads[index], &sketch).await?;
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+        for (group, draft) in rows {
+            let reads = reads(*group)?;
+            // A copy knows no values before.
+            let is_copy = draft.iter().all(|changes| changes.values().iter().all(Option::is_none));
+            for (index, changes) in draft.iter().enumerate() {
+                if is_copy || changes.values().iter().any(Option::is_some) {
+                    let sketch = parameter_sketch(sheet(index), Some(*group), changes.values());
+                    link.plan_overwriting(&reads[index], &sketch).await?;
+                }
             }
         }
         Ok(())
     }
 
-    async fn write(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        _group: i32,
-        (old, new): (Option<&Vec<Record>>, &Vec<Record>),
-    ) -> Result<(), Failure> {
-        for (index, record) in new.iter().enumerate().filter(|(index, new)| old.is_none_or(|old| old[*index] != **new))
-        {
-            let cell = parameter_cell(sheet(index), record.values().to_vec()).map_err(|error| wrong(&error))?;
-            link.overwrite(screen, &cell, &mut Cells::default()).await?;
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+        for (_, old, new) in rows {
+            let differs = |(index, new): &(usize, &Record)| old.is_none_or(|old| old[*index] != **new);
+            for (index, record) in new.iter().enumerate().filter(differs) {
+                let cell = parameter_cell(sheet(index), record.values().to_vec()).map_err(|error| wrong(&error))?;
+                link.overwrite(screen, &cell, &mut Cells::default()).await?;
+            }
         }
         Ok(())
     }

@@ -15,7 +15,7 @@ use super::stores::{parameter_cell, parameter_sketch};
 use super::values::{Changes, NOT_IN_MANUAL, word};
 use crate::client::toyo::Letters;
 use crate::command::frame::store::{
-    Answers, Differing, Field, Ids, Single, Store, Words, Writable, ids, table_commands,
+    Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids, table_commands,
 };
 use crate::command::robot::item::asked;
 use crate::controller::Risk;
@@ -265,20 +265,20 @@ impl<T: EepromRow> Writable for T {
         EepromRow::afterwards(self, written)
     }
 
-    async fn plan(&self, link: &mut Link, key: T::Key, changes: &Changes) -> Result<(), Failure> {
-        link.plan_overwriting(&self.request(key)?, &self.sketch(key, changes.values())).await
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+        for (key, changes) in rows {
+            link.plan_overwriting(&self.request(*key)?, &self.sketch(*key, changes.values())).await?;
+        }
+        Ok(())
     }
 
-    async fn write(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        key: T::Key,
-        (_, new): (Option<&Record>, &Record),
-    ) -> Result<(), Failure> {
-        let fields = self.body(key).fields.len();
-        let values = new.values()[new.values().len().saturating_sub(fields)..].to_vec();
-        link.overwrite(screen, &self.cell(key, values)?, &mut Cells::default()).await
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+        for (key, _, new) in rows {
+            let fields = self.body(*key).fields.len();
+            let values = new.values()[new.values().len().saturating_sub(fields)..].to_vec();
+            link.overwrite(screen, &self.cell(*key, values)?, &mut Cells::default()).await?;
+        }
+        Ok(())
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use clap::CommandFactory as _;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::testing::{Bench, DX200, dry_run, resolved};
 use crate::cli::Cli;
@@ -56,9 +56,11 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("var set B0=1", Write, Write),
     ("var set B0=1 P1.tool=2", Destroy, Destroy),
     ("var set EX1=pulse:1=5", Destroy, Destroy),
-    ("var dump DIR/new.json", Read, Read),
-    // Each variable could be set individually; writing back many overwrites their content.
-    ("var restore DIR/dump.json", Destroy, Write),
+    ("var dump DIR/new.csv", Read, Read),
+    ("var copy B0 B1", Destroy, Write),
+    ("var copy P1 P2", Destroy, Destroy),
+    // The rows of the file decide what is asked.
+    ("var restore DIR/dump.csv", Destroy, Write),
     ("io get 10010", Read, Read),
     ("io watch 10010", Read, Read),
     ("io list", Read, Read),
@@ -96,10 +98,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
 fn prepare(folder: &std::path::Path) {
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     std::fs::write(path("A.JBI"), "/JOB\r\n//NAME A\r\nNOP\r\nEND\r\n").unwrap();
-    let variables = json!([{ "name": "B0", "kind": "B", "number": 0, "value": 7 }]);
-    let dump = json!({ "format": "armctl-variables", "version": 1, "model": "dx200", "encoding": "shift_jis",
-                       "variables": variables });
-    std::fs::write(path("dump.json"), dump.to_string()).unwrap();
+    std::fs::write(path("dump.csv"), "name,value\nB0,7\n").unwrap();
     Bench::new("sim:").data(&["backup", &path("backup")]);
 }
 

@@ -242,6 +242,11 @@ impl Link {
         self
     }
 
+    /// Takes the purpose of several next requests, for a dry run.
+    pub fn take_purpose(&mut self) -> Option<&'static str> {
+        self.client.take_purpose()
+    }
+
     /// Text in the encoding of the controller.
     pub fn encode(&self, what: &str, text: &str) -> Result<Vec<u8>, Failure> {
         self.encoding.encode(text).map_err(|error| {

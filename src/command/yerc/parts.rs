@@ -32,7 +32,8 @@ pub async fn read_in_parts<S: PlannedRead>(
         return Ok(HashMap::new());
     }
     if link.is_dry() {
-        plan_in_parts(link, plan, wanted, parts, |_| None)?;
+        let purpose = link.take_purpose();
+        plan_in_parts(link, plan, wanted, parts, |_| purpose.map(ToOwned::to_owned))?;
         return Err(unknown());
     }
     let mut steps: VecDeque<S> = plan(wanted)?.into();

@@ -13,7 +13,7 @@ use super::numbers::{Numbers, named};
 use super::several::{ask_each, is_undefined};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::store::{Answers, Field, Ids, Single, Store, Words, Writable};
+use crate::command::frame::store::{self, Answers, Differing, Field, Ids, Single, Store, Words, Writable};
 use crate::command::robot::item::Plain;
 use crate::controller::Risk;
 use crate::controller::names::Kind as Label;
@@ -95,6 +95,7 @@ impl<K: Kind> Store for Numbered<K> {
     const IDS: Ids = K::IDS;
     const LABELS: Option<Label> = K::LABELS;
     const COMPLETE: ValueKind = K::COMPLETE;
+    const UNDEFINED_IS_NULL: bool = true;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
         Ok(Numbers::of(&[K::RECORDS.parse(text)?]))
@@ -190,31 +191,30 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(Row::new::<K>(number, values))
     }
 
-    async fn plan(&self, link: &mut Link, number: i32, draft: &Draft) -> Result<(), Failure> {
-        let reason = Reason::default().depending_on("the current data: written if different");
-        // Two rows that agree only in the given fields.
-        let filled = |which: usize| {
-            let columns = draft.iter().zip(&K::RECORDS.columns[1..]);
-            columns
-                .map(|(text, (_, key))| text.clone().unwrap_or_else(|| samples(*key, number)[which].into()))
-                .collect()
-        };
-        match (stored::<K>(number, filled(0)), stored::<K>(number, filled(1))) {
-            (Ok((one, _)), Ok((other, _))) => link.plan_depending(&one, &other, reason),
-            _ => link.then(&format!("{} {number} is written", Self::WORDS.nouns[0])),
+    async fn plan(&self, link: &mut Link, rows: &[store::Row<Self>]) -> Result<(), Failure> {
+        for (number, draft) in rows {
+            let reason = Reason::default().depending_on("the current data: written if different");
+            // Two rows that agree only in the given fields.
+            let filled = |which: usize| {
+                let columns = draft.iter().zip(&K::RECORDS.columns[1..]);
+                columns
+                    .map(|(text, (_, key))| text.clone().unwrap_or_else(|| samples(*key, *number)[which].into()))
+                    .collect()
+            };
+            match (stored::<K>(*number, filled(0)), stored::<K>(*number, filled(1))) {
+                (Ok((one, _)), Ok((other, _))) => link.plan_depending(&one, &other, reason),
+                _ => link.then(&format!("{} {number} is written", Self::WORDS.nouns[0])),
+            }
         }
         Ok(())
     }
 
-    async fn write(
-        &self,
-        link: &mut Link,
-        _screen: &Screen,
-        number: i32,
-        (_, new): (Option<&Row>, &Row),
-    ) -> Result<(), Failure> {
-        let (order, _) = stored::<K>(number, new.texts.clone())?;
-        link.ask(&order).await.map(drop)
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+        for (number, _, new) in rows {
+            let (order, _) = stored::<K>(*number, new.texts.clone())?;
+            link.ask(&order).await?;
+        }
+        Ok(())
     }
 }
 

@@ -130,7 +130,7 @@ fn yaskawa_brings_nothing_dangerous() {
     bench.write("new.jbi", &JOB.replace("NOP", "NOP\r\nNOP"));
     bench.write("OTHER.JBI", &JOB.replace("WELD", "OTHER"));
     bench.prepare("yerc file put WELD.JBI");
-    bench.prepare("yerc var dump vars.json");
+    bench.prepare("yerc var dump vars.csv");
     bench.prepare("backup press");
     bench.prepare("yerc file put new.jbi --as WELD.JBI --replace --yes");
     bench.prepare("yerc var set B1=77 --yes");

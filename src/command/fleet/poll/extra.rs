@@ -162,7 +162,7 @@ mod tests {
             ("toyo ports", "does not read from a robot"),
             ("yerc var get B0; yerc hold on", "is more than one command"),
             ("yerc status ; yerc hold on", "is more than one command"),
-            ("yerc var dump x.json", "uses a file or folder"),
+            ("yerc var dump x.csv", "uses a file or folder"),
             ("yerc file get A.JBI --dir x", "uses a file or folder"),
             ("yerc file diff A.JBI", "uses a file or folder"),
             ("yerc diff", "uses a file or folder"),

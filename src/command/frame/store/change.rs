@@ -55,7 +55,7 @@ struct Compared<S: Store> {
 
 impl<S: Store> Compared<S> {
     fn differs(&self) -> bool {
-        self.old.as_ref() != Some(&self.new)
+        self.old.as_ref().is_none_or(|old| !S::is_equal(old, &self.new))
     }
 }
 
@@ -101,7 +101,7 @@ async fn write_selected<S: Writable>(
     rows: Vec<Row<S>>,
 ) -> Result<Vec<Compared<S>>, Failure> {
     let keys: Vec<S::Key> = rows.iter().map(|(key, _)| *key).collect();
-    let read = match table.read(link, screen, &keys).await {
+    let read = match table.read_old(link, screen, &keys).await {
         // All are refused alike: each is judged below.
         Err(failure) if failure.kind == Kind::Refused => {
             let refused = keys.iter().map(|_| Err(failure.clone()));
@@ -110,16 +110,14 @@ async fn write_selected<S: Writable>(
         read => read,
     };
     let Some(answers) = read.known().map_err(unwritten)? else {
-        for (key, draft) in &rows {
-            table.plan(link, *key, draft).await?;
-        }
+        table.plan(link, &rows).await?;
         return Err(unknown());
     };
     let mut compared = Vec::with_capacity(rows.len());
     for ((key, draft), old) in rows.into_iter().zip(answers.rows) {
         let old = match old {
             Ok(old) => old,
-            Err(failure) if S::RISK < Risk::Destroy && failure.kind == Kind::Refused => None,
+            Err(failure) if S::risk(key) < Risk::Destroy && failure.kind == Kind::Refused => None,
             Err(failure) if S::is_undefined(&failure) => None,
             Err(failure) => return Err(unwritten(failure)),
         };
@@ -136,7 +134,8 @@ async fn write_selected<S: Writable>(
 /// What is overwritten that a person wrote, for a question.
 pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
     let lost = rows.iter().filter_map(|(key, old, new)| {
-        let old = old.filter(|old| old != new && !table.is_blank(old))?;
+        let is_lost = |old: &&S::Wire| S::risk(*key) == S::RISK && !S::is_equal(old, new) && !table.is_blank(old);
+        let old = old.filter(is_lost)?;
         let [old, new] = table.difference(old, new);
         Some((S::asked(*key), old, new))
     });
@@ -158,29 +157,39 @@ async fn write_each<S: Writable>(
     screen: &Screen,
     rows: &mut [Compared<S>],
 ) {
-    let differing = rows.iter().filter(|row| row.differs()).count();
-    let mut progress =
-        (differing > 1).then(|| screen.items_progress(&format!("writing {}", S::WORDS.nouns[1]), differing as u64));
+    let differing: Vec<usize> = (0..rows.len()).filter(|index| rows[*index].differs()).collect();
+    let blocks = table.blocks(&changes(rows, &differing));
+    let mut progress = (differing.len() > 1)
+        .then(|| screen.items_progress(&format!("writing {}", S::WORDS.nouns[1]), differing.len() as u64));
     let mut end: Option<Failure> = None;
-    for row in rows.iter_mut().filter(|row| row.differs()) {
-        row.outcome = match &end {
+    for block in blocks {
+        let block: Vec<usize> = block.into_iter().map(|index| differing[index]).collect();
+        let outcome = match &end {
             Some(failure) => Err(not_written(failure)),
             // Ctrl-C ends the work, and what was written is said.
-            None => match interruptible(table.write(link, screen, row.key, (row.old.as_ref(), &row.new))).await {
+            None => match interruptible(table.write(link, screen, &changes(rows, &block))).await {
                 Ok(outcome) => outcome.map(|()| true),
                 Err(interrupted) => Err(interrupted),
             },
         };
-        if let Err(failure) = &row.outcome
+        if let Err(failure) = &outcome
             && failure.kind != Kind::Refused
             && end.is_none()
         {
             end = Some(failure.clone());
         }
         if let Some(progress) = &mut progress {
-            progress.advance(1);
+            progress.advance(block.len() as u64);
+        }
+        for index in block {
+            rows[index].outcome = outcome.clone();
         }
     }
+}
+
+/// Rows with these indices, each with its old and its new content.
+fn changes<'r, S: Writable>(rows: &'r [Compared<S>], indices: &[usize]) -> Vec<Differing<'r, S>> {
+    indices.iter().map(|index| &rows[*index]).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
 }
 
 /// A row behind the one that ended the work.

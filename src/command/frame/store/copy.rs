@@ -51,6 +51,7 @@ impl<S: Writable> Command for Copy<S> {
             return Err(Failure::usage(format!("{name} cannot be copied to itself")).hint("name another row"));
         }
         let mut table = S::open(link, &self.options).await?;
+        table.prepare(link, &[&to[..], &[from]].concat()).await?;
         // A dry run knows no values: every field stays open.
         let mut texts = vec![None; table.fields().len()];
         if let Some(answers) = read(&mut table, link, screen, &[from]).await.known()? {
@@ -61,7 +62,9 @@ impl<S: Writable> Command for Copy<S> {
             texts = table.texts(&held).into_iter().map(Some).collect();
         }
         let texts: Vec<Option<&str>> = texts.iter().map(Option::as_deref).collect();
-        let draft = |key: S::Key| Ok((key, table.draft(key, &texts).map_err(Failure::local)?));
+        let draft = |key: S::Key| {
+            Ok((key, table.draft(key, &texts).map_err(|why| Failure::usage(why).hint("nothing was written"))?))
+        };
         let rows = to.into_iter().map(draft).collect::<Result<_, Failure>>()?;
         write(Work { table, robot, link, screen, authority }, rows).await?.or_only_failure()
     }

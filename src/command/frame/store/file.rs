@@ -18,7 +18,7 @@ use crate::command::frame::text_files;
 use crate::command::robot::item::asked;
 use crate::controller::Risk;
 use crate::controller::findings::Findings;
-use crate::controller::sheet::Sheet;
+use crate::controller::sheet::{Column, Sheet};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 use crate::output::view::View;
@@ -60,12 +60,13 @@ impl<S: Store> Command for Dump<S> {
             .filter(|_| self.rows.is_empty())
             .map_or_else(|| Ok(Rows::of(&self.rows)), |old| keys_of::<S>(&self.file, old))?;
         let mut table = S::open(link, &self.options).await?;
+        table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
         let (mut rows, mut errors) = (Vec::new(), Vec::new());
         for (key, outcome) in keys.iter().zip(answers.rows) {
             let name = S::name(*key);
             match defined::<S>(outcome) {
-                Ok(Some(wire)) if old.is_some() || !table.is_blank(&wire) => {
+                Ok(Some(wire)) if S::SAVES_BLANK || old.is_some() || !table.is_blank(&wire) => {
                     rows.push([vec![name], table.texts(&wire)].concat());
                 }
                 Ok(None) if old.is_some() => {
@@ -75,8 +76,25 @@ impl<S: Store> Command for Dump<S> {
                 Err(failure) => errors.push(ItemError::new(asked(S::WORDS.nouns[0], &name), failure)),
             }
         }
-        let file = target.write(&sheet(&table), &rows, canonical::<S>)?;
+        let mut columns = sheet(&table);
+        if old.is_none() {
+            leave_out_unused(&table, &mut columns, &mut rows);
+        }
+        let file = target.write(&columns, &rows, canonical::<S>)?;
         Ok(Dumped { file, saved: rows.len(), failed: errors })
+    }
+}
+
+/// Removes optional columns in which no row has a value.
+fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &mut [Vec<String>]) {
+    let optional = std::iter::once(false).chain(table.fields().into_iter().map(|field| field.is_optional));
+    let is_used = |(at, is_optional): (usize, bool)| !is_optional || rows.iter().any(|row| !row[at].is_empty());
+    let used: Vec<bool> = optional.enumerate().map(is_used).collect();
+    let mut kept = used.iter();
+    columns.retain(|_| kept.next().is_some_and(|used| *used));
+    for row in rows {
+        let mut kept = used.iter();
+        row.retain(|_| kept.next().is_some_and(|used| *used));
     }
 }
 
@@ -162,9 +180,11 @@ impl<S: Writable> Command for Restore<S> {
     async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
         let Context { robot, link, screen, authority, .. } = context;
         let name = text_files::shown(&self.file);
-        let table = S::open(link, &self.options).await?;
+        let mut table = S::open(link, &self.options).await?;
+        let bytes = text_files::read(&self.file)?;
+        table.prepare(link, &keys_of::<S>(&self.file, &bytes).unwrap_or_default()).await?;
         let mut findings = Findings::default();
-        let mut rows = parse(&table, &text_files::read(&self.file)?, &mut findings);
+        let mut rows = parse(&table, &bytes, &mut findings);
         if findings.errors() > 0 {
             return Err(text_files::faulty(&name, &findings.into_errors()));
         }
@@ -205,7 +225,7 @@ fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> Vec<(
         findings.error(sheet.end_of_head(), "column name is missing".to_owned(), Some(expected));
         return rows;
     };
-    let mut seen = HashMap::new();
+    let (fields, mut seen) = (table.fields(), HashMap::new());
     for row in sheet.rows() {
         let key = match read_keys::<S>(row.text(of_name)).as_deref() {
             Ok([key]) => *key,
@@ -222,9 +242,10 @@ fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> Vec<(
             findings.error(row.place(of_name), format!("{} is in line {other} already", S::name(key)), None);
         }
         let mut texts = Vec::new();
-        for (column, place) in columns.iter().zip(&places).skip(1) {
+        for ((column, place), field) in columns.iter().zip(&places).skip(1).zip(&fields) {
             texts.push(match place {
                 None => None,
+                Some(at) if field.is_optional && row.string(*at).is_empty() => None,
                 Some(at) if column.is_number => match sheet.number(row, *at) {
                     Ok(number) if !number.is_empty() => Some(number.into_owned()),
                     Ok(_) => {
@@ -239,6 +260,10 @@ fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> Vec<(
                 },
                 Some(at) => Some(row.string(*at).to_owned()),
             });
+        }
+        // A row that is not defined has no value in its file.
+        if fields.iter().all(|field| field.is_optional) && texts.iter().all(Option::is_none) {
+            continue;
         }
         let texts: Vec<Option<&str>> = texts.iter().map(Option::as_deref).collect();
         match table.draft(key, &texts) {

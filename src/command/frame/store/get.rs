@@ -4,6 +4,7 @@ use clap::Args;
 
 use super::{ItemsOf, Store, columns, item, read, read_keys};
 use crate::command::frame::command::{Command, Context};
+use crate::command::frame::items::ItemError;
 use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::robot::item::{Item, Items};
@@ -59,10 +60,22 @@ impl<S: Store> Command for Get<S> {
         let Context { robot, link, screen, .. } = context;
         let keys = Rows::of(&self.rows);
         let mut table = S::open(link, &self.options).await?;
+        table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
         let names = names::of(robot, screen);
-        let items = keys.iter().zip(answers.rows).map(|(key, outcome)| item(&table, names, *key, outcome));
-        Items::new(columns(&table), items.collect()).asked(answers.asked).or_only_failure()
+        let mut undefined = Vec::new();
+        let items = keys.iter().zip(answers.rows).map(|(key, outcome)| {
+            let outcome = match outcome {
+                Err(failure) if S::UNDEFINED_IS_NULL && S::is_undefined(&failure) => {
+                    undefined.push(ItemError::new(S::asked(*key), failure));
+                    Ok(None)
+                }
+                outcome => outcome,
+            };
+            item(&table, names, *key, outcome)
+        });
+        let items = items.collect();
+        Items::new(columns(&table), items).asked(answers.asked).undefined(undefined).or_only_failure()
     }
 }
 
@@ -98,6 +111,7 @@ impl<S: Store> Command for List<S> {
         let Context { robot, link, screen, .. } = context;
         let keys = Rows::of(&self.rows);
         let mut table = S::open(link, &self.options).await?;
+        table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
         let names = names::of(robot, screen);
         let rows = answers.rows.into_iter().map(defined::<S>);

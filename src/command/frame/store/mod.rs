@@ -15,7 +15,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use self::change::{Work, overwritten, write};
+pub use self::change::{Row, Work, overwritten, write};
 pub use self::copy::Copy;
 pub use self::file::{Dump, Restore};
 pub use self::get::{Get, List};
@@ -42,17 +42,25 @@ pub struct Field {
     pub heading: &'static str,
     /// Whether it is a number.
     pub is_number: bool,
+    /// Whether only some rows have it: a file has no column for it if no row has a value, and an empty cell means none.
+    pub is_optional: bool,
 }
 
 impl Field {
     /// A number.
     pub const fn number(name: &'static str, heading: &'static str) -> Self {
-        Self { name: Cow::Borrowed(name), alias: None, heading, is_number: true }
+        Self { name: Cow::Borrowed(name), alias: None, heading, is_number: true, is_optional: false }
     }
 
     /// A text.
     pub const fn text(name: &'static str, heading: &'static str) -> Self {
-        Self { name: Cow::Borrowed(name), alias: None, heading, is_number: false }
+        Self { name: Cow::Borrowed(name), alias: None, heading, is_number: false, is_optional: false }
+    }
+
+    /// A field that only some rows have.
+    #[must_use]
+    pub fn optional(self) -> Self {
+        Self { is_optional: true, ..self }
     }
 }
 
@@ -116,6 +124,8 @@ macro_rules! table_commands {
                 Get($crate::command::frame::store::Get<$store>),
                 /// List all that hold something
                 List($crate::command::frame::store::List<$store>),
+                /// Print each change
+                Watch($crate::command::frame::watch::Watch<$crate::command::frame::store::Get<$store>>),
                 /// Set one: its number, then its values
                 Set($crate::command::frame::store::Set<$store>),
                 /// Copy one to others: 5 6-8
@@ -175,6 +185,10 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     const LABELS: Option<Kind> = None;
     /// What completes a row.
     const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
+    /// Whether `dump` saves blank rows as well.
+    const SAVES_BLANK: bool = false;
+    /// Whether `get` reports a row that is not defined as null beside rows that are, and fails only if none is defined.
+    const UNDEFINED_IS_NULL: bool = false;
 
     /// Rows as typed: one, or a range.
     ///
@@ -208,6 +222,15 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// Asks the controller what must be known before a row is read or written, such as the letters of the axes. Nothing is
     /// changed.
     async fn open(link: &mut <Self::Family as Family>::Link, options: &Self::Options) -> Result<Self, Failure>;
+
+    /// Asks the controller what must be known of these rows in particular, before they are read or parsed from a file.
+    async fn prepare(
+        &mut self,
+        _link: &mut <Self::Family as Family>::Link,
+        _keys: &[Self::Key],
+    ) -> Result<(), Failure> {
+        Ok(())
+    }
 
     /// Risk of reading rows: Write where another table has to be selected on the controller for that.
     fn risk_of_reading(_options: &Self::Options) -> Risk {
@@ -261,6 +284,11 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// What the family adds to the item of a row; without `wire`, that was not read, or is not defined.
     fn more(&self, key: Self::Key, wire: Option<&Self::Wire>) -> Self::More;
 
+    /// Whether two rows hold the same.
+    fn is_equal(old: &Self::Wire, new: &Self::Wire) -> bool {
+        old == new
+    }
+
     /// Whether a row holds nothing that anybody wrote.
     fn is_blank(&self, _wire: &Self::Wire) -> bool {
         false
@@ -293,8 +321,13 @@ pub trait Writable: Store {
     /// What a row shall hold, as far as that was given.
     type Draft: Debug + Clone;
 
-    /// Write, or Destroy where a person wrote or taught what is overwritten.
+    /// Write, or Destroy where a person wrote or taught what is overwritten; of the row with the highest risk.
     const RISK: Risk;
+
+    /// Risk of writing this row.
+    fn risk(_key: Self::Key) -> Risk {
+        Self::RISK
+    }
 
     /// What a row shall hold, from the text of each field; a field without text stays.
     ///
@@ -326,28 +359,40 @@ pub trait Writable: Store {
         None
     }
 
-    /// Notes in a dry run what writes a row, and reads it back.
-    async fn plan(
+    /// Reads rows before they are written; a dry run may note another purpose of the questions.
+    ///
+    /// # Errors
+    /// As those of [`read`](Store::read).
+    async fn read_old(
         &self,
         link: &mut <Self::Family as Family>::Link,
-        key: Self::Key,
-        draft: &Self::Draft,
-    ) -> Result<(), Failure>;
+        screen: &Screen,
+        keys: &[Self::Key],
+    ) -> Result<Answers<Self::Wire>, Failure> {
+        self.read(link, screen, keys).await
+    }
 
-    /// Writes a row; the change is from what it holds, as far as that is known, to what it shall hold.
+    /// Rows that one request writes, by their index; otherwise each row has a request of its own.
+    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+        (0..rows.len()).map(|index| vec![index]).collect()
+    }
+
+    /// Notes in a dry run what writes rows, and reads them back.
+    async fn plan(&self, link: &mut <Self::Family as Family>::Link, rows: &[Row<Self>]) -> Result<(), Failure>;
+
+    /// Writes the rows of a [block](Self::blocks).
     async fn write(
         &self,
         link: &mut <Self::Family as Family>::Link,
         screen: &Screen,
-        key: Self::Key,
-        change: (Option<&Self::Wire>, &Self::Wire),
+        rows: &[Differing<'_, Self>],
     ) -> Result<(), Failure>;
 }
 
 /// The report of reads.
 type ItemsOf<S> = Items<<S as Store>::Value, <S as Store>::More>;
 /// The report of writes.
-type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
+pub type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
 
 /// The item of a row.
 fn item<S: Store>(
@@ -360,6 +405,8 @@ fn item<S: Store>(
     let label = S::LABELS.and_then(|kind| labels::label(names, kind, &S::address(key)));
     let wire = outcome.as_ref().ok().and_then(Option::as_ref);
     let (cells, more) = (wire.map(|wire| table.cells(key, wire)).unwrap_or_default(), table.more(key, wire));
+    // A row that was read and has no value.
+    let cells = if matches!(outcome, Ok(None)) { vec!["undefined".into()] } else { cells };
     let value = outcome.map(|wire| wire.as_ref().and_then(|wire| table.value(wire)));
     Item { cells, ..Item::with(S::WORDS.nouns[0], name, more, value) }.labelled(label)
 }

@@ -175,6 +175,7 @@ impl Store for Points {
             alias: Some(alias),
             heading: heading(axis, &letters[axis]),
             is_number: true,
+            is_optional: false,
         };
         NUMBERED.into_iter().enumerate().map(field).collect()
     }

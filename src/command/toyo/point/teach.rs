@@ -71,7 +71,7 @@ impl Teach {
         let here = stands(link).await.known()?;
         let found = link.ask(&points.request(point)?).await.known()?;
         let Some((here, found)) = here.zip(found) else {
-            points.plan(link, point, &Changes::of(vec![None; AXES])).await?;
+            points.plan(link, &[(point, Changes::of(vec![None; AXES]))]).await?;
             return Err(unknown());
         };
         let place = Coordinates::of(&here, points.letters());
@@ -90,7 +90,7 @@ impl Teach {
         }
         let is_there = found == new;
         if !is_there {
-            points.write(link, screen, point, (Some(&found), &new)).await?;
+            points.write(link, screen, &[(point, Some(&found), &new)]).await?;
         }
         // What was written has been read back and is that.
         let name = point.to_string();

@@ -53,8 +53,8 @@ fn many_variables_are_a_handful_of_requests() {
     };
     assert_eq!(commands(&["var", "get", "B0..B99", "I0..I99", "D0..D99"]), ["0203", "0303", "0403"]);
     assert_eq!(commands(&["var", "get", "D5", "B0", "B0"]), ["7a00", "7c00"]);
-    assert_eq!(commands(&["var", "dump", "-", "--kinds", "P"]).len(), 15);
-    assert_eq!(commands(&["var", "dump", "-", "--kinds", "s"]).len(), 8);
+    assert_eq!(commands(&["var", "list", "P"]).len(), 15);
+    assert_eq!(commands(&["var", "list", "s"]).len(), 8);
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn undefined_positions_in_a_range_are_reported_one_by_one() {
         shown,
         [("P18", null), ("P19", null), ("P20", &p20), ("P21", null), ("P22", null), ("EX3", &ex3), ("B8", null)]
     );
-    assert_eq!((&entries[0]["undefined"], &entries[0]["ok"]), (&Value::from(true), &Value::from(true)));
+    assert_eq!((&entries[0]["value"], &entries[0]["ok"]), (null, &Value::from(true)));
     assert_eq!(entries[6]["value"], 0);
     let (_, failure) = bench.run(&["var", "get", "P18..P19"]).unwrap();
     assert_eq!(failure.unwrap().kind.exit(), 3);
@@ -115,7 +115,7 @@ fn numbers_beyond_the_last_are_found_and_named() {
 fn a_dump_is_restored_to_the_last_byte() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (first, second) = (path("first.json"), path("second.json"));
+    let (first, second) = (path("first.csv"), path("second.csv"));
     let mut bench = Bench::new("sim:?model=dx200");
     let values = [
         "B0=255",
@@ -129,31 +129,36 @@ fn a_dump_is_restored_to_the_last_byte() {
     ];
     bench.data(&[&["var", "set"], &values[..]].concat());
     let summary = bench.data(&["var", "dump", &first]);
-    assert_eq!(summary["variables"], 500 + 3 * 128);
     assert_eq!(bench.run(&["var", "dump", &first]).unwrap_err().kind.exit(), 1);
     let mut other = Bench::new("sim:?model=dx200");
     let restored = other.data(&["var", "restore", &first]);
-    let counts = ["written", "unchanged", "left_alone"].map(|count| restored[count].as_u64().unwrap());
-    assert_eq!(
-        (counts.iter().sum::<u64>(), &restored["written_names"]),
-        (884, &"B0, I99, D5, R3..R4, S7, P5, BP1".into())
-    );
+    let items = restored["items"].as_array().unwrap();
+    assert_eq!(items.len(), usize::try_from(summary["saved"].as_u64().unwrap()).unwrap());
+    let written = items.iter().filter(|item| item["written"] == true).map(|item| item["name"].as_str().unwrap());
+    assert_eq!(written.collect::<Vec<_>>(), ["B0", "I99", "D5", "R3", "R4", "S7", "P5", "BP1"]);
     other.data(&["var", "dump", &second]);
-    let variables = |path: &str| {
-        let text = std::fs::read_to_string(path).unwrap();
-        let lines = text.lines().filter(|line| line.contains("\"name\"")).map(ToOwned::to_owned);
-        lines.collect::<Vec<String>>()
-    };
-    let (before, after) = (variables(&first), variables(&second));
-    assert_eq!(before.len(), 884);
-    if let Some((before, after)) = before.iter().zip(&after).find(|(before, after)| before != after) {
-        panic!("{before} became {after}");
-    }
+    assert_eq!(std::fs::read_to_string(&first).unwrap(), std::fs::read_to_string(&second).unwrap());
     for name in ["P5", "R4", "S7", "BP1"] {
         assert_eq!(bench.data(&["var", "get", name]), other.data(&["var", "get", name]));
     }
-    let only = other.data(&["var", "restore", &first, "--only", "B,S"]);
-    assert_eq!((&only["written"], &only["unchanged_names"]), (&0.into(), &"B0..B99, S0..S99".into()));
+    let only = other.data(&["var", "restore", &first, "B,S"]);
+    let items = only["items"].as_array().unwrap();
+    assert_eq!(items.len(), 200);
+    assert!(items.iter().all(|item| item["written"] == false), "{only}");
+}
+
+#[test]
+fn a_variable_is_copied_to_others_of_its_kind() {
+    let mut bench = Bench::new("sim:");
+    bench.data(&["var", "set", "B1=7", "P20=pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=3", "S1=a,\"b\""]);
+    bench.data(&["var", "copy", "B1", "B2..B3"]);
+    bench.data(&["var", "copy", "P20", "P21"]);
+    bench.data(&["var", "copy", "S1", "S2"]);
+    let data = bench.data(&["var", "get", "B3", "P21", "S2"]);
+    let value = |index: usize| data["items"][index]["value"].clone();
+    assert_eq!((value(0), value(2)), (Value::from(7), Value::from("a,\"b\"")));
+    assert_eq!(value(1)["text"], "pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=3,user=0");
+    assert_eq!(bench.run(&["var", "copy", "P20", "B1"]).unwrap_err().kind.exit(), 2);
 }
 
 #[test]

@@ -4,55 +4,40 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use super::super::orders::usage;
-use super::super::writes::{WriteOrder, before, write_all};
-use super::entry::Entry;
-use super::overwrite::{overwritten, read_taught, with_field};
-use super::part::{self, Word, Words};
-use super::position::as_position;
-use super::read::once;
-use super::{in_form, listed, model_of};
-use crate::command::frame::dry_run::unknown;
-use crate::command::frame::orders::Old;
+use super::cells::LAST_TOOL;
+use super::table::{Draft, StringForm, Variables};
+use super::word::Word;
+use crate::command::frame::names;
+use crate::command::frame::store::{Row, Store as _, Work, WrittenOf, write};
 use crate::command::frame::teach::printed_position;
-use crate::command::frame::{names, orders};
 use crate::command::yerc::complete;
-use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::names::Kind;
 use crate::controller::typed::{self, integer};
-use crate::controller::yerc::payload::{PayloadError, Position};
-use crate::controller::yerc::query::{Query, WriteField, WriteVariable};
-use crate::controller::yerc::request::Request;
-use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_reads, plan_writes};
+use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 use crate::failure::Failure;
-use crate::gate::{self, Confirmation};
-use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Table, View};
+use crate::gate::Confirmation;
 
 /// Writes variables.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "All values are checked before the first is sent; consecutive numbers are sent in one request. A \
-                  position is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with \
-                  tool=, user=, form=back+lower+noflip. @FILE reads the output of `var get P1 --json` or `position \
-                  --json` (its pulses, if it has both; @- is stdin). P1=here is the same as `teach P1`. BP accepts \
-                  base: or pulse:, EX pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change only that word (a P is \
-                  read, changed and written back completely). Axis words are in protocol steps (pulses, or 0.001 mm \
-                  and 0.0001 degree)."
+    after_help = "All values are checked before the first is sent; consecutive numbers are sent in one request. What a \
+                  variable holds already is not written. A position is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or \
+                  base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with tool=, user=, form=back+lower+noflip. @FILE \
+                  reads the output of `var get P1 --json` or `position --json` (its pulses, if it has both; @- is \
+                  stdin). P1=here is the same as `teach P1`. BP accepts base: or pulse:, EX pulse:1=…. P1.tool=2, \
+                  P1.user=1 and BP5.axis1=-1 change only that word (a P is read, changed and written back \
+                  completely). Axis words are in protocol steps (pulses, or 0.001 mm and 0.0001 degree)."
 )]
 pub struct Set {
     /// B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
     #[arg(required = true, value_name = "REF=VALUE", add = complete::VARIABLE_VALUE)]
     assignments: Vec<Assignment>,
-    /// Write strings with the 16-byte commands, even on a DX200
-    #[arg(long)]
-    s16: bool,
+    #[command(flatten)]
+    form: StringForm,
 }
 
 /// An assignment such as `B0=255`, checked as far as possible without the robot's settings.
@@ -69,9 +54,7 @@ enum Input {
     Text(String),
     /// Position in a JSON file.
     File(PathBuf),
-    /// One word of a BP or EX.
-    Field(WriteField),
-    /// One word of a P.
+    /// One word of a position.
     Word(Word),
 }
 
@@ -86,7 +69,7 @@ impl FromStr for Assignment {
             return Ok(Self { reference: ANY, input: Input::Text(value.to_owned()) });
         };
         if let Some(field) = field {
-            return Ok(Self { reference, input: field_of(reference, field, value)? });
+            return Ok(Self { reference, input: Input::Word(word(reference, field, value)?) });
         }
         let kind = reference.kind;
         let input = match value.strip_prefix('@') {
@@ -125,9 +108,6 @@ fn is_part(field: &str) -> bool {
     matches!(field, "tool" | "user") || field.strip_prefix("axis").is_some_and(|number| number.parse::<u8>().is_ok())
 }
 
-/// Tools are 0 to 63 (3.3.16).
-const LAST_TOOL: u32 = 63;
-
 fn in_range(what: &str, number: u32) -> Result<u32, String> {
     if number <= LAST_TOOL {
         Ok(number)
@@ -137,7 +117,7 @@ fn in_range(what: &str, number: u32) -> Result<u32, String> {
 }
 
 /// Parses a single word (3.3.16 to 3.3.18).
-fn field_of(reference: Reference, field: &str, value: &str) -> Result<Input, String> {
+fn word(reference: Reference, field: &str, value: &str) -> Result<Word, String> {
     let kind = reference.kind;
     if !kind.is_position() {
         return Err(format!("{reference} has no parts; only positions (P, BP, EX) have parts"));
@@ -150,18 +130,13 @@ fn field_of(reference: Reference, field: &str, value: &str) -> Result<Input, Str
             let number = number.and_then(|number| u32::try_from(number).ok());
             let number = number.ok_or_else(|| format!("'{value}' is not a number from 0 to {LAST_TOOL}"))?;
             let number = in_range(field, number)?;
-            Ok(Input::Word(if field == "tool" { Word::Tool(number) } else { Word::User(number) }))
+            Ok(if field == "tool" { Word::Tool(number) } else { Word::User(number) })
         }
         (_, Some(axis)) => {
             let steps = number.and_then(|number| i32::try_from(number).ok()).ok_or_else(|| {
                 format!("'{value}' is not a number from {} to {} (protocol steps)", i32::MIN, i32::MAX)
             })?;
-            if is_robot {
-                return Ok(Input::Word(Word::Axis(usize::from(axis) - 1, steps)));
-            }
-            // The type precedes the axes.
-            let field = WriteField::new(kind, reference.number, 1 + axis, steps.to_le_bytes()).map_err(message)?;
-            Ok(Input::Field(field))
+            Ok(Word::Axis(axis - 1, steps))
         }
         _ if is_robot => Err(format!("'{field}' is not a valid part to write; there are tool, user, axis1 to axis8")),
         _ => Err(format!("'{field}' is not a valid part to write; there are axis1 to axis8")),
@@ -175,8 +150,8 @@ fn message(error: impl ToString) -> String {
 
 impl Command for Set {
     type Family = Yerc;
-    type Report = Written;
-    const ID: &'static str = "yerc.var.set";
+    type Report = WrittenOf<Variables>;
+    const ID: &'static str = Variables::IDS.set;
     const INTENT: &'static str = "overwrite taught positions";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
@@ -186,238 +161,56 @@ impl Command for Set {
         if is_position { Risk::Destroy } else { Risk::Write }
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Written, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenOf<Variables>, Failure> {
         let Context { link, screen, robot, authority, .. } = context;
-        let names = names::of(robot, screen);
-        let mut values = Vec::new();
-        let mut fields = Vec::new();
-        let mut words = Words::new();
-        let mut given: Vec<(Reference, u8)> = Vec::new();
-        let references = self.assignments.iter().map(|assignment| &assignment.reference);
-        let model = model_of(link, references, self.s16).await?;
-        for assignment in &self.assignments {
-            let reference = in_form(assignment.reference, model, self.s16);
-            let part = match &assignment.input {
-                Input::Field(field) => {
-                    fields.push(Change::Field(reference, field.clone()));
-                    field.request().attribute
-                }
-                Input::Word(word) => {
-                    words.entry(reference).or_default().push(*word);
-                    word.attribute()
-                }
-                input => {
-                    values.push((reference, value_of(reference, input, link)?));
-                    0
-                }
-            };
-            if given.contains(&(reference, part)) {
-                return Err(Failure::usage(format!("{reference} is given twice")).hint("give each variable one value"));
-            }
-            given.push((reference, part));
-        }
-        let mut whole_words = Vec::new();
-        for (reference, value) in &mut values {
-            // Words of a position that is written completely are merged into it.
-            let Value::Position(position) = value else { continue };
-            for word in words.remove(reference).unwrap_or_default() {
-                word.set(position);
-                whole_words.push((*reference, word));
-            }
-        }
-        let plain: Vec<(u16, Value)> =
-            values.iter().map(|(reference, value)| (reference.number, value.clone())).collect();
-        let steps = plan_writes(&plain).map_err(usage)?;
-        let replaced = values.iter().map(|(reference, _)| *reference).chain(changed_in_part(&fields));
-        let (positions, others): (Vec<_>, Vec<_>) = replaced.partition(|reference| reference.kind.is_position());
-        let plain_old = before(link, &plan_reads(&others)).await?;
-        let taught = read_taught(link, &once(positions)).await?;
-        let old = |reference: &Reference| plain_old.get(reference).or_else(|| taught.get(reference)?.as_ref().ok());
-        let position = |reference: &Reference| old(reference).map(as_position);
-        let mut parts: Vec<Part> = self.assignments.iter().filter_map(|it| it.part(position(&it.reference))).collect();
-        parts.extend(
-            whole_words
-                .into_iter()
-                .map(|(reference, word)| Part::new(reference, word, position(&reference).map(|old| word.old(&old)))),
-        );
-        let mut changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
-        if link.is_dry() && !words.is_empty() {
-            part::plan_reads(link, &words);
-            authority.confirm(&gate::Change::nothing()).await?;
-            for change in &changes {
-                link.plan(&change.request(), &format!("writes {}", Change::listed(change.items())));
-            }
-            part::plan_writes(link, &words)?;
-            return Err(unknown());
-        }
-        let mut known = taught.clone();
-        let mut differing = values.clone();
-        for change in &changes {
-            let Change::Field(reference, field) = change else { continue };
-            let new = old(reference).and_then(|old| with_field(old, &field.request()));
-            differing.extend(new.map(|new| (*reference, new)));
-        }
-        for (reference, old, new) in part::changed(link, &words).await? {
-            let words = words.get(&reference).into_iter().flatten();
-            parts.extend(words.map(|word| Part::new(reference, *word, Some(word.old(&old)))));
-            known.insert(reference, Ok(Value::Position(old)));
-            differing.push((reference, Value::Position(new)));
-            let write = WriteVariable::new(reference.number, Value::Position(new)).map_err(usage)?;
-            changes.push(Change::Position(reference, write));
-        }
-        authority.confirm(&overwritten(&known, &differing, link.encoding)).await?;
-        write_all(link, screen, &changes).await?;
-        let entry = |reference, value| Entry::new(reference, &Ok(value), link.encoding).labelled(names);
-        let written = values.into_iter().map(|(reference, value)| {
-            let old = old(&reference).map(|old| entry(reference, old.clone()).data());
-            let item = entry(reference, value);
-            let new = item.data();
-            orders::Written::new(item, Old::read(old), new)
-        });
-        Ok(Written { items: written.collect(), parts })
+        let mut table = Variables::open(link, &self.form).await?;
+        let keys: Vec<Reference> = self.assignments.iter().map(|assignment| assignment.reference).collect();
+        table.prepare(link, &keys).await?;
+        let rows = self.rows(&table)?;
+        write(Work { table, robot, link, screen, authority }, rows).await?.or_only_failure()
     }
 }
 
-/// Positions of which single words are written.
-fn changed_in_part(fields: &[Change]) -> impl Iterator<Item = Reference> {
-    fields.iter().flat_map(WriteOrder::items)
-}
-
-impl Assignment {
-    fn part(&self, old: Option<Position>) -> Option<Part> {
-        let Input::Field(field) = &self.input else { return None };
-        let request = field.request();
-        let word = request.data.first_chunk().map_or(0, |word| i32::from_le_bytes(*word));
-        Some(Part {
-            name: self.reference.to_string(),
-            part: format!("axis{}", request.attribute.saturating_sub(1)),
-            attribute: request.attribute,
-            old: old
-                .and_then(|old| old.axes.padded().get(usize::from(request.attribute).checked_sub(2)?).copied())
-                .map(Into::into),
-            new: word.into(),
-            value: word.into(),
-        })
+impl Set {
+    /// The new content of each variable. Words of a position that is written completely are merged into it.
+    fn rows(&self, table: &Variables) -> Result<Vec<Row<Variables>>, Failure> {
+        let mut rows: Vec<Row<Variables>> = Vec::new();
+        let twice = |key| Failure::usage(format!("{key} is given twice")).hint("give each variable one value");
+        for Assignment { reference, input } in &self.assignments {
+            let row = rows.iter_mut().find(|(key, _)| key == reference).map(|(_, draft)| draft);
+            match (input, row) {
+                (Input::Word(word), None) => rows.push((*reference, Draft::Words(vec![*word]))),
+                (Input::Word(word), Some(Draft::Words(words))) if words.iter().all(|it| it.name() != word.name()) => {
+                    words.push(*word);
+                }
+                (Input::Word(word), Some(Draft::Whole(value))) => word.set(value),
+                (input, None) => rows.push((*reference, Draft::Whole(value_of(table, *reference, input)?))),
+                (input, Some(draft)) => {
+                    let (Draft::Words(words), false) = (&*draft, matches!(input, Input::Word(_))) else {
+                        return Err(twice(reference));
+                    };
+                    let mut value = value_of(table, *reference, input)?;
+                    words.iter().for_each(|word| word.set(&mut value));
+                    *draft = Draft::Whole(value);
+                }
+            }
+        }
+        Ok(rows)
     }
 }
 
-fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, Failure> {
-    let wrong = |error: String| {
-        let hint = "see `armctl yerc var set --help` for the notation of values";
-        Failure::usage(format!("{reference}: {error}")).hint(hint)
-    };
+fn value_of(table: &Variables, reference: Reference, input: &Input) -> Result<Value, Failure> {
+    let wrong = |error: String| Failure::usage(format!("{reference}: {error}"));
     match input {
         Input::Ready(value) => Ok(value.clone()),
-        Input::Text(text) => {
-            let bytes = link.encode(&reference.to_string(), text)?;
-            Value::from_text(reference.kind, &bytes).map_err(|error| {
-                wrong(error.to_string()).hint("shorten the text; full-width characters take two bytes each")
-            })
-        }
-        Input::File(path) => {
-            let wrong = |error: String| {
-                let hint = "use a file from `yerc var get P1 --json` or `yerc position --json`";
-                Failure::usage(format!("{}: {error}", path.display())).hint(hint)
-            };
-            let text = printed_position(path)?;
-            Value::from_text(reference.kind, text.as_bytes()).map_err(|error| {
-                wrong(error.to_string()).hint(format!("it must be a position of {}", reference.kind.letters()))
-            })
-        }
-        Input::Field(_) | Input::Word(_) => Err(wrong("a part is not a value".to_owned())),
-    }
-}
-
-/// A request of `var set`.
-#[derive(Debug, Clone, PartialEq)]
-enum Change {
-    Values(WriteStep),
-    Field(Reference, WriteField),
-    Position(Reference, WriteVariable),
-}
-
-impl Query for Change {
-    type Answer = ();
-
-    fn request(&self) -> Request {
-        match self {
-            Self::Values(step) => step.request(),
-            Self::Field(_, field) => field.request(),
-            Self::Position(_, position) => position.request(),
-        }
-    }
-
-    fn decode(&self, _: &[u8]) -> Result<(), PayloadError> {
-        Ok(())
-    }
-}
-
-impl WriteOrder for Change {
-    type Item = Reference;
-
-    fn items(&self) -> Vec<Reference> {
-        match self {
-            Self::Values(step) => step.written().to_vec(),
-            Self::Field(reference, _) | Self::Position(reference, _) => vec![*reference],
-        }
-    }
-
-    fn listed(items: Vec<Reference>) -> String {
-        listed(items)
-    }
-}
-
-/// Confirmed writes.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Written {
-    /// Complete variables.
-    items: Vec<orders::Written<Entry>>,
-    /// Single words of positions.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    parts: Vec<Part>,
-}
-
-/// A word of a position.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Part {
-    /// `P1`.
-    name: String,
-    /// `tool`, `user` or `axis1`.
-    part: String,
-    /// Attribute: its index starting with 1, the type.
-    attribute: u8,
-    /// Old value; null if it was not read.
-    old: Option<i64>,
-    /// New value.
-    new: i64,
-    /// New value (same as `new`).
-    value: i64,
-}
-
-impl Part {
-    fn new(reference: Reference, word: Word, old: Option<i64>) -> Self {
-        let (name, part) = (reference.to_string(), word.name());
-        Self { name, part, attribute: word.attribute(), old, new: word.value(), value: word.value() }
-    }
-}
-
-impl Report for Written {
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("items")
-    }
-
-    fn view(&self) -> View {
-        let mut table = Table::new(&["written", "label", "value"], "nothing to write");
-        let entries = || self.items.iter().map(|written| &written.item);
-        let numbers = entries().all(Entry::is_number);
-        for entry in entries() {
-            let value = if numbers { Cell::number(entry.shown()) } else { entry.shown().into() };
-            table.row([entry.name().into(), Cell::maybe(entry.label()), value]);
-        }
-        for part in &self.parts {
-            table.row([format!("{}.{}", part.name, part.part).into(), Cell::maybe(None::<&str>), part.value.into()]);
-        }
-        View::table(table.without_blank("label"))
+        Input::Text(text) => table.parse(reference, text).map_err(|error| {
+            wrong(error).hint("full-width characters take two bytes each; --encoding sets the encoding of the robot")
+        }),
+        Input::File(path) => table.parse(reference, &printed_position(path)?).map_err(|error| {
+            Failure::usage(format!("{}: {error}", path.display()))
+                .hint(format!("it must be a position of {}", reference.kind.letters()))
+        }),
+        Input::Word(_) => Err(wrong("a part is not a value".to_owned())),
     }
 }
 

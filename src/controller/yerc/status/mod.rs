@@ -207,7 +207,8 @@ fn status_text(code: u8) -> String {
     format!("0x{code:02X}")
 }
 
-fn added_text(code: u32) -> String {
+/// Added status as text: `0xB005`.
+pub fn added_text(code: u32) -> String {
     format!("0x{code:04X}")
 }
 
