@@ -18,16 +18,17 @@ use crate::command::{AnyCommand, ConnectMode, Driver, Outcome};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Confirmation, Intent};
+use crate::output::csv::Sheet;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
 /// A parsed command, or the error.
 type Parsed = Result<Box<dyn AnyCommand>, Failure>;
 
-/// A read command in words that all families have.
+/// A read command in words that all families have, or the first of several that a family has.
 pub struct SharedLine {
     id: &'static str,
-    words: Vec<String>,
+    lines: Vec<Vec<String>>,
     /// Commands by family, with placeholder addresses for names.
     usual: Vec<(Family, Parsed)>,
     /// Commands by robot name.
@@ -37,11 +38,20 @@ pub struct SharedLine {
 impl SharedLine {
     /// Parses a line; `id` is its command id in envelopes and schemas.
     pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
+        Self::first_of(id, vec![words])
+    }
+
+    /// Reads a value by its name or label, whatever it is: `NOUN get NAME` with the first noun that has it.
+    pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self, Failure> {
+        Self::first_of(id, nouns.iter().map(|noun| [*noun, "get", name].map(ToOwned::to_owned).into()).collect())
+    }
+
+    fn first_of(id: &'static str, lines: Vec<Vec<String>>) -> Result<Self, Failure> {
         let usual: Vec<(Family, Parsed)> =
-            Family::ALL.into_iter().map(|family| (family, names::asking(|| parse(family, &words)).0)).collect();
+            Family::ALL.into_iter().map(|family| (family, names::asking(|| parse_first(family, &lines)).0)).collect();
         match usual.iter().find(|_| usual.iter().all(|(_, parsed)| parsed.is_err())) {
             Some((_, Err(failure))) => Err(failure.clone()),
-            _ => Ok(Self { id, words, usual, own: RefCell::default() }),
+            _ => Ok(Self { id, lines, usual, own: RefCell::default() }),
         }
     }
 
@@ -53,7 +63,7 @@ impl SharedLine {
     fn of(&self, robot: &Robot) -> Rc<Parsed> {
         let parsed = || {
             let known = slice::from_ref(robot);
-            Rc::new(names::known(robot.family, known, || parse(robot.family, &self.words)))
+            Rc::new(names::known(robot.family, known, || parse_first(robot.family, &self.lines)))
         };
         Rc::clone(self.own.borrow_mut().entry(robot.name.clone()).or_insert_with(parsed))
     }
@@ -77,7 +87,15 @@ impl AnyCommand for SharedLine {
     }
 
     fn connect_mode(&self, robot: &Robot) -> ConnectMode {
-        self.usual(Some(robot.family)).map_or_else(ConnectMode::default, |command| command.connect_mode(robot))
+        match &*self.of(robot) {
+            Ok(command) => command.connect_mode(robot),
+            // It is refused before anything is sent.
+            Err(_) => ConnectMode::Monitor,
+        }
+    }
+
+    fn sheet(&self) -> Option<Sheet> {
+        self.usual(None)?.sheet()
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
@@ -89,6 +107,27 @@ impl AnyCommand for SharedLine {
         }
         .boxed_local()
     }
+}
+
+/// Parses the first line that is a command of a family.
+fn parse_first(family: Family, lines: &[Vec<String>]) -> Parsed {
+    let mut failures = Vec::new();
+    for words in lines {
+        match parse(family, words) {
+            Ok(command) => return Ok(command),
+            Err(failure) => failures.push(failure),
+        }
+    }
+    if let [failure] = &failures[..] {
+        return Err(failure.clone());
+    }
+    let near = failures.iter().find(|failure| failure.message.contains("did you mean"));
+    Err(near.cloned().unwrap_or_else(|| {
+        let name = lines.first().and_then(|words| words.last()).map_or("", String::as_str);
+        let message = format!("'{name}' is not a signal, variable, counter or other value of {family}");
+        Failure::usage(message)
+            .hint("`armctl names list` shows your names, `armctl status --json` the keys of a status")
+    }))
 }
 
 /// Parses words into a command of a family.
