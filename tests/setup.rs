@@ -166,6 +166,7 @@ fn enter_alone_removes_no_robot() {
         remove.reads_keys();
         remove.press(keys);
         if keys == "\r" {
+            remove.says("cell3");
             remove.reads_keys();
             remove.signal(way);
         }

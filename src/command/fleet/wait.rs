@@ -3,14 +3,12 @@
 use std::time::Duration;
 
 use clap::Args;
-use serde_json::Value;
 
-use super::shared::line::SharedLine;
+use super::shared::line::{Reading, SharedLine};
 use super::status::Overview;
 use crate::command::face::overview::OverviewReport;
 use crate::command::frame::condition::{Comparison, Condition};
 use crate::command::frame::run::{Repeat, as_value};
-use crate::command::robot::item::Items;
 use crate::command::{AnyCommand, SchemaEntry};
 use crate::failure::Failure;
 use crate::settings::duration;
@@ -68,5 +66,5 @@ impl Wait {
 
 /// Schema of the report about a signal or variable.
 pub fn schema() -> SchemaEntry {
-    SchemaEntry::of::<Items<Value>>("wait")
+    SchemaEntry::of::<Reading>("wait")
 }

@@ -8,17 +8,23 @@ use std::slice;
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
 
 use super::PerRobot;
 use crate::command::face::words::{Typed, Wish};
 use crate::command::families;
 use crate::command::frame::command::AnyContext;
+use crate::command::frame::items::ItemError;
 use crate::command::frame::names;
-use crate::command::{AnyCommand, ConnectMode, Driver, Outcome};
+use crate::command::frame::report::sheet_of;
+use crate::command::{AnyCommand, AnyReport, ConnectMode, Driver, Outcome, Report};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Confirmation, Intent};
 use crate::output::csv::Sheet;
+use crate::output::view::View;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
@@ -29,6 +35,8 @@ type Parsed = Result<Box<dyn AnyCommand>, Failure>;
 pub struct SharedLine {
     id: &'static str,
     lines: Vec<Vec<String>>,
+    /// Whether reports are reduced to what the families have in common.
+    is_reduced: bool,
     /// Commands by family, with placeholder addresses for names.
     usual: Vec<(Family, Parsed)>,
     /// Commands by robot name.
@@ -38,20 +46,21 @@ pub struct SharedLine {
 impl SharedLine {
     /// Parses a line; `id` is its command id in envelopes and schemas.
     pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
-        Self::first_of(id, vec![words])
+        Self::first_of(id, vec![words], false)
     }
 
     /// Reads a value by its name or label, whatever it is: `NOUN get NAME` with the first noun that has it.
     pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self, Failure> {
-        Self::first_of(id, nouns.iter().map(|noun| [*noun, "get", name].map(ToOwned::to_owned).into()).collect())
+        let lines = nouns.iter().map(|noun| [*noun, "get", name].map(ToOwned::to_owned).into());
+        Self::first_of(id, lines.collect(), true)
     }
 
-    fn first_of(id: &'static str, lines: Vec<Vec<String>>) -> Result<Self, Failure> {
+    fn first_of(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self, Failure> {
         let usual: Vec<(Family, Parsed)> =
             Family::ALL.into_iter().map(|family| (family, names::asking(|| parse_first(family, &lines)).0)).collect();
         match usual.iter().find(|_| usual.iter().all(|(_, parsed)| parsed.is_err())) {
             Some((_, Err(failure))) => Err(failure.clone()),
-            _ => Ok(Self { id, lines, usual, own: RefCell::default() }),
+            _ => Ok(Self { id, lines, is_reduced, usual, own: RefCell::default() }),
         }
     }
 
@@ -95,7 +104,7 @@ impl AnyCommand for SharedLine {
     }
 
     fn sheet(&self) -> Option<Sheet> {
-        self.usual(None)?.sheet()
+        if self.is_reduced { Some(sheet_of::<Reading>()) } else { self.usual(None)?.sheet() }
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
@@ -103,9 +112,68 @@ impl AnyCommand for SharedLine {
             let parsed = self.of(context.robot);
             let command = (*parsed).as_ref().map_err(Failure::clone)?;
             let AnyContext { robot, connection, screen, several, authority } = context;
-            command.run(AnyContext { robot, connection: &mut *connection, screen, several, authority }).await
+            let context = AnyContext { robot, connection: &mut *connection, screen, several, authority };
+            let report = command.run(context).await?;
+            if self.is_reduced { Ok(Box::new(Reading::new(&*report)?) as Box<_>) } else { Ok(report) }
         }
         .boxed_local()
+    }
+}
+
+/// Value that was read, whatever it is.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Reading {
+    items: Vec<ReadItem>,
+    /// View of the family.
+    #[serde(skip)]
+    view: View,
+    #[serde(skip)]
+    failure: Option<Failure>,
+}
+
+/// Common fields of signals, variables, counters and the like.
+#[derive(Debug, Serialize, JsonSchema)]
+struct ReadItem {
+    /// Name that can be typed.
+    name: String,
+    /// User name; null if there is none.
+    label: Option<String>,
+    /// Kind: `variable`, `input`, `counter`.
+    kind: String,
+    /// Whether it was read.
+    ok: bool,
+    /// Value; null if it was not read.
+    value: Value,
+    /// Reason why it was not read.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    #[schemars(with = "ItemError")]
+    error: Value,
+}
+
+impl Reading {
+    fn new(report: &dyn AnyReport) -> Result<Self, Failure> {
+        let data = report.data()?;
+        let text = |value: &Value| value.as_str().map(ToOwned::to_owned);
+        let item = |item: &Value| ReadItem {
+            name: text(&item["name"]).unwrap_or_default(),
+            label: text(&item["label"]),
+            kind: text(&item["kind"]).unwrap_or_default(),
+            ok: item["ok"] == true,
+            value: item["value"].clone(),
+            error: item["error"].clone(),
+        };
+        let items = data["items"].as_array().into_iter().flatten().map(item).collect();
+        Ok(Self { items, view: report.view(), failure: report.failure() })
+    }
+}
+
+impl Report for Reading {
+    fn view(&self) -> View {
+        self.view.clone()
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.failure.clone()
     }
 }
 
