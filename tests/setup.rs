@@ -156,6 +156,27 @@ fn a_name_that_is_missing_is_chosen() {
 }
 
 #[test]
+fn enter_alone_removes_no_robot() {
+    let robots = "[[robot]]\nname = \"cell3\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n";
+    let desk = Desk::new();
+    std::fs::write(desk.folder.path().join("robots.toml"), robots).unwrap();
+    for (way, keys) in [("Esc", "\r\x1b"), ("Ctrl-C", "\r\x03"), ("TERM", "\r"), ("HUP", "\r")] {
+        let mut remove = line(&desk, &["robots", "remove"]);
+        remove.says("cell3");
+        remove.reads_keys();
+        remove.press(keys);
+        if keys == "\r" {
+            remove.says("cell3");
+            remove.reads_keys();
+            remove.signal(way);
+        }
+        assert_eq!(remove.end().code(), Some(130), "{way}");
+        gives_back(&remove, way);
+        assert_eq!(desk.inventory().as_deref(), Some(robots), "{way}");
+    }
+}
+
+#[test]
 fn what_deletes_is_not_chosen_by_enter_alone() {
     let desk = Desk::new();
     let mut delete = line(&desk, &["--sim", "yerc", "file", "delete"]);

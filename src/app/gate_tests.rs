@@ -13,7 +13,6 @@ use crate::cli::Cli;
 use crate::command::AnyCommand;
 use crate::command::common::Common;
 use crate::command::fleet::shared;
-use crate::command::fleet::status::Overview;
 use crate::command::frame::run::Run;
 use crate::command::leaves::{all, leaves};
 use crate::controller::Risk::{Destroy, Motion, Read, Write};
@@ -101,7 +100,7 @@ fn seen(line: &str) -> Result<Seen, String> {
         Invocation::Task(Task::Common(Common::Status(command))) => of(&command, "toyo"),
         Invocation::Task(Task::Common(Common::Alarm(alarm))) => of(&*alarm.command().unwrap(), "toyo"),
         Invocation::Task(Task::Common(Common::Io(io))) => of(&*io.command().unwrap(), "toyo"),
-        Invocation::Task(Task::Common(Common::Wait(_))) => of(&Overview {}, "toyo"),
+        Invocation::Task(Task::Common(Common::Wait(wait))) => of(&*wait.command().unwrap(), "toyo"),
         Invocation::Task(Task::Common(Common::Position)) => of(&shared::position(), "toyo"),
         Invocation::Task(Task::Common(Common::Stop)) => of(&shared::stop(), "toyo"),
         Invocation::Task(Task::Common(Common::Backup(command))) => of(command.making(), "toyo"),

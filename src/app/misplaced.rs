@@ -9,11 +9,11 @@ use std::ffi::OsString;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
 
+use super::respelled::families_with;
 use super::typed::Typed;
-use crate::command::face::Face;
-use crate::command::families::FAMILIES;
 use crate::command::leaves::{self, is_dangerous};
 use crate::controller::Risk;
+use crate::controller::nearest::nearest;
 use crate::failure::decimal_point;
 use crate::settings::target::Family;
 
@@ -34,10 +34,20 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
             if error.get(ContextKind::InvalidArg).is_some_and(is_flag) {
                 error.remove(ContextKind::Suggested);
             }
-            absent(&mut error, &typed)
+            leave_out_unlike(&mut error, &typed, whole);
+            let tip = absent(&mut error, &typed)
                 .or_else(|| place(&mut error, ContextKind::InvalidArg, &typed, whole))
                 .or_else(|| joined(&error, args, &typed, whole))
-                .or_else(|| flag_or_value(&mut error, &typed, whole))
+                .or_else(|| flag_or_value(&mut error, &typed, whole));
+            let has_tip = error.get(ContextKind::SuggestedArg).or(error.get(ContextKind::Suggested)).is_some();
+            tip.or_else(|| example(&typed.path).filter(|_| !has_tip))
+        }
+        ErrorKind::MissingRequiredArgument if typed.path == ["robots", "discover"] => {
+            // Its --for limits a condition that it does not have.
+            error = clap::Error::new(ErrorKind::UnknownArgument);
+            error.insert(ContextKind::InvalidArg, ContextValue::String("--for".to_owned()));
+            plain_usage(&mut error, &typed, whole);
+            Some("robots discover ends by itself: remove --for".to_owned())
         }
         ErrorKind::MissingRequiredArgument => every_file(args, &typed).or_else(|| missing(&error, &typed, whole)),
         ErrorKind::InvalidValue => folder(&error, &typed, whole),
@@ -68,17 +78,12 @@ fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
 /// Families that have a code for which no family was given.
 fn of_families(error: &clap::Error, typed: &Typed<'_>) -> Option<String> {
     let Some(ContextValue::String(code)) = error.get(ContextKind::InvalidSubcommand) else { return None };
-    let bare = |code: &str| {
-        let code = code.to_ascii_lowercase();
-        code.strip_prefix("0x").unwrap_or(&code).trim_start_matches('0').to_owned()
-    };
     if typed.path != ["explain"] || !code.chars().any(|one| one.is_ascii_digit()) {
         return None;
     }
-    let knows = |face: &&&dyn Face| face.codes().iter().any(|(known, _)| bare(known) == bare(code));
-    let of: Vec<&&dyn Face> = FAMILIES.iter().filter(knows).collect();
-    let named = if of.is_empty() { FAMILIES.iter().collect() } else { of };
-    let lines: Vec<String> = named.iter().map(|face| format!("`armctl explain {} {code}`", face.family())).collect();
+    let of = families_with(code);
+    let named = if of.is_empty() { Family::ALL.to_vec() } else { of };
+    let lines: Vec<String> = named.iter().map(|family| format!("`armctl explain {family} {code}`")).collect();
     Some(format!("add the family of the code: {}", lines.join(" or ")))
 }
 
@@ -91,7 +96,9 @@ fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) ->
         let flag = flag.split('=').next().unwrap_or(flag);
         let is_named = |argument: &&Arg| argument.get_id().as_str().eq_ignore_ascii_case(flag);
         command.get_positionals().find(is_named)?;
-        error.remove(ContextKind::SuggestedArg);
+        if error.remove(ContextKind::SuggestedArg).is_some() {
+            plain_usage(error, typed, whole);
+        }
         return Some(format!("type {} without --{flag}", flag.to_uppercase()));
     }
     if command.get_positionals().next().is_some() || word.starts_with('-') {
@@ -236,9 +243,6 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
     let argument = command.get_arguments().find(is_missing);
-    if typed.path == ["robots", "discover"] {
-        return Some("robots discover ends by itself: remove --for".to_owned());
-    }
     if missing.iter().any(|argument| argument.starts_with("--until")) {
         return Some("add a condition such as --until idle; --for limits its time".to_owned());
     }
@@ -246,8 +250,38 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     let names: Vec<&str> = values.iter().map(clap::builder::PossibleValue::get_name).collect();
     match names.split_last() {
         Some((last, others)) if !others.is_empty() => Some(format!("use {} or {last}", others.join(", "))),
-        _ if is_dangerous(&typed.path, false) => None,
-        _ => leaves::examples(&typed.path).next().map(|line| format!("example: `armctl {line}`")),
+        _ => example(&typed.path),
+    }
+}
+
+/// Example of a command that is not dangerous.
+fn example(path: &[&str]) -> Option<String> {
+    let mut lines = leaves::examples(path).filter(|_| leaves::preselects(path));
+    lines.next().map(|line| format!("example: `armctl {line}`"))
+}
+
+/// Removes a similar flag that does not resemble the typed one enough.
+fn leave_out_unlike(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) {
+    let (Some(ContextValue::String(word)), Some(ContextValue::String(similar))) =
+        (error.get(ContextKind::InvalidArg), error.get(ContextKind::SuggestedArg))
+    else {
+        return;
+    };
+    let [word, similar] = [word, similar].map(|flag| flag.trim_start_matches('-').to_owned());
+    let is_alike = word.starts_with(&similar) && similar.len() > 1 || nearest(&word, [similar.as_str()]).is_some();
+    if !is_alike {
+        error.remove(ContextKind::SuggestedArg);
+        plain_usage(error, typed, whole);
+    }
+}
+
+/// Usage of the command alone, instead of one with flags that were not meant.
+fn plain_usage(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) {
+    let mut whole = whole.clone();
+    whole.build();
+    let command = typed.path.iter().try_fold(&mut whole, |command, word| command.find_subcommand_mut(word));
+    if let Some(command) = command {
+        error.insert(ContextKind::Usage, ContextValue::StyledStr(command.render_usage()));
     }
 }
 
@@ -520,12 +554,41 @@ mod tests {
                 "the speed override scales all speeds: see `armctl toyo override -h`",
             ),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
-            ("armctl explain 12.600", "add the family of the code: `armctl explain yrcx 12.600`"),
+            ("armctl explain 28", "add the family of the code: `armctl explain yerc 28` or `armctl explain toyo 28`"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
-        for line in ["armctl yerc file delete", "armctl yerc status x", "armctl toyo program get 5 6 7"] {
+        assert_eq!(tip("armctl yerc file delete"), None, "it deletes");
+    }
+
+    #[test]
+    fn what_resembles_nothing_gets_an_example_unless_it_is_dangerous() {
+        for (line, expected) in [
+            ("armctl yerc status x", "example: `armctl yerc status`"),
+            ("armctl toyo program get 5 6 7", "example: `armctl toyo program get`"),
+            ("armctl yerc var get B0 --bananas", "example: `armctl yerc var get B0 I1..I20 P5`"),
+            ("armctl robots list --bananas", "example: `armctl robots list`"),
+        ] {
+            assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
+        }
+        for line in
+            ["armctl yerc move joint --bananas", "armctl yerc move joint --xyzzy 3", "armctl robots remove --all x"]
+        {
             assert_eq!(tip(line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn a_usage_names_no_flag_that_was_not_meant() {
+        for (line, expected) in [
+            ("armctl yerc job start --name X", "Usage: armctl yerc job start [OPTIONS] [NAME]"),
+            ("armctl robots discover --for 3s", "Usage: armctl robots discover [OPTIONS] [ADDRESS[:PORT]]..."),
+        ] {
+            let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
+            let mut whole = Cli::command();
+            let error = whole.try_get_matches_from_mut(&args).unwrap_err().format(&mut whole);
+            let text = explained(error, &args, &whole).render().to_string();
+            assert!(text.contains(expected) && !text.contains("--until"), "{text}");
         }
     }
 }

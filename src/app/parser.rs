@@ -153,8 +153,8 @@ fn laid_out<C: Subcommand>(command: &mut Option<Command>) -> &mut Command {
 }
 
 fn read<C: Subcommand>(command: &mut Command, args: &[OsString]) -> Result<Words<C>, clap::Error> {
-    let taught = respelled::taught(args, command);
-    let args = taught.as_deref().unwrap_or(args);
+    let respelled = respelled::respelled(args, command);
+    let args = respelled.as_deref().unwrap_or(args);
     let own = assigned::parted(args, command);
     let parsed = command.try_get_matches_from_mut(own.as_deref().unwrap_or(args));
     let words = parsed.and_then(|mut matches| Words::from_arg_matches_mut(&mut matches));

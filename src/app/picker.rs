@@ -14,7 +14,7 @@ use crate::command::Candidate;
 use crate::command::frame::asking::answered;
 use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::RunError;
-use crate::command::leaves::is_dangerous;
+use crate::command::leaves::preselects;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
 
@@ -37,7 +37,7 @@ pub fn completed(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsSt
     if found.is_empty() {
         return None;
     }
-    let has_first = !is_dangerous(&Typed::new(args, &whole).path, false);
+    let has_first = preselects(&Typed::new(args, &whole).path);
     Some(chosen(args, &what, &found, has_first))
 }
 

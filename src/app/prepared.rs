@@ -11,7 +11,6 @@ use crate::command::face::words::{Typed, Wish};
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
 use crate::command::fleet::shared;
-use crate::command::fleet::status::Overview;
 use crate::command::fleet::teach::Teach;
 use crate::command::frame::batch::Batch;
 use crate::command::frame::condition::Condition;
@@ -123,7 +122,7 @@ impl PreparedCommand {
         match &self.task {
             Task::Family(_, command) => self.run.check_gate(&**command),
             Task::Common(Common::Status(overview)) => self.run.check_gate(overview),
-            Task::Common(Common::Wait(_)) => self.run.check_gate(&Overview {}),
+            Task::Common(Common::Wait(wait)) => self.run.check_gate(&*wait.command()?),
             Task::Common(Common::Alarm(alarm)) => self.run.check_gate(&*alarm.command()?),
             Task::Common(Common::Io(io)) => self.run.check_gate(&*io.command()?),
             Task::Common(Common::Position) => self.run.check_gate(&shared::position()),

@@ -1,17 +1,50 @@
 //! Other spellings of `teach`: `yerc position teach P5`, `yerc var set P5=here`, `toyo point set 5 here`, `toyo point
-//! teach 5` and `yrcx point set 19 here` mean `teach`. `yrcx point set 19 @FILE` means `--position FILE`.
+//! teach 5` and `yrcx point set 19 here` mean `teach`. `yrcx point set 19 @FILE` means `--position FILE`. `explain
+//! 12.600` means `explain yrcx 12.600`.
 
 use std::ffi::OsString;
 
 use clap::Command;
 
 use super::typed::Typed;
+use crate::command::face::Face;
+use crate::command::families::FAMILIES;
+use crate::settings::target::Family;
 
 /// Word for the current position of the robot.
 const HERE: &str = "here";
 
 /// The line in the form of its command; `None` if it has no other spelling.
-pub fn taught(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
+pub fn respelled(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
+    taught(args, whole).or_else(|| explained(args, whole))
+}
+
+/// Families that have a code; of a code that none has, those with codes of its form.
+pub fn families_with(code: &str) -> Vec<Family> {
+    let bare = |code: &str| {
+        let code = code.to_ascii_lowercase();
+        code.strip_prefix("0x").unwrap_or(&code).trim_start_matches('0').to_owned()
+    };
+    let knows = |face: &&&dyn Face| face.codes().iter().any(|(known, _)| bare(known) == bare(code));
+    let with: Vec<Family> = FAMILIES.iter().filter(knows).map(|face| face.family()).collect();
+    if !with.is_empty() || !code.contains(|one: char| one.is_ascii_digit()) {
+        return with;
+    }
+    FAMILIES.iter().filter(|face| face.explains(code)).map(|face| face.family()).collect()
+}
+
+/// `explain CODE` with the family, if only one has the code.
+fn explained(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
+    let typed = Typed::new(args, whole);
+    let (["explain"], [code], [at]) = (&typed.path[..], &typed.rest[..], &typed.at[..]) else { return None };
+    let [family] = families_with(code)[..] else { return None };
+    let mut line = args.to_vec();
+    line.insert(*at, family.name().into());
+    Some(line)
+}
+
+/// A command line that means `teach`.
+fn taught(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     let typed = Typed::new(args, whole);
     let (family, path) = typed.path.split_first()?;
     let replaced = match (path, &typed.rest[..]) {
@@ -54,7 +87,7 @@ mod tests {
         let whole = Cli::command();
         let line = |text: &str| {
             let args: Vec<OsString> = text.split(' ').map(Into::into).collect();
-            let line = taught(&args, &whole)?;
+            let line = respelled(&args, &whole)?;
             Some(line.join(std::ffi::OsStr::new(" ")).into_string().unwrap())
         };
         for (spelled, own) in [
@@ -66,10 +99,19 @@ mod tests {
             ("armctl toyo point teach 5", "armctl toyo teach 5"),
             ("armctl yrcx point set 19 here", "armctl yrcx teach 19"),
             ("armctl yrcx point set 19 @-", "armctl yrcx point set 19 --position=-"),
+            ("armctl explain 12.600", "armctl explain yrcx 12.600"),
+            ("armctl explain -r cell3 4315", "armctl explain -r cell3 yerc 4315"),
+            ("armctl explain 0x2060 --json", "armctl explain yerc 0x2060 --json"),
         ] {
             assert_eq!(line(spelled).as_deref(), Some(own), "{spelled}");
         }
-        for other in ["armctl yerc position", "armctl yerc var set P5=here B0=1", "armctl toyo point set 5 @here"] {
+        for other in [
+            "armctl yerc position",
+            "armctl yerc var set P5=here B0=1",
+            "armctl toyo point set 5 @here",
+            "armctl explain 28",
+            "armctl explain x",
+        ] {
             assert_eq!(line(other), None, "{other}");
         }
     }

@@ -149,7 +149,7 @@ impl Common {
             Self::Io(io) => run.robots(&*io.command()?).await,
             Self::Position => run.robots(&shared::position()).await,
             Self::Stop => run.robots(&shared::stop()).await,
-            Self::Wait(_) => run.robots(&Overview {}).await,
+            Self::Wait(wait) => run.robots(&*wait.command()?).await,
             Self::Backup(backup) => backup.run(run).await,
             Self::Restore(restore) => run.robots(&restore).await,
             Self::Diff(diff) => backup::diff(diff, run).await,

@@ -68,6 +68,12 @@ pub fn is_dangerous(path: &[&str], is_noun: bool) -> bool {
     below.peek().is_some() && if is_noun { below.all(is_one) } else { below.any(is_one) }
 }
 
+/// Whether a list of the values that a command lacks may preselect the first: not where Enter alone would delete
+/// something, or move or stop a robot.
+pub fn preselects(path: &[&str]) -> bool {
+    !is_dangerous(path, false) && !desk::NO_DEFAULT.iter().any(|words| words.split(' ').eq(path.iter().copied()))
+}
+
 fn begins(line: &str, path: &[&str]) -> bool {
     path.iter().copied().eq(line.split(' ').take(path.len()))
 }

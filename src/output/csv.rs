@@ -15,6 +15,8 @@ use super::escape;
 const DEEPEST: usize = 5;
 /// Column with the value of an entry.
 const VALUE: &str = "value";
+/// Columns of the result of a robot.
+const OUTCOME: [&str; 5] = ["ok", "error_kind", "error_code", "error_message", "error_hint"];
 /// Longest list with one column per entry.
 const LONGEST: u64 = 16;
 
@@ -36,6 +38,8 @@ pub struct Sheet {
     common: Vec<Column>,
     /// Lists of the report, with the fields of their entries.
     lists: Vec<(String, Vec<Column>)>,
+    /// Columns of the result of a robot that the report does not have, at the end of every row.
+    outcome: Vec<&'static str>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -48,7 +52,7 @@ struct Column {
 impl Sheet {
     /// Columns of a report with this schema.
     pub fn of(schema: &Value, rows: RowsOf) -> Self {
-        let mut sheet = Self { common: Vec::new(), lists: Vec::new() };
+        let mut sheet = Self { common: Vec::new(), lists: Vec::new(), outcome: Vec::new() };
         let all = fields(schema, &[schema]);
         if all.is_empty() {
             sheet.common.push(Column { name: VALUE.to_owned(), pointer: String::new() });
@@ -84,6 +88,13 @@ impl Sheet {
         sheet
     }
 
+    /// Adds the columns of the result of each robot, as far as entries do not have them.
+    #[must_use]
+    pub fn with_outcome(mut self) -> Self {
+        self.outcome = OUTCOME.into_iter().filter(|name| !self.has(name)).collect();
+        self
+    }
+
     /// Whether a column with this name exists.
     pub fn has(&self, name: &str) -> bool {
         self.columns().any(|column| column == name)
@@ -92,7 +103,7 @@ impl Sheet {
     /// Names of all columns, in order.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         let listed = self.lists.iter().flat_map(|(_, columns)| columns);
-        self.common.iter().chain(listed).map(|column| column.name.as_str())
+        self.common.iter().chain(listed).map(|column| column.name.as_str()).chain(self.outcome.iter().copied())
     }
 
     /// Header line, with the names of other columns first.
@@ -128,15 +139,25 @@ impl Sheet {
         }
     }
 
-    /// Appends the rows of a report. `before` are the cells of other columns.
-    pub fn rows(&self, before: &[&str], data: &Value, out: &mut String) {
+    /// Appends the row of a robot without a report. `before` are the cells of other columns.
+    pub fn failed(&self, before: &[&str], error: &Value, out: &mut String) {
+        let before: Vec<String> = before.iter().map(|text| harmless(text)).collect();
+        let cells: Vec<String> = self.columns().map(|column| outcome(column, Some(error))).collect();
+        line(out, before.iter().chain(&cells).map(String::as_str));
+    }
+
+    /// Appends the rows of a report; `error` is the reason why it is not complete. `before` are the cells of other
+    /// columns.
+    pub fn rows(&self, before: &[&str], data: &Value, error: Option<&Value>, out: &mut String) {
+        let outcome: Vec<String> = self.outcome.iter().map(|column| outcome(column, error)).collect();
+        let outcome = || outcome.iter().map(String::as_str);
         let cells = |columns: &[Column], value: &Value| -> Vec<String> {
             columns.iter().map(|column| value.pointer(&column.pointer).map_or_else(String::new, cell)).collect()
         };
         let mut common: Vec<String> = before.iter().map(|text| harmless(text)).collect();
         common.extend(cells(&self.common, data));
         if self.lists.is_empty() {
-            return line(out, common.iter().map(String::as_str));
+            return line(out, common.iter().map(String::as_str).chain(outcome()));
         }
         let width: usize = self.lists.iter().map(|(_, columns)| columns.len()).sum();
         let mut left = 0;
@@ -146,10 +167,19 @@ impl Sheet {
                 let right = width - left - columns.len();
                 let empty = |count| std::iter::repeat_n("", count);
                 let row = common.iter().map(String::as_str).chain(empty(left));
-                line(out, row.chain(own.iter().map(String::as_str)).chain(empty(right)));
+                line(out, row.chain(own.iter().map(String::as_str)).chain(empty(right)).chain(outcome()));
             }
             left += columns.len();
         }
+    }
+}
+
+/// Cell of a column about the result: `error_code` of `{"code":…}`.
+fn outcome(column: &str, error: Option<&Value>) -> String {
+    match (column.strip_prefix("error_"), error) {
+        (None, error) if column == "ok" => error.is_none().to_string(),
+        (Some(field), Some(error)) => cell(&error[field]),
+        _ => String::new(),
     }
 }
 
@@ -334,7 +364,7 @@ mod tests {
 
     fn rows(sheet: &Sheet, data: &Value) -> String {
         let mut out = String::new();
-        sheet.rows(&[], data, &mut out);
+        sheet.rows(&[], data, None, &mut out);
         out
     }
 
@@ -397,10 +427,46 @@ mod tests {
         let sheet = Sheet::of(&schema_for!(Status).to_value(), RowsOf::Lists);
         assert_eq!(sheet.header(&["robot"]), "robot,mode,held\n");
         let mut out = String::new();
-        sheet.rows(&["=r"], &json!({"held": true}), &mut out);
+        sheet.rows(&["=r"], &json!({"held": true}), None, &mut out);
         assert_eq!(out, "'=r,,true\n");
         let text = Sheet::of(&schema_for!(String).to_value(), RowsOf::Lists);
         assert_eq!((text.header(&[]).as_str(), rows(&text, &json!("-x")).as_str()), ("value\n", "'-x\n"));
+    }
+
+    #[test]
+    fn a_robot_that_failed_is_a_row_of_the_same_columns() {
+        #[derive(JsonSchema)]
+        #[expect(dead_code, reason = "only its schema matters")]
+        struct Held {
+            held: bool,
+        }
+        #[derive(JsonSchema)]
+        #[expect(dead_code, reason = "only its schema matters")]
+        struct Item {
+            name: String,
+            ok: bool,
+            error_code: Option<String>,
+        }
+        #[derive(JsonSchema)]
+        #[expect(dead_code, reason = "only its schema matters")]
+        struct Items {
+            items: Vec<Item>,
+        }
+        let error = json!({"exit": 4, "kind": "no_answer", "code": null, "message": "no answer, at all"});
+        let status = Sheet::of(&schema_for!(Held).to_value(), RowsOf::Lists).with_outcome();
+        assert_eq!(status.header(&["robot"]), "robot,held,ok,error_kind,error_code,error_message,error_hint\n");
+        let mut out = String::new();
+        status.rows(&["a"], &json!({"held": true}), None, &mut out);
+        status.rows(&["b"], &json!({"held": null}), Some(&error), &mut out);
+        status.failed(&["c"], &error, &mut out);
+        let no_answer = "false,no_answer,,\"no answer, at all\",\n";
+        assert_eq!(out, format!("a,true,true,,,,\nb,,{no_answer}c,,{no_answer}"));
+        let items = Sheet::of(&schema_for!(Items).to_value(), RowsOf::Lists).with_outcome();
+        assert_eq!(items.header(&[]), "name,ok,error_code,error_kind,error_message,error_hint\n");
+        let mut out = String::new();
+        items.rows(&[], &json!({"items": [{"name": "B0", "ok": true}]}), None, &mut out);
+        items.failed(&[], &error, &mut out);
+        assert_eq!(out, format!("B0,true,,,,\n,false,,no_answer,\"no answer, at all\",\n"));
     }
 
     #[test]

@@ -31,6 +31,7 @@ transcripts! {
     backups
     batch
     captures
+    conditions
     decode
     edit
     exit_codes

@@ -12,7 +12,7 @@ use crate::command::families::FAMILIES;
 use crate::command::fleet::status::{Fleet, Overview};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
-use crate::command::fleet::{names, robots, session, shared, tools};
+use crate::command::fleet::{names, robots, session, shared, tools, wait};
 use crate::command::frame::background::Opened;
 use crate::command::frame::dry_run::DryRun;
 use crate::command::frame::run::Run;
@@ -56,6 +56,7 @@ pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
     all.extend(Overview::schemas());
     all.extend(shared::schemas());
+    all.push(wait::schema());
     all.extend(names::schemas());
     all.extend(Backup::<Fleet>::schemas());
     all.extend(Restore::<Fleet>::schemas());

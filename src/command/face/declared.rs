@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use clap::{ArgMatches, Args, Subcommand};
+use clap::{ArgMatches, Args, FromArgMatches as _, Subcommand};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
@@ -26,6 +26,7 @@ use crate::command::{Access, AnyCommand, AnyContext, Command, CommandSet, Driver
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
+use crate::settings::alarms::{Alarms, Origin};
 use crate::settings::{Robot, target};
 use crate::transport::session::host::Guard;
 
@@ -144,6 +145,12 @@ impl<F: Declaration> Face for Declared<F> {
 
     fn codes(&self) -> Vec<(String, String)> {
         F::codes()
+    }
+
+    fn explains(&self, code: &str) -> bool {
+        let command = F::Explain::augment_args(clap::Command::new("explain").no_binary_name(true));
+        let parsed = command.try_get_matches_from([code]).and_then(|matches| F::Explain::from_arg_matches(&matches));
+        parsed.is_ok_and(|explain| explain.explain(&Alarms::default(), Origin::any(F::NAME)).is_ok())
     }
 
     fn setup(&self) -> (&'static str, &'static str) {

@@ -73,6 +73,8 @@ impl<T> Known<T> {
 }
 
 impl<T: Besides + Serialize + JsonSchema> Report for Codes<T> {
+    const ROWS: RowsOf = RowsOf::List("codes");
+
     fn view(&self) -> View {
         let section = |Known { alarm, own, .. }: &Known<T>| {
             let Alarm { code, text, cause, remedy, .. } = alarm;
@@ -82,10 +84,6 @@ impl<T: Besides + Serialize + JsonSchema> Report for Codes<T> {
             Section::Fields(told.chain(own).map(|(name, told)| (name, told.into())).collect())
         };
         View { sections: self.codes.iter().map(section).collect() }
-    }
-
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("codes")
     }
 }
 
@@ -146,12 +144,10 @@ struct Told {
 }
 
 impl<R: Report> Report for Explained<R> {
+    const ROWS: RowsOf = R::ROWS;
+
     fn view(&self) -> View {
         self.robots.iter().fold(self.known.view(), |view, told| told.sections().into_iter().fold(view, View::and))
-    }
-
-    fn rows(&self) -> RowsOf {
-        self.known.rows()
     }
 }
 

@@ -41,6 +41,8 @@ pub trait Face: Sync {
     fn urls(&self) -> Vec<(String, &'static str)>;
     /// Codes that `explain` supports, with their names.
     fn codes(&self) -> Vec<(String, String)>;
+    /// Whether `explain` supports a code; of a code that is not known, whether it has the form of one.
+    fn explains(&self, code: &str) -> bool;
     /// Help topic `NAME-setup`: summary and text.
     fn setup(&self) -> (&'static str, &'static str);
     /// Additional help topics: name, summary and text.

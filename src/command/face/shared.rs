@@ -10,10 +10,11 @@ use serde::{Serialize, Serializer};
 use super::declared::Declaration;
 use crate::command::frame::command::AnyContext;
 use crate::command::frame::connection;
+use crate::command::frame::report::sheet_of;
 use crate::command::{AnyCommand, Command, ConnectMode, Driver, Outcome, Report};
 use crate::failure::Failure;
 use crate::gate::Intent;
-use crate::output::csv::RowsOf;
+use crate::output::csv::{RowsOf, Sheet};
 use crate::output::view::View;
 use crate::settings::Robot;
 
@@ -81,6 +82,10 @@ impl<C: Command<Report: Alike>> AnyCommand for Reduced<C> {
         Command::connect_mode(&self.0)
     }
 
+    fn sheet(&self) -> Option<Sheet> {
+        Some(sheet_of::<<C::Report as Alike>::Core>())
+    }
+
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
         async move {
             let several = context.several;
@@ -118,15 +123,13 @@ impl<R: JsonSchema> JsonSchema for Core<R> {
 }
 
 impl<R: Report> Report for Core<R> {
+    const ROWS: RowsOf = R::ROWS;
+
     fn view(&self) -> View {
         self.view.clone()
     }
 
     fn failure(&self) -> Option<Failure> {
         self.failure.clone()
-    }
-
-    fn rows(&self) -> RowsOf {
-        self.core.rows()
     }
 }

@@ -4,20 +4,27 @@ use std::time::Duration;
 
 use clap::Args;
 
-use crate::command::frame::condition::Condition;
-use crate::command::frame::run::Repeat;
+use super::shared::line::{Reading, SharedLine};
+use super::status::Overview;
+use crate::command::face::overview::OverviewReport;
+use crate::command::frame::condition::{Comparison, Condition};
+use crate::command::frame::run::{Repeat, as_value};
+use crate::command::{AnyCommand, SchemaEntry};
 use crate::failure::Failure;
 use crate::settings::duration;
 
 const EVERY: Duration = Duration::from_millis(200);
+/// Nouns whose values have names, in the order in which a name is looked for.
+const NOUNS: [&str; 7] = ["io", "var", "counter", "timer", "register", "port", "param"];
 
 /// Wait until a condition is true for all selected robots, and print their state
 #[derive(Debug, Args)]
 #[command(after_help = "Conditions: idle, running, held, faulted, homed, servo-on; NAME=VALUE with a key of `armctl \
-                        status`; or a jq filter over its JSON that begins with a dot. For signals and variables: \
-                        `armctl yerc io get clamp --until clamp=on`.")]
+                        status`, or a signal, variable, counter or timer by name or label; or a jq filter over the \
+                        JSON of `armctl status` that begins with a dot. A robot that cannot be reached ends the wait \
+                        with exit code 4, except with reachable=true.")]
 pub struct Wait {
-    /// The condition: idle, servo-on, fault_code=4315, '.data.position.z_mm > 100'
+    /// The condition: idle, servo-on, clamp=on, 'B5>=3', fault_code=4315, '.data.position.z_mm > 100'
     condition: String,
     /// Longest wait, then exit code 8 [default: no limit]
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
@@ -25,10 +32,39 @@ pub struct Wait {
 }
 
 impl Wait {
-    /// Repetition of `status` for this condition.
+    /// Command that reads what the condition needs: the status, or a signal or variable.
+    ///
+    /// # Errors
+    /// If no family has a value of this name.
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+        Ok(match self.item()? {
+            Some(comparison) => Box::new(SharedLine::reading("wait", &NOUNS, comparison.name)?),
+            None => Box::new(Overview {}),
+        })
+    }
+
+    /// Repetition of the command for this condition.
+    ///
+    /// # Errors
+    /// If the condition is not valid.
     pub fn repeat(&self, given: &Repeat) -> Result<Repeat, Failure> {
-        let until = Some(Condition::new(&self.condition)?);
+        let until = match self.item()? {
+            Some(comparison) => Condition::of_item(&self.condition, &comparison)?,
+            None => Condition::new(&self.condition)?,
+        };
         let every = given.every.or(Some(EVERY));
+        let until = Some(until);
         Ok(Repeat { every, count: given.count, until, within: self.within, is_quiet: true, ..Repeat::default() })
     }
+
+    /// Comparison of a signal or variable; `None` if the status has all that the condition needs.
+    fn item(&self) -> Result<Option<Comparison<'_>>, Failure> {
+        let keys = as_value(&OverviewReport::default())?;
+        Ok(Comparison::parse(&self.condition).filter(|comparison| keys.get(comparison.name).is_none()))
+    }
+}
+
+/// Schema of the report about a signal or variable.
+pub fn schema() -> SchemaEntry {
+    SchemaEntry::of::<Reading>("wait")
 }

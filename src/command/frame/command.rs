@@ -5,11 +5,12 @@ use futures_util::future::LocalBoxFuture;
 
 use super::authority::Authority;
 use super::connection::{self, Access, ConnectMode, Connection, Driver, Entry, Family};
-use super::report::{Outcome, Report};
+use super::report::{Outcome, Report, sheet_of};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Confirmation, Intent};
 use crate::output::Screen;
+use crate::output::csv::Sheet;
 use crate::output::envelope::Envelope;
 use crate::settings::{Robot, target};
 
@@ -177,6 +178,10 @@ pub trait AnyCommand {
     fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
         None
     }
+    /// Columns of its report, if they are known without one.
+    fn sheet(&self) -> Option<Sheet> {
+        None
+    }
     /// See [`Command::run`].
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome>;
 }
@@ -249,6 +254,10 @@ impl<C: Command> AnyCommand for C {
 
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         Command::summary(self, envelopes)
+    }
+
+    fn sheet(&self) -> Option<Sheet> {
+        Some(sheet_of::<C::Report>())
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {

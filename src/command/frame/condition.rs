@@ -26,6 +26,17 @@ pub struct Condition {
     filter: Filter,
     /// Keys that the condition uses, each as a path from the envelope.
     keys: Vec<Vec<String>>,
+    /// Name of `NAME=VALUE`: a key of the report, or an item in it.
+    name: Option<String>,
+}
+
+/// `NAME=VALUE`, or another comparison of a named value.
+#[derive(Debug)]
+pub struct Comparison<'a> {
+    /// Name as typed.
+    pub name: &'a str,
+    sign: &'static str,
+    value: Value,
 }
 
 impl Condition {
@@ -34,17 +45,40 @@ impl Condition {
     /// # Errors
     /// If the filter is not valid.
     pub fn new(text: &str) -> Result<Self, Failure> {
-        let (filter, keys) = match meant(text) {
-            Some((filter, keys)) => (each(&filter), keys),
-            None => (text.to_owned(), paths(text)),
+        let text = text.trim();
+        let comparison = Comparison::parse(text);
+        let (filter, keys) = match (STATES.iter().find(|(state, _)| *state == text), &comparison) {
+            (Some((_, filter)), _) => (each(filter), paths(filter)),
+            (None, Some(comparison)) => (each(&comparison.filter()), Vec::new()),
+            (None, None) => (text.to_owned(), paths(text)),
         };
-        let filter = Filter::new(&filter).map_err(|failure| {
+        let name = comparison.map(|comparison| comparison.name.to_owned());
+        Self::with(text, &filter, keys, name)
+    }
+
+    /// Condition for a report that has only the item of this comparison, which may have another spelling there.
+    ///
+    /// # Errors
+    /// If the filter is not valid.
+    pub fn of_item(text: &str, comparison: &Comparison<'_>) -> Result<Self, Failure> {
+        let compared = comparison.compared();
+        let filter = each(&format!("(.data.items | length) > 0 and all(.data.items[]; .ok and (.value | {compared}))"));
+        Self::with(text, &filter, Vec::new(), None)
+    }
+
+    fn with(text: &str, filter: &str, keys: Vec<Vec<String>>, name: Option<String>) -> Result<Self, Failure> {
+        let filter = Filter::new(filter).map_err(|failure| {
             failure.hint(
                 "a condition is one of idle, running, held, faulted, homed, servo-on; NAME=VALUE; or a jq filter such \
                  as .data.held",
             )
         })?;
-        Ok(Self { text: text.to_owned(), filter, keys })
+        Ok(Self { text: text.to_owned(), filter, keys, name })
+    }
+
+    /// Whether it is about the connection itself, so that a robot that does not answer is no failure.
+    pub fn is_about_connection(&self) -> bool {
+        self.text.contains("reachable")
     }
 
     /// Whether the condition is true; for several robots, whether it is true for all of them.
@@ -58,7 +92,17 @@ impl Condition {
     /// Message if the condition can never be true, because a report does not have the key.
     pub fn never(&self, envelopes: &Value) -> Option<String> {
         let first = envelopes.as_array().and_then(|all| all.first()).unwrap_or(envelopes);
-        first["data"].as_object()?;
+        let data = first["data"].as_object()?;
+        if let Some(name) = &self.name {
+            let is_known = data.contains_key(name) || has_item(&first["data"], name);
+            return (!is_known).then(|| {
+                format!(
+                    "'{}': this report has no key and no item {name}, so this may never be true; `armctl wait '{}'` \
+                     reads it",
+                    self.text, self.text
+                )
+            });
+        }
         let missing = self.keys.iter().find(|path| !has(first, path))?;
         let found = path_of(first, missing).map(|keys| keys.join(", ")).unwrap_or_default();
         let place = missing.join(".");
@@ -72,37 +116,55 @@ impl std::fmt::Display for Condition {
     }
 }
 
-/// Filter for a state name or `NAME=VALUE`, and the keys that it needs.
-fn meant(text: &str) -> Option<(String, Vec<Vec<String>>)> {
-    let text = text.trim();
-    if let Some((_, filter)) = STATES.iter().find(|(word, _)| *word == text) {
-        return Some(((*filter).to_owned(), paths(filter)));
+impl<'a> Comparison<'a> {
+    /// Parses `NAME=VALUE`; `None` for other text.
+    pub fn parse(text: &'a str) -> Option<Self> {
+        let (at, sign) =
+            COMPARISONS.iter().filter_map(|sign| Some((text.find(sign)?, *sign))).min_by_key(|(at, _)| *at)?;
+        let (name, value) = (text[..at].trim(), text[at + sign.len()..].trim());
+        let is_name = name.starts_with(|first: char| first.is_alphabetic() || first == '#')
+            && name.chars().all(|one| one.is_alphanumeric() || "_-()#. ".contains(one));
+        if !is_name || value.is_empty() {
+            return None;
+        }
+        let value = match value {
+            "on" | "true" => json!(true),
+            "off" | "false" => json!(false),
+            "null" => Value::Null,
+            text => text
+                .parse::<f64>()
+                .ok()
+                .and_then(|number| serde_json::from_str(text).ok().or(Some(json!(number))))
+                .unwrap_or_else(|| json!(text.trim_matches(['"', '\'']))),
+        };
+        Some(Self { name, sign: if sign == "=" { "==" } else { sign }, value })
     }
-    let (at, sign) = COMPARISONS.iter().filter_map(|sign| Some((text.find(sign)?, *sign))).min_by_key(|(at, _)| *at)?;
-    let (name, value) = (text[..at].trim(), text[at + sign.len()..].trim());
-    let is_name = name.starts_with(|first: char| first.is_alphabetic())
-        && name.chars().all(|one| one.is_alphanumeric() || "_-()# ".contains(one));
-    if !is_name || value.is_empty() {
-        return None;
+
+    /// Filter over a value. A signal can also be compared with 0 and 1.
+    fn compared(&self) -> String {
+        let Self { sign, value, .. } = self;
+        let bit = "if . == true then 1 elif . == false then 0 else . end";
+        if value.is_number() { format!("({bit}) {sign} {value}") } else { format!(". {sign} {value}") }
     }
-    let sign = if sign == "=" { "==" } else { sign };
-    let value = match value {
-        "on" | "true" => json!(true),
-        "off" | "false" => json!(false),
-        "null" => Value::Null,
-        text => text
-            .parse::<f64>()
-            .ok()
-            .and_then(|number| serde_json::from_str(text).ok().or(Some(json!(number))))
-            .unwrap_or_else(|| json!(text.trim_matches(['"', '\'']))),
-    };
-    // A key of the report, or else an item with this name.
-    let name = json!(name);
-    let told = format!(
-        "(.data | if type == \"object\" and has({name}) then [.[{name}]] else \
-         [.. | objects | select([.[] | strings] | index({name})) | if has(\"value\") then .value elif has(\"on\") then .on else empty end] end)"
-    );
-    Some((format!("{told} as $told | ($told | length) > 0 and all($told[]; . {sign} {value})"), Vec::new()))
+
+    /// Filter over an envelope: a key of the report, or else an item with this name.
+    fn filter(&self) -> String {
+        let (name, compared) = (json!(self.name), self.compared());
+        let told = format!(
+            "(.data | if type == \"object\" and has({name}) then [.[{name}]] else \
+             [.. | objects | select([.[] | strings] | index({name})) | if has(\"value\") then .value elif has(\"on\") then .on else empty end] end)"
+        );
+        format!("{told} as $told | ($told | length) > 0 and all($told[]; {compared})")
+    }
+}
+
+/// Whether a report has an item with this name or label.
+fn has_item(value: &Value, name: &str) -> bool {
+    match value {
+        Value::Object(fields) => fields.values().any(|field| field == name || has_item(field, name)),
+        Value::Array(items) => items.iter().any(|item| has_item(item, name)),
+        _ => false,
+    }
 }
 
 /// Filter applied to one envelope, or to each of several.
@@ -213,6 +275,25 @@ mod tests {
                     .to_owned()
             )
         );
-        assert_eq!(Condition::new("servo_on=true").unwrap().never(&status), None, "a name may be one of an item");
+        let told = never("servo_on=true").unwrap();
+        assert!(told.contains("`armctl wait 'servo_on=true'`"), "{told}");
+        assert_eq!(never("running=true"), None);
+        let items = json!({ "data": { "items": [{ "name": "#27010", "label": "clamp", "value": false }] } });
+        assert_eq!(Condition::new("clamp=on").unwrap().never(&items), None, "an item");
+    }
+
+    #[test]
+    fn an_item_is_compared_whatever_its_spelling() {
+        let report =
+            |ok: bool, value: Value| json!({ "data": { "items": [{ "name": "CN05", "ok": ok, "value": value }] } });
+        let holds = |text: &str, report: &Value| {
+            Condition::of_item(text, &Comparison::parse(text).unwrap()).unwrap().holds(report).unwrap()
+        };
+        assert!(holds("cn5=0", &report(true, json!(0))) && !holds("cn5=0", &report(true, json!(1))));
+        assert!(holds("IN1.3=off", &report(true, json!(false))) && holds("IN1.3=0", &report(true, json!(false))));
+        assert!(!holds("cn5<4", &report(false, Value::Null)), "not read");
+        assert!(!holds("cn5<4", &json!({ "data": { "items": [] } })));
+        assert!(Comparison::parse(".data.x=1").is_none() && Comparison::parse("idle").is_none());
+        assert_eq!(Comparison::parse("#27010=on").unwrap().name, "#27010");
     }
 }

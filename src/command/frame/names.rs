@@ -276,6 +276,8 @@ struct Listed {
 }
 
 impl Report for Listing {
+    const ROWS: RowsOf = RowsOf::List("names");
+
     fn view(&self) -> View {
         let empty = if self.is_all { "no names" } else { "no matching names" };
         let mut table = Table::new(&["name", "kind", "address", "from", "cannot be typed"], empty);
@@ -293,10 +295,6 @@ impl Report for Listing {
         let Some((read_at, age)) = self.read_at.zip(self.age_s) else { return view };
         let read_at = read_at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S");
         view.and(Section::Text(format!("read from the controller on {read_at}, {} ago", in_words(age))))
-    }
-
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("names")
     }
 }
 

@@ -6,11 +6,14 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::failure::Failure;
-use crate::output::csv::RowsOf;
+use crate::output::csv::{RowsOf, Sheet};
 use crate::output::view::View;
 
 /// Report of a command.
 pub trait Report: Serialize + JsonSchema {
+    /// Rows of a spreadsheet.
+    const ROWS: RowsOf = RowsOf::Lists;
+
     /// View for people.
     fn view(&self) -> View;
 
@@ -19,9 +22,9 @@ pub trait Report: Serialize + JsonSchema {
         None
     }
 
-    /// Rows of a spreadsheet.
+    /// Rows of this report, [`ROWS`](Self::ROWS).
     fn rows(&self) -> RowsOf {
-        RowsOf::Lists
+        Self::ROWS
     }
 }
 
@@ -67,6 +70,11 @@ impl<R: Report> AnyReport for R {
 /// Schema of a report.
 pub fn schema_of<R: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<R>()
+}
+
+/// Columns of a report.
+pub fn sheet_of<R: Report>() -> Sheet {
+    Sheet::of(&schema_of::<R>().to_value(), R::ROWS)
 }
 
 /// Schema of a report, by command.

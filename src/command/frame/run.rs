@@ -311,16 +311,24 @@ impl Run {
                         self.print(robot, command.id(), &*report, place)?;
                     }
                     let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
-                    if self.repeat.is_quiet && (is_met || rounds.is_last()) {
+                    let failure = report.failure().filter(|failure| {
+                        self.repeat.is_quiet && failure.kind == Kind::NoAnswer && !self.repeat.permits(failure)
+                    });
+                    if let Some(failure) = failure.as_ref().filter(|_| !is_met && rounds.is_first()) {
+                        return Err(stopped(failure.clone()));
+                    }
+                    if self.repeat.is_quiet && (is_met || (failure.is_none() && rounds.is_last())) {
                         self.print(robot, command.id(), &*report, ReportPosition::Alone)?;
                     }
                     if is_met {
                         return Ok(());
                     }
-                    None
+                    failure
                 }
                 // A watch continues while a robot does not answer; any other failure ends it.
-                Err(failure) if failure.kind == Kind::NoAnswer => {
+                Err(failure)
+                    if failure.kind == Kind::NoAnswer && !self.repeat.ends_with(&failure, rounds.is_first()) =>
+                {
                     if self.repeat.is_quiet {
                         // It is reported at the end if the robot is still silent.
                     } else if self.is_for_people() {
@@ -344,7 +352,8 @@ impl Run {
 
     /// Failure that ends a watch. In a stream for programs it is written to stdout in order.
     fn broken_off(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
-        if self.is_for_people() || failure.kind == Kind::Interrupted {
+        // A wait reports once, like a single command.
+        if self.is_for_people() || self.repeat.is_quiet || failure.kind == Kind::Interrupted {
             return Ok(RunError::at(robot, command, failure));
         }
         self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;

@@ -254,6 +254,8 @@ impl Changes {
 }
 
 impl Report for Changes {
+    const ROWS: RowsOf = RowsOf::List("changes");
+
     fn view(&self) -> View {
         if self.changes.is_empty() {
             return View::text(self.watched.empty);
@@ -264,10 +266,6 @@ impl Report for Changes {
             Cell::from(change.line(&time, self.watched.value.is_none()))
         });
         View::default().and(Section::Lines(lines.collect()))
-    }
-
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("changes")
     }
 }
 

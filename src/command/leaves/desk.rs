@@ -1,5 +1,9 @@
 //! Lines of the commands that ask no controller for anything by themselves, or know their own robots.
 
+/// Commands of [`LINES`] that delete something, or move or stop a robot.
+pub const NO_DEFAULT: &[&str] = &["robots remove", "session close", "teach"];
+
+/// Their lines.
 pub const LINES: &[&str] = &[
     "yerc repl -r cell3",
     "yerc repl --sim",

@@ -135,7 +135,7 @@ pub struct Row<T> {
 }
 
 /// An alarm with family-specific data.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct AlarmEntry<T> {
     /// Alarm.
     #[serde(flatten)]

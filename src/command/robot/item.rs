@@ -160,6 +160,8 @@ fn numeric(name: &str) -> Cell {
 }
 
 impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for Items<V, M> {
+    const ROWS: RowsOf = RowsOf::List("items");
+
     fn view(&self) -> View {
         View::table(table(&self.columns, self.items.iter().take(self.asked)))
     }
@@ -171,10 +173,6 @@ impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for Items<V, M
             0 => failure,
             rest => Failure { message: format!("{}; {rest} were not read", failure.message), ..failure },
         })
-    }
-
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("items")
     }
 }
 
@@ -234,6 +232,8 @@ impl<V: Clone, M> Written<V, M> {
 }
 
 impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for WrittenItems<V, M> {
+    const ROWS: RowsOf = RowsOf::List("items");
+
     fn view(&self) -> View {
         match &self.words {
             Some(words) => View::text(words.clone()),
@@ -243,9 +243,5 @@ impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for WrittenIte
 
     fn failure(&self) -> Option<Failure> {
         verdict(self.items.len(), self.items.iter().filter_map(|written| written.item.error.as_ref()))
-    }
-
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("items")
     }
 }

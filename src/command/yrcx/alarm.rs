@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::info::{Part, entry};
-use super::link::Yrcx;
+use super::link::{Link, Yrcx};
 use super::numbers::Numbers;
 use super::several::read_numbers;
 use crate::command::face::shared::Alike;
@@ -19,7 +19,7 @@ use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::Failure;
+use crate::failure::{self, Failure};
 use crate::output::view::View;
 use crate::settings::{Robot, alarms};
 
@@ -69,6 +69,21 @@ impl Command for List {
             }
         }
         Ok(Alarms { alarms, standing: Signals { alarm, warning }, asked: 1 })
+    }
+}
+
+/// Latest entry of the history; `None` if it is empty or was not read. It has no time, so the same alarm a second time
+/// is the same entry.
+pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, Failure> {
+    let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).build()?;
+    if link.is_dry() {
+        link.plan(&latest, "latest alarm, to recognize a new one");
+        return Ok(None);
+    }
+    match link.ask(&latest).await {
+        Ok(answer) => Ok(entry(&answer.values, Kind::Alarm)),
+        Err(failure) if failure.kind == failure::Kind::Refused => Ok(None),
+        Err(failure) => Err(failure),
     }
 }
 

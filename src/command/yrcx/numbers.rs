@@ -61,8 +61,10 @@ fn field(command: Command, key: Key) -> Result<&'static Field, String> {
 }
 
 fn number(field: &Field, text: &str) -> Result<i32, String> {
+    let text = text.trim();
     // Names of variables are in capitals.
-    match field.parse(&text.trim().to_ascii_uppercase())? {
+    let parsed = field.parse(text).or_else(|error| field.parse(&text.to_ascii_uppercase()).map_err(|_| error));
+    match parsed? {
         Value::Int(number) => field.accept(&Value::Int(number)).map(|()| number),
         Value::Real(_) | Value::Text(_) => Err(format!("'{text}' is not a whole number")),
     }
@@ -78,6 +80,8 @@ mod tests {
         let given = [points("7").unwrap(), points("2..4").unwrap(), points("3-5").unwrap()];
         assert_eq!(Numbers::of(&given), [7, 2, 3, 4, 5]);
         assert_eq!(runs(&Numbers::of(&given)), "7, 2..5");
+        assert_eq!(Numbers::of(&[points("P7").unwrap(), points("p19..P21").unwrap()]), [7, 19, 20, 21]);
+        assert_eq!(points("Pick").unwrap_err(), "'Pick' is not a whole number");
         assert_eq!(Numbers::of(&[points("0..29999").unwrap()]).len(), 30_000);
         assert_eq!(points("0..30000").unwrap_err(), "30000 is out of range; allowed: 0 to 29999");
         assert_eq!(points("5..2").unwrap_err(), "the end of the range is before its start; did you mean 2..5?");

@@ -150,9 +150,7 @@ impl StatusReport {
 }
 
 impl Report for StatusReport {
-    fn rows(&self) -> RowsOf {
-        RowsOf::Report
-    }
+    const ROWS: RowsOf = RowsOf::Report;
 
     fn view(&self) -> View {
         let state = &self.state;

@@ -100,6 +100,9 @@ impl Opening {
             let line = match packet {
                 Passed::Datagram { from, to, bytes } => format!("udp {from} -> {to}  {}", hex(&bytes)),
                 Passed::Segment { from, to, bytes } => format!("tcp {from} -> {to}  {}", hex(&bytes)),
+                Passed::Adapter { direction, bytes } => {
+                    format!("adapter {}  {}", direction.arrow(), bytes.escape_ascii())
+                }
                 Passed::Frame(bytes) => format!("frame  {}", hex(&bytes)),
             };
             let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -147,6 +150,7 @@ impl Recorder {
                 record.capture(|capture, _| match passed {
                     Passed::Datagram { from, to, bytes } => capture.datagram(time, from, to, &bytes),
                     Passed::Segment { from, to, bytes } => capture.segment(time, from, to, &bytes),
+                    Passed::Adapter { .. } => Ok(()),
                     Passed::Frame(bytes) => capture.frame(time, &bytes),
                 });
             }

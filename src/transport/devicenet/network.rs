@@ -409,7 +409,8 @@ fn pass(taps: &[Tap], frame: &Frame) {
 
 /// Thread body: opens the adapter, and opens it again after a loss while connections wait for it.
 async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
-    let mut port = match open(&inner.adapter).await {
+    let tap = inner.lock().taps.first().cloned().unwrap_or_default();
+    let mut port = match open(&inner.adapter, tap).await {
         Ok(port) => port,
         Err(error) => {
             // The caller can be gone already.
@@ -443,7 +444,7 @@ async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
             let _ = timeout(REOPEN, inner.wake.notified()).await;
             sleep(REOPEN / 4).await;
             inner.lock().publish();
-            if let Ok(port) = open(&inner.adapter).await {
+            if let Ok(port) = open(&inner.adapter, Tap::default()).await {
                 break port;
             }
         };
@@ -510,7 +511,8 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
     }
 }
 
-async fn open(adapter: &Adapter) -> Result<Box<dyn CanPort>, PortError> {
+/// Opens an adapter; `tap` records how it is set up.
+async fn open(adapter: &Adapter, tap: Tap) -> Result<Box<dyn CanPort>, PortError> {
     let listens = adapter.identity.is_none();
     let name = adapter.place.to_string();
     let failed = |why: String, advice: &'static str| PortError::Open { path: name.clone(), why, advice: advice.into() };
@@ -539,7 +541,7 @@ async fn open(adapter: &Adapter) -> Result<Box<dyn CanPort>, PortError> {
         }
         Place::SocketCan { interface } => return socket_can(interface),
     };
-    Ok(Box::new(SlcanPort::start(name, pipe, adapter.bitrate, listens).await?))
+    Ok(Box::new(SlcanPort::start(name, pipe, adapter.bitrate, listens, tap).await?))
 }
 
 #[cfg(target_os = "linux")]

@@ -4,6 +4,8 @@ use std::fmt;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
+use crate::tap::Direction;
+
 /// A recorded item.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Passed {
@@ -23,6 +25,13 @@ pub enum Passed {
         /// Receiver.
         to: SocketAddr,
         /// Bytes of the piece.
+        bytes: Vec<u8>,
+    },
+    /// Bytes to or from an adapter on this computer, while it is set up. They are not part of a recording.
+    Adapter {
+        /// To the adapter, or from it.
+        direction: Direction,
+        /// The bytes.
         bytes: Vec<u8>,
     },
     /// A whole frame of a link with its own frame format. The link type of the recording identifies it.

@@ -141,12 +141,10 @@ impl<F: Field> Capture<F> {
 }
 
 impl<F: Field> Report for Capture<F> {
+    const ROWS: RowsOf = RowsOf::List("messages");
+
     fn view(&self) -> View {
         if self.is_detailed { self.details() } else { self.list() }
-    }
-
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("messages")
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -133,7 +133,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         let mut written = Ok(());
         self.rows(decoder, |row| {
             written = as_value(&row).and_then(|row| {
-                sheet.rows(&[], &json!({ "messages": [row] }), &mut text);
+                sheet.rows(&[], &json!({ "messages": [row] }), None, &mut text);
                 count += 1;
                 if count.is_multiple_of(PIECE) { run.screen.data(&std::mem::take(&mut text)) } else { Ok(()) }
             });

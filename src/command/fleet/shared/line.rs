@@ -8,26 +8,35 @@ use std::slice;
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
 
 use super::PerRobot;
 use crate::command::face::words::{Typed, Wish};
 use crate::command::families;
 use crate::command::frame::command::AnyContext;
+use crate::command::frame::items::ItemError;
 use crate::command::frame::names;
-use crate::command::{AnyCommand, ConnectMode, Driver, Outcome};
+use crate::command::frame::report::sheet_of;
+use crate::command::{AnyCommand, AnyReport, ConnectMode, Driver, Outcome, Report};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Confirmation, Intent};
+use crate::output::csv::Sheet;
+use crate::output::view::View;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
 /// A parsed command, or the error.
 type Parsed = Result<Box<dyn AnyCommand>, Failure>;
 
-/// A read command in words that all families have.
+/// A read command in words that all families have, or the first of several that a family has.
 pub struct SharedLine {
     id: &'static str,
-    words: Vec<String>,
+    lines: Vec<Vec<String>>,
+    /// Whether reports are reduced to what the families have in common.
+    is_reduced: bool,
     /// Commands by family, with placeholder addresses for names.
     usual: Vec<(Family, Parsed)>,
     /// Commands by robot name.
@@ -37,11 +46,21 @@ pub struct SharedLine {
 impl SharedLine {
     /// Parses a line; `id` is its command id in envelopes and schemas.
     pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
+        Self::first_of(id, vec![words], false)
+    }
+
+    /// Reads a value by its name or label, whatever it is: `NOUN get NAME` with the first noun that has it.
+    pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self, Failure> {
+        let lines = nouns.iter().map(|noun| [*noun, "get", name].map(ToOwned::to_owned).into());
+        Self::first_of(id, lines.collect(), true)
+    }
+
+    fn first_of(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self, Failure> {
         let usual: Vec<(Family, Parsed)> =
-            Family::ALL.into_iter().map(|family| (family, names::asking(|| parse(family, &words)).0)).collect();
+            Family::ALL.into_iter().map(|family| (family, names::asking(|| parse_first(family, &lines)).0)).collect();
         match usual.iter().find(|_| usual.iter().all(|(_, parsed)| parsed.is_err())) {
             Some((_, Err(failure))) => Err(failure.clone()),
-            _ => Ok(Self { id, words, usual, own: RefCell::default() }),
+            _ => Ok(Self { id, lines, is_reduced, usual, own: RefCell::default() }),
         }
     }
 
@@ -53,7 +72,7 @@ impl SharedLine {
     fn of(&self, robot: &Robot) -> Rc<Parsed> {
         let parsed = || {
             let known = slice::from_ref(robot);
-            Rc::new(names::known(robot.family, known, || parse(robot.family, &self.words)))
+            Rc::new(names::known(robot.family, known, || parse_first(robot.family, &self.lines)))
         };
         Rc::clone(self.own.borrow_mut().entry(robot.name.clone()).or_insert_with(parsed))
     }
@@ -77,7 +96,15 @@ impl AnyCommand for SharedLine {
     }
 
     fn connect_mode(&self, robot: &Robot) -> ConnectMode {
-        self.usual(Some(robot.family)).map_or_else(ConnectMode::default, |command| command.connect_mode(robot))
+        match &*self.of(robot) {
+            Ok(command) => command.connect_mode(robot),
+            // It is refused before anything is sent.
+            Err(_) => ConnectMode::Monitor,
+        }
+    }
+
+    fn sheet(&self) -> Option<Sheet> {
+        if self.is_reduced { Some(sheet_of::<Reading>()) } else { self.usual(None)?.sheet() }
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
@@ -85,10 +112,90 @@ impl AnyCommand for SharedLine {
             let parsed = self.of(context.robot);
             let command = (*parsed).as_ref().map_err(Failure::clone)?;
             let AnyContext { robot, connection, screen, several, authority } = context;
-            command.run(AnyContext { robot, connection: &mut *connection, screen, several, authority }).await
+            let context = AnyContext { robot, connection: &mut *connection, screen, several, authority };
+            let report = command.run(context).await?;
+            if self.is_reduced { Ok(Box::new(Reading::new(&*report)?) as Box<_>) } else { Ok(report) }
         }
         .boxed_local()
     }
+}
+
+/// Value that was read, whatever it is.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Reading {
+    items: Vec<ReadItem>,
+    /// View of the family.
+    #[serde(skip)]
+    view: View,
+    #[serde(skip)]
+    failure: Option<Failure>,
+}
+
+/// Common fields of signals, variables, counters and the like.
+#[derive(Debug, Serialize, JsonSchema)]
+struct ReadItem {
+    /// Name that can be typed.
+    name: String,
+    /// User name; null if there is none.
+    label: Option<String>,
+    /// Kind: `variable`, `input`, `counter`.
+    kind: String,
+    /// Whether it was read.
+    ok: bool,
+    /// Value; null if it was not read.
+    value: Value,
+    /// Reason why it was not read.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    #[schemars(with = "ItemError")]
+    error: Value,
+}
+
+impl Reading {
+    fn new(report: &dyn AnyReport) -> Result<Self, Failure> {
+        let data = report.data()?;
+        let text = |value: &Value| value.as_str().map(ToOwned::to_owned);
+        let item = |item: &Value| ReadItem {
+            name: text(&item["name"]).unwrap_or_default(),
+            label: text(&item["label"]),
+            kind: text(&item["kind"]).unwrap_or_default(),
+            ok: item["ok"] == true,
+            value: item["value"].clone(),
+            error: item["error"].clone(),
+        };
+        let items = data["items"].as_array().into_iter().flatten().map(item).collect();
+        Ok(Self { items, view: report.view(), failure: report.failure() })
+    }
+}
+
+impl Report for Reading {
+    fn view(&self) -> View {
+        self.view.clone()
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.failure.clone()
+    }
+}
+
+/// Parses the first line that is a command of a family.
+fn parse_first(family: Family, lines: &[Vec<String>]) -> Parsed {
+    let mut failures = Vec::new();
+    for words in lines {
+        match parse(family, words) {
+            Ok(command) => return Ok(command),
+            Err(failure) => failures.push(failure),
+        }
+    }
+    if let [failure] = &failures[..] {
+        return Err(failure.clone());
+    }
+    let near = failures.iter().find(|failure| failure.message.contains("did you mean"));
+    Err(near.cloned().unwrap_or_else(|| {
+        let name = lines.first().and_then(|words| words.last()).map_or("", String::as_str);
+        let message = format!("'{name}' is not a signal, variable, counter or other value of {family}");
+        Failure::usage(message)
+            .hint("`armctl names list` shows your names, `armctl status --json` the keys of a status")
+    }))
 }
 
 /// Parses words into a command of a family.

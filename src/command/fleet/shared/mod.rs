@@ -2,7 +2,7 @@
 
 pub mod alarm;
 pub mod io;
-mod line;
+pub mod line;
 
 use futures_util::future::LocalBoxFuture;
 
@@ -15,6 +15,7 @@ use crate::command::{Access, AnyCommand, ConnectMode, Connection, Driver, Entry,
 use crate::failure::Failure;
 use crate::gate::Intent;
 use crate::output::Screen;
+use crate::output::csv::Sheet;
 use crate::settings::Robot;
 use crate::settings::target::{Address, Family};
 
@@ -59,6 +60,10 @@ impl AnyCommand for Shared {
 
     fn connect_mode(&self, robot: &Robot) -> ConnectMode {
         self.of(robot).connect_mode(robot)
+    }
+
+    fn sheet(&self) -> Option<Sheet> {
+        self.commands[0].1.sheet()
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {

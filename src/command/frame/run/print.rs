@@ -11,7 +11,7 @@ use super::{Run, RunError};
 use crate::command::frame::{AnyCommand, AnyReport, Outcome};
 use crate::failure::Failure;
 use crate::output::csv::Sheet;
-use crate::output::envelope::Envelope;
+use crate::output::envelope::{Envelope, ErrorBody};
 use crate::output::view::{Table, View};
 use crate::output::{Format, escape, render};
 use crate::settings::Robot;
@@ -88,9 +88,13 @@ impl Run {
             reasons.extend(said.of(index, reason.as_ref()).into_iter().map(|failure| (robot, failure)));
         }
         if self.screen.format.is_rows() {
-            let reports = robots.iter().zip(outcomes);
-            let reports = reports.filter_map(|(robot, outcome)| Some((Some(robot), outcome.as_deref().ok()?)));
-            self.show_csv(&reports.collect::<Vec<_>>(), place)?;
+            let outcomes = robots.iter().zip(outcomes);
+            let rows: Vec<_> = outcomes.map(|(robot, outcome)| (Some(robot), outcome.as_deref())).collect();
+            let report = rows.iter().find_map(|(_, outcome)| outcome.ok());
+            let sheet = report.map(sheet_of).or_else(|| command.sheet());
+            if let Some(sheet) = sheet {
+                self.show_csv(&sheet.with_outcome(), &rows, place)?;
+            }
         } else {
             self.show_many(&views, place)?;
         }
@@ -137,7 +141,7 @@ impl Run {
         if self.is_for_people() {
             return match place {
                 ReportPosition::LineOf(robot) if self.screen.format.is_rows() => {
-                    self.show_csv(&[(Some(robot), report)], place)
+                    self.show_csv(&sheet_of(report), &[(Some(robot), Ok(report))], place)
                 }
                 place => self.show_one(report, place),
             };
@@ -193,15 +197,19 @@ impl Run {
 
     fn show_one(&self, report: &dyn AnyReport, place: ReportPosition<'_>) -> Result<(), Failure> {
         match self.screen.format {
-            Format::Csv | Format::Value => self.show_csv(&[(None, report)], place),
+            Format::Csv | Format::Value => self.show_csv(&sheet_of(report), &[(None, Ok(report))], place),
             _ => self.show(&report.view(), place),
         }
     }
 
-    /// Writes reports of one kind as CSV. Later rounds of a watch go below the first header.
-    fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: ReportPosition<'_>) -> Result<(), Failure> {
-        let Some((_, first)) = reports.first() else { return Ok(()) };
-        let sheet = Sheet::of(&first.schema().to_value(), first.rows());
+    /// Writes reports of one kind as CSV, with a row for each robot that failed. Later rounds of a watch go below the
+    /// first header.
+    fn show_csv(
+        &self,
+        sheet: &Sheet,
+        rows: &[(Option<&Robot>, Result<&dyn AnyReport, &Failure>)],
+        place: ReportPosition<'_>,
+    ) -> Result<(), Failure> {
         let is_csv = self.screen.format == Format::Csv;
         let is_round = is_csv
             && self.repeat.is_wanted()
@@ -209,7 +217,7 @@ impl Run {
             && matches!(place, ReportPosition::First | ReportPosition::Next);
         let time = (is_round && !sheet.has("time")).then(|| Timestamp::now().to_string());
         let mut before: Vec<&str> = time.iter().map(|_| "time").collect();
-        before.extend(reports.iter().find_map(|(robot, _)| robot.map(|_| "robot")));
+        before.extend(rows.iter().find_map(|(robot, _)| robot.map(|_| "robot")));
         let header = sheet.header(&before);
         let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line | ReportPosition::LineOf(_));
         let mut text = if is_later && *self.redraw.header.borrow() == header { String::new() } else { header.clone() };
@@ -217,11 +225,20 @@ impl Run {
         if !is_csv {
             text.clear();
         }
-        for (robot, report) in reports {
+        for (robot, outcome) in rows {
             let before: Vec<&str> =
                 time.as_deref().into_iter().chain(robot.iter().map(|robot| robot.name.as_str())).collect();
-            let add = if is_csv { Sheet::rows } else { Sheet::values };
-            add(&sheet, &before, &report.data()?, &mut text);
+            match outcome {
+                Ok(report) if is_csv => {
+                    let error = report.failure().map(ErrorBody::from).map(|error| as_value(&error)).transpose()?;
+                    sheet.rows(&before, &report.data()?, error.as_ref(), &mut text);
+                }
+                Ok(report) => sheet.values(&before, &report.data()?, &mut text),
+                Err(failure) if is_csv => {
+                    sheet.failed(&before, &as_value(&ErrorBody::from((*failure).clone()))?, &mut text);
+                }
+                Err(_) => {}
+            }
         }
         self.screen.data(&text)
     }
@@ -242,6 +259,11 @@ impl Run {
         };
         screen.data(&self.redraw.over(text))
     }
+}
+
+/// Columns of a report.
+fn sheet_of(report: &dyn AnyReport) -> Sheet {
+    Sheet::of(&report.schema().to_value(), report.rows())
 }
 
 /// Failures of robots, with common ones merged.

@@ -33,6 +33,17 @@ impl Repeat {
     pub fn is_wanted(&self) -> bool {
         self.every.is_some() || self.count.is_some() || self.until.is_some()
     }
+
+    /// Whether a wait ends with this failure of a robot: one in the first round, or another one than silence. Only a
+    /// robot that answered before may be silent for a while.
+    pub fn ends_with(&self, failure: &Failure, is_first: bool) -> bool {
+        self.is_quiet && !self.permits(failure) && (is_first || failure.kind != Kind::NoAnswer)
+    }
+
+    /// Whether the condition is about a robot that does not answer.
+    pub fn permits(&self, failure: &Failure) -> bool {
+        failure.kind == Kind::NoAnswer && self.until.as_ref().is_some_and(Condition::is_about_connection)
+    }
 }
 
 /// Rounds of a watch, at fixed intervals without drift.

@@ -70,7 +70,8 @@ impl Run {
                 let envelopes = self.print_many(command, robots, &outcomes, (place, &mut said))?;
                 rounds.is_met(&envelopes, &self.screen)?
             };
-            let goes_on = !is_met && rounds.next().await?;
+            let ends = |failure: Failure| self.repeat.ends_with(&failure, rounds.is_first());
+            let goes_on = !is_met && !failures(&outcomes).any(ends) && rounds.next().await?;
             if self.repeat.is_quiet && !goes_on {
                 self.print_many(command, robots, &outcomes, (ReportPosition::First, &mut said))?;
             }
@@ -86,10 +87,7 @@ impl Run {
 
     /// Common result of several robots.
     fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
-        let failures: Vec<Failure> = outcomes
-            .iter()
-            .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |r| r.failure()))
-            .collect();
+        let failures: Vec<Failure> = failures(outcomes).filter(|failure| !self.repeat.permits(failure)).collect();
         self.failed(&failures, outcomes.len())
     }
 
@@ -124,4 +122,11 @@ impl Run {
         }
         self.failed(&failures, robots.len())
     }
+}
+
+/// Failures of robots and of their reports.
+fn failures(outcomes: &[Outcome]) -> impl Iterator<Item = Failure> {
+    outcomes
+        .iter()
+        .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |report| report.failure()))
 }

@@ -269,9 +269,7 @@ impl Step {
 }
 
 impl Report for Got {
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("steps")
-    }
+    const ROWS: RowsOf = RowsOf::List("steps");
 
     fn view(&self) -> View {
         if let Some(text) = &self.text {

@@ -347,9 +347,7 @@ impl Trace {
 type Axis = (&'static str, usize);
 
 impl Report for Trace {
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("trace")
-    }
+    const ROWS: RowsOf = RowsOf::List("trace");
 
     /// Axes that stay at 0 have no column, nor has the task where there is one only.
     fn view(&self) -> View {

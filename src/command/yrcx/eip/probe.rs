@@ -67,9 +67,7 @@ pub struct ProbeReport {
 }
 
 impl Report for ProbeReport {
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("assemblies")
-    }
+    const ROWS: RowsOf = RowsOf::List("assemblies");
 
     fn view(&self) -> View {
         let mut view = match &self.identity {

@@ -20,7 +20,7 @@ one_row! {
 }
 
 /// Source of an alarm.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Part {
     /// Robot, controller or task.
     place: Option<String>,

@@ -209,9 +209,7 @@ impl Probed {
 }
 
 impl Report for Probed {
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("modules")
-    }
+    const ROWS: RowsOf = RowsOf::List("modules");
 
     fn view(&self) -> View {
         let mut fields = self.station.fields();

@@ -11,7 +11,10 @@ use super::WhichOrAll;
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::ending::ProgramEnd;
+use crate::command::robot::alarm::AlarmEntry;
 use crate::command::robot::program::{Program, ProgramState};
+use crate::command::yrcx::alarm;
+use crate::command::yrcx::info::Part;
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -67,6 +70,10 @@ impl Command for Run {
         let mut runs = Runs::new(self.repeat);
         for _ in 0..self.repeat.count() {
             let early = |failure| runs.early(failure);
+            let before = match limit {
+                Some(_) => alarm::latest(link).await.map_err(early)?,
+                None => None,
+            };
             link.ask(&order).await.map_err(early)?;
             let began = Instant::now();
             let Some(limit) = limit else {
@@ -78,6 +85,7 @@ impl Command for Run {
             let doing = runs.next().map_or_else(|| format!("{what} runs"), |run| format!("{what}: {run}"));
             let _progress = screen.spinner(&doing);
             let seen = wait(link, &what, began, limit).await.map_err(early)?;
+            alarmed(link, &what, before.as_ref()).await.map_err(early)?;
             let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
             if seen {
                 runs.ended(elapsed_ms);
@@ -93,7 +101,9 @@ impl Command for Run {
 impl Run {
     /// Notes in a dry run what follows a start.
     fn plan(&self, link: &mut Link) -> Failure {
-        link.then("the signals are read until SO(13) shows that no program is running");
+        link.then(
+            "the signals are read until SO(13) shows that no program is running, then the latest alarm is read again",
+        );
         if let Some(count) = self.repeat.repeat {
             link.then(&format!("after each end the program is started again, {count} starts in total"));
         }
@@ -132,20 +142,29 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
                 .hint("`yrcx info line` shows the current line; the end of this connection stops the program")
         })?,
     };
-    let image = image.map_err(lost)?;
-    let stopped = if output::EMERGENCY_STOP.is_on(&image) {
-        Some(("the emergency stop was triggered", "release it, then `yrcx recover`"))
-    } else if output::ALARM.is_on(&image) {
-        Some(("an alarm occurred", "see `yrcx alarm list`, then reset with `yrcx alarm reset`"))
+    image.map_err(lost).map(|_| seen)
+}
+
+/// Fails if an emergency stop or an alarm ended the program. An error in a program stops it without SO(03): then only
+/// the history, compared with its state `before` the start, shows that it did not reach its end.
+async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>) -> Result<(), Failure> {
+    let image = link.look().await?;
+    let latest = alarm::latest(link).await?;
+    let is_new = latest.as_ref().is_some_and(|latest| before != Some(latest));
+    let (why, hint) = if output::EMERGENCY_STOP.is_on(&image) {
+        ("the emergency stop was triggered".to_owned(), "release it, then `yrcx recover`")
+    } else if output::ALARM.is_on(&image) || is_new {
+        let alarm = latest.as_ref().and_then(|latest| Some((latest.alarm.code.as_ref()?, latest.alarm.text.as_ref()?)));
+        let why = alarm.map_or_else(|| "an alarm".to_owned(), |(code, text)| format!("alarm {code} ({text})"));
+        (
+            format!("{why} occurred"),
+            "`yrcx alarm history` shows the alarm; remove the cause, then use `yrcx alarm reset`",
+        )
     } else {
-        None
+        return Ok(());
     };
-    match stopped {
-        None => Ok(seen),
-        Some((why, hint)) => {
-            Err(Failure::new(Kind::ConditionNotMet, format!("{what} was started, but {why}")).hint(hint))
-        }
-    }
+    let failure = Failure::new(Kind::ConditionNotMet, format!("{what} was started, but {why}")).hint(hint);
+    Err(Failure { code: latest.and_then(|latest| latest.alarm.code), ..failure })
 }
 
 /// Result of a program start.

@@ -40,9 +40,9 @@ JUMP *AGAIN IF B000<3",
 /// Taught positions of all jobs above.
 const POSITIONS: &str = "C00000=0,0,0,0,0,0\nC00001=0,0,-300000,0,0,0\nC00002=68000,100000,0,0,-30000,0";
 
-/// Data, parameter, system and list files.
+/// Data, parameter, system and list files. `VAR.DAT` and the lists of names are generated when they are read.
 const FILES: [(&str, &str); 12] = [
-    ("VAR.DAT", "//VAR\n///SHARE\n////B\n0,0,0,0,0,0,0,7,0,0"),
+    ("VAR.DAT", "//VAR"),
     ("POSITION.DAT", "//POSITION\n///ABSO"),
     ("HOME.DAT", "//HOME\n0,0,0,0,0,0"),
     ("SYSTEM.DAT", "//SYSTEM"),
@@ -55,8 +55,8 @@ const FILES: [(&str, &str); 12] = [
     ("RC.PRM", "///CMOS\nRC"),
     ("SYSTEM.SYS", "//SYSTEM"),
     ("ALMHIST.SYS", "//ALMHIST"),
-    ("IONAME.LST", "//IONAME\nOT#(1) GRIPPER\nOT#(2) BUSY"),
-    ("VARNAME.LST", "//VARNAME\nB000 PARTS"),
+    ("IONAME.LST", "//IONAME"),
+    ("VARNAME.LST", "//VARNAME"),
 ];
 
 /// Lines of the signal sections: the first 128 signals of each.

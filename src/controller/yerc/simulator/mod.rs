@@ -20,6 +20,7 @@ mod alarms;
 mod console;
 mod defaults;
 mod job;
+mod lists;
 mod memory;
 mod motion;
 mod moves;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::job::Program;
+use super::lists;
 use super::variables;
 use super::world::{Refusal, World, code};
 use crate::yerc::Model;
@@ -150,6 +151,11 @@ impl World {
         check_stored_name(name)?;
         if name == variables::NAME && self.files.get(name).is_some() {
             return Ok(FileContent::Content(variables::written(&self.memory).into()));
+        }
+        if self.files.get(name).is_some()
+            && let Some(list) = lists::written(&self.files, name)
+        {
+            return Ok(FileContent::Content(list.into()));
         }
         match (self.files.get(name), self.model) {
             (Some(content), _) if content.size() > 0 => Ok(FileContent::Content(content.clone())),

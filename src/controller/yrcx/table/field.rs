@@ -374,8 +374,12 @@ impl Field {
     }
 
     /// Parses user input: a number in the unit of the field, the name of a choice, a list of axes such as `1,3`, or
-    /// SGI5 for a variable. The complete command is validated later.
+    /// SGI5 for a variable, P19 for a point. The complete command is validated later.
     pub fn parse(&self, text: &str) -> Result<Value, String> {
+        // Programs write P19 for point 19.
+        let is_point = matches!(self.key, Key::Point | Key::Point2 | Key::FirstPoint);
+        let number = text.strip_prefix(['P', 'p']).filter(|number| number.bytes().all(|byte| byte.is_ascii_digit()));
+        let text = number.filter(|_| is_point).unwrap_or(text);
         let whole = |text: &str| PLAIN.parse(text).map(Value::Int).map_err(|error| plain(&error));
         let number = |unit: Unit| match unit.symbol {
             "" => whole(text),

@@ -9,6 +9,8 @@ use tokio::time::{Instant, sleep_until, timeout_at};
 use super::pipe::Pipe;
 use super::slcan::{Lines, Said, bitrate_command, emit, flag};
 use super::{Bitrate, BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
+use crate::image::tap::{Passed, Tap};
+use crate::tap::Direction;
 
 /// Silence after which all leftovers of an earlier use have been read.
 const QUIET: Duration = Duration::from_millis(50);
@@ -41,11 +43,14 @@ pub struct SlcanPort {
     received: (Instant, usize),
     /// Whether anything came since it was set up anew.
     hears: bool,
+    /// Records the bytes while the adapter is set up.
+    tap: Tap,
 }
 
 impl SlcanPort {
     /// Sets up an adapter: closes the channel, sets the bit rate, opens the channel (in listen-only mode if `listens`).
-    pub async fn start(path: String, pipe: Pipe, bitrate: Bitrate, listens: bool) -> Result<Self, PortError> {
+    /// `tap` records the commands and answers.
+    pub async fn start(path: String, pipe: Pipe, bitrate: Bitrate, listens: bool, tap: Tap) -> Result<Self, PortError> {
         let mut port = Self {
             path,
             pipe,
@@ -55,6 +60,7 @@ impl SlcanPort {
             flags_due: None,
             received: (Instant::now(), 0),
             hears: false,
+            tap,
         };
         // Ends a line that an earlier use left unfinished.
         port.write(b"\r\r\r")?;
@@ -89,6 +95,7 @@ impl SlcanPort {
             port.flagged(flags);
             port.flags_due = Some(Instant::now() + FLAGS);
         }
+        port.tap = Tap::default();
         Ok(port)
     }
 
@@ -121,6 +128,7 @@ impl SlcanPort {
         if self.pipe.writer().waiting() > MOST_WAITING {
             return Err(PortError::Stuck { path: self.path.clone() });
         }
+        self.tap.pass(|| Passed::Adapter { direction: Direction::Sent, bytes: bytes.to_vec() });
         // A closed stream is reported by the next read.
         self.pipe.writer().write(bytes);
         Ok(())
@@ -138,6 +146,7 @@ impl SlcanPort {
 
     fn take(&mut self, read: io::Result<Vec<u8>>) -> Result<(), PortError> {
         let bytes = read.map_err(|error| PortError::Gone { path: self.path.clone(), why: error.to_string() })?;
+        self.tap.pass(|| Passed::Adapter { direction: Direction::Received, bytes: bytes.clone() });
         if self.received.0.elapsed() > WINDOW {
             self.received = (Instant::now(), 0);
         }

@@ -29,6 +29,19 @@ fn files_come_back_as_they_went() {
 }
 
 #[test]
+fn lists_of_names_follow_the_files_with_names() {
+    let mut bench = Bench::default();
+    let text = |bytes: Result<Vec<u8>, Status>| String::from_utf8(bytes.unwrap()).unwrap();
+    let signals = "//IONAME\r\nIN#(1) PART_PRESENT\r\nIN#(2) DOOR_CLOSED\r\nOT#(1) GRIPPER\r\nOT#(2) BUSY\r\n";
+    assert_eq!(text(bench.fetch(0x16, b"IONAME.LST")), signals);
+    let variables = "//VARNAME\r\nB050 PARTS_DONE\r\nI050 PARTS_TODO\r\nP020 ABOVE_TABLE\r\n";
+    assert_eq!(text(bench.fetch(0x16, b"VARNAME.LST")), variables);
+    let renamed = text(bench.fetch(0x16, b"IONAME.DAT")).replace("GRIPPER", "TONGS");
+    assert_eq!(bench.load(b"IONAME.DAT", renamed.as_bytes(), 479), Status::OK);
+    assert_eq!(text(bench.fetch(0x16, b"IONAME.LST")), signals.replace("GRIPPER", "TONGS"));
+}
+
+#[test]
 fn jobs_are_checked_when_they_are_loaded() {
     let mut bench = Bench::default();
     let job = bench.fetch(0x16, b"HOME.JBI").unwrap();
