@@ -346,11 +346,12 @@ fn the_date_in_a_header_can_be_left_out() {
     assert_ne!(job, other);
     std::fs::write(&path, other).unwrap();
     let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI --exact");
-    assert_eq!((exit, &diff["data"]["ignored"]), (8, &json!([])), "{diff}");
+    assert_eq!((exit, &diff["data"]["files"][0]["ignored"]), (8, &json!([])), "{diff}");
     for line in ["file diff TESTJOB.JBI", "file diff TESTJOB.JBI --ignore-header"] {
         let (exit, diff, _) = run(folder.path(), &target, line);
         assert_eq!(exit, 0, "{diff}");
-        assert_eq!((&diff["data"]["equal"], &diff["data"]["ignored"]), (&json!(true), &json!(["///DATE"])), "{diff}");
+        let ignored = &diff["data"]["files"][0]["ignored"];
+        assert_eq!((&diff["data"]["equal"], ignored), (&json!(true), &json!(["///DATE"])), "{diff}");
     }
     std::fs::write(
         &path,
@@ -358,7 +359,7 @@ fn the_date_in_a_header_can_be_left_out() {
     )
     .unwrap();
     let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI");
-    assert_eq!((exit, diff["data"]["hunks"].as_array().map(Vec::len)), (8, Some(1)), "{diff}");
+    assert_eq!((exit, diff["data"]["files"][0]["hunks"].as_array().map(Vec::len)), (8, Some(1)), "{diff}");
 }
 
 /// Whether a frame is one of those that a line of a dry run shows; requests have another number each time.

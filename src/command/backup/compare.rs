@@ -13,9 +13,12 @@ use crate::command::Report;
 use crate::command::backup::manifest::{Entry, Manifest, Saved};
 use crate::command::backup::text_diff::{Change, Hunk, MOST_TEXT, TextDifference, unified};
 use crate::command::backup::{Only, gravity};
+use crate::command::frame::items::ItemError;
+use crate::command::robot::file::{FILES, FileItem};
 use crate::controller::text::Encoding;
 use crate::failure::{Failure, Kind};
 use crate::files;
+use crate::output::csv::RowsOf;
 use crate::output::escape;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 
@@ -56,7 +59,8 @@ pub struct Differences {
     /// Whether nothing differs, apart from the tolerance and ignored lines.
     equal: bool,
     tolerance: Tolerance,
-    files: Vec<FileDifference>,
+    /// Files and parts; `controller` is the data of the manifests about model and versions.
+    files: Vec<Difference>,
 }
 
 /// One side in the report.
@@ -69,32 +73,29 @@ struct Of {
     taken_at: String,
 }
 
-/// Difference of a file or part.
-#[derive(Debug, Serialize, JsonSchema)]
-struct FileDifference {
-    /// Name on the controller, or name of the part; `controller` for model and versions in the manifests.
-    name: String,
-    state: State,
+/// Fields of a file that was compared.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Compared {
+    /// Result.
+    pub state: State,
     /// Differing lines that are ignored: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    ignored: Vec<&'static str>,
+    pub ignored: Vec<&'static str>,
     /// Changes from the old file to the new file; null if one of them is not text, is too large or is missing.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    hunks: Option<Vec<Hunk>>,
-    /// Whether only line endings differ.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    only_line_endings: bool,
-    /// Reason why it could not be compared.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<Failure>,
+    pub hunks: Option<Vec<Hunk>>,
+    /// Whether only line endings differ; null if a file is not text or too large.
+    pub only_line_endings: Option<bool>,
+    /// Name of the file in the folder, for headings.
     #[serde(skip)]
     file: String,
 }
 
+/// A file that was compared.
+pub type Difference = FileItem<Compared>;
+
 /// Result of comparing two files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-enum State {
+pub enum State {
     /// Equal in all bytes.
     Same,
     /// Equal except for the line `///DATE`.
@@ -129,7 +130,7 @@ impl Differences {
         }
         let both = a.files.iter().chain(&b.files).map(|entry| entry.name.as_str());
         only.check(&both.chain([CONTROLLER]).collect::<Vec<_>>())?;
-        let mut files: Vec<FileDifference> = Vec::new();
+        let mut files: Vec<Difference> = Vec::new();
         if only.has(CONTROLLER) {
             files.extend(of_controllers(a, b)?);
         }
@@ -140,13 +141,12 @@ impl Differences {
         for entry in b.files.iter().filter(|entry| only.has(&entry.name) && partner(entry, a).is_none()) {
             files.push(of_files(old, new, None, Some(entry), manner));
         }
-        let equal =
-            files.iter().all(|file| matches!(file.state, State::Same | State::SameButDate | State::WithinTolerance));
+        let equal = files.iter().all(|file| file.more.state.is_equal());
         Ok(Self { old: Of::new(old), new: Of::new(new), equal, tolerance: manner.tolerance, files })
     }
 
     fn count(&self, states: &[State]) -> usize {
-        self.files.iter().filter(|file| states.contains(&file.state)).count()
+        self.files.iter().filter(|file| states.contains(&file.more.state)).count()
     }
 
     fn summary(&self) -> String {
@@ -196,7 +196,7 @@ fn key(entry: &Entry) -> String {
 }
 
 /// Difference of the controller data, if any.
-fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<FileDifference>, Failure> {
+fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<Difference>, Failure> {
     if old.controller == new.controller {
         return Ok(None);
     }
@@ -206,33 +206,38 @@ fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<FileDifferenc
     };
     let (old, new) = (text(old)?, text(new)?);
     let found = TextDifference::of(Encoding::Utf8, old.as_bytes(), new.as_bytes());
-    Ok(Some(FileDifference {
-        hunks: found.map(|found| found.hunks),
-        ..FileDifference::new(CONTROLLER.to_owned(), State::Changed)
-    }))
+    Ok(Some(FileItem::new(CONTROLLER, Compared::texts(found), Ok(()))))
 }
 
 /// Compares a file that one or both sides have.
-fn of_files(old: &Side, new: &Side, entry: Option<&Entry>, partner: Option<&Entry>, manner: Manner) -> FileDifference {
+fn of_files(old: &Side, new: &Side, entry: Option<&Entry>, partner: Option<&Entry>, manner: Manner) -> Difference {
     let name = entry.or(partner).map(|entry| entry.name.clone()).unwrap_or_default();
+    // The file of the old side, or of the only one.
+    let (side, saved) = if entry.is_some() { (old, entry) } else { (new, partner) };
+    let described = |file: Difference| match saved.and_then(|entry| entry.copy.as_ref()) {
+        Some(copy) if side.is_controller => Difference { path: None, ..file.of_copy(&side.folder, copy) },
+        Some(copy) => file.of_copy(&side.folder, copy),
+        None => file,
+    };
     let state = match (entry, partner) {
         (Some(_), None) if covers(&new.manifest, &old.manifest, &name) => State::OnlyOld,
         (None, Some(_)) if covers(&old.manifest, &new.manifest, &name) => State::OnlyNew,
         (Some(entry), Some(partner)) => {
             return match both(old, new, entry, partner, manner) {
-                Ok(file) => FileDifference { name, ..file },
-                Err(failure) => FileDifference::unknown(name, failure),
+                Ok(more) => described(FileItem::new(name, more, Ok(()))),
+                Err(failure) => described(FileItem::new(name, Compared::new(State::Unknown), Err(failure))),
             };
         }
         _ => {
-            let side = if entry.is_some() { new } else { old };
-            let why = if side.manifest.complete { "it was not selected" } else { "the backup is incomplete" };
-            let why = format!("{} does not contain it: {why}", Of::new(side));
+            let other = if entry.is_some() { new } else { old };
+            let why = if other.manifest.complete { "it was not selected" } else { "the backup is incomplete" };
+            let why = format!("{} does not contain it: {why}", Of::new(other));
             let failure = Failure::new(Kind::ConditionNotMet, why);
-            return FileDifference::unknown(name, failure.hint("complete the backup with `armctl backup --resume`"));
+            let failure = failure.hint("complete the backup with `armctl backup --resume`");
+            return described(FileItem::new(name, Compared::new(State::Unknown), Err(failure)));
         }
     };
-    FileDifference::new(name, state)
+    described(FileItem::new(name, Compared::new(state), Ok(())))
 }
 
 /// Whether a file that is missing in a backup was missing on the controller, because the backup would have included
@@ -244,15 +249,15 @@ fn covers(backup: &Manifest, other: &Manifest, name: &str) -> bool {
         && backup.scope.iter().all(|word| is_common(word) || other.scope.contains(word))
 }
 
-fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) -> Result<FileDifference, Failure> {
+fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) -> Result<Compared, Failure> {
     let (ours, theirs) = (copy(old, entry)?, copy(new, partner)?);
-    let file = |state| FileDifference { file: ours.file.clone(), ..FileDifference::new(String::new(), state) };
+    let file = |more: Compared| Compared { file: ours.file.clone(), ..more };
     if ours.sha256.eq_ignore_ascii_case(&theirs.sha256) {
-        return Ok(file(State::Same));
+        return Ok(file(Compared::new(State::Same)));
     }
     let most = MOST_TEXT as u64;
     if ours.bytes > most || theirs.bytes > most {
-        return Ok(file(State::Changed));
+        return Ok(file(Compared::new(State::Changed)));
     }
     let (mut before, mut after) = (read(&old.folder, ours)?, read(&new.folder, theirs)?);
     let mut ignored = Vec::new();
@@ -263,20 +268,15 @@ fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) 
             ignored.push(DATE_LINE);
         }
         if before == after {
-            return Ok(FileDifference { ignored, ..file(State::SameButDate) });
+            return Ok(file(Compared { ignored, ..Compared::new(State::SameButDate) }));
         }
     }
     let encoding = old.manifest.controller.get("encoding").and_then(|name| name.as_str()?.parse().ok());
     let after = if manner.exact { after } else { manner.tolerance.align(entry, &before, &after) };
-    Ok(match TextDifference::of(encoding.unwrap_or(Encoding::Utf8), &before, &after) {
-        Some(TextDifference { hunks, .. }) if hunks.is_empty() => {
-            FileDifference { ignored, ..file(State::WithinTolerance) }
-        }
-        Some(TextDifference { hunks, only_line_endings }) => {
-            FileDifference { hunks: Some(hunks), only_line_endings, ignored, ..file(State::Changed) }
-        }
-        None => file(State::Changed),
-    })
+    let found = TextDifference::of(encoding.unwrap_or(Encoding::Utf8), &before, &after);
+    let is_within = found.as_ref().is_some_and(|found| found.hunks.is_empty());
+    let more = if is_within { Compared::new(State::WithinTolerance) } else { Compared::texts(found) };
+    Ok(file(Compared { ignored, ..more }))
 }
 
 /// Copy of an entry, unless it is missing or was changed since the backup.
@@ -299,23 +299,32 @@ fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-impl FileDifference {
-    fn new(name: String, state: State) -> Self {
-        Self {
-            name,
-            state,
-            ignored: Vec::new(),
-            hunks: None,
-            only_line_endings: false,
-            error: None,
-            file: String::new(),
-        }
+impl State {
+    fn is_equal(self) -> bool {
+        matches!(self, Self::Same | Self::SameButDate | Self::WithinTolerance)
+    }
+}
+
+impl Compared {
+    /// Result without details.
+    pub fn new(state: State) -> Self {
+        let (hunks, only_line_endings) = state.is_equal().then(|| (Vec::new(), false)).unzip();
+        Self { state, ignored: Vec::new(), hunks, only_line_endings, file: String::new() }
     }
 
-    fn unknown(name: String, failure: Failure) -> Self {
-        Self { error: Some(failure), ..Self::new(name, State::Unknown) }
+    /// Files that differ, with the changes if they are texts.
+    pub fn texts(found: Option<TextDifference>) -> Self {
+        let (hunks, only_line_endings) = found.map(|found| (found.hunks, found.only_line_endings)).unzip();
+        Self { hunks, only_line_endings, ..Self::new(State::Changed) }
     }
 
+    /// Changes to show line by line.
+    pub fn changes(&self) -> Option<&[Hunk]> {
+        self.hunks.as_deref().filter(|hunks| !hunks.is_empty() && self.only_line_endings == Some(false))
+    }
+}
+
+impl Difference {
     fn result(&self, old: &Of, new: &Of) -> Cell {
         let are_robots = old.folder.is_none() && new.folder.is_none();
         let only = |of: &Of| match &of.folder {
@@ -324,24 +333,27 @@ impl FileDifference {
             None => Cell::from("only on the controller").tone(Tone::Warning),
         };
         let count = |change| {
-            let lines = self.hunks.iter().flatten().flat_map(|hunk| &hunk.lines);
+            let lines = self.more.hunks.iter().flatten().flat_map(|hunk| &hunk.lines);
             lines.filter(|line| line.change == change).count()
         };
-        match (self.state, &self.error) {
+        let Compared { state, ignored, hunks, only_line_endings, .. } = &self.more;
+        match (state, &self.error) {
             (State::Same, _) => Cell::from("the same").tone(Tone::Good),
             (State::SameButDate, _) => Cell::from("the same except ///DATE, which is ignored").tone(Tone::Good),
             (State::WithinTolerance, _) => Cell::from("the same within the tolerance").tone(Tone::Good),
             (State::OnlyOld, _) => only(old),
             (State::OnlyNew, _) => only(new),
             (State::Unknown, error) => {
-                let why = error.as_ref().map_or("", |error| error.message.as_str());
+                let why = error.as_ref().map(|error| error.cell().text).unwrap_or_default();
                 Cell::from(format!("not compared: {why}")).tone(Tone::Bad)
             }
-            (State::Changed, _) if self.hunks.is_none() => Cell::from("differs").tone(Tone::Bad),
-            (State::Changed, _) if self.only_line_endings => Cell::from("only line endings differ").tone(Tone::Bad),
+            (State::Changed, _) if hunks.is_none() => Cell::from("differs").tone(Tone::Bad),
+            (State::Changed, _) if *only_line_endings == Some(true) => {
+                Cell::from("only line endings differ").tone(Tone::Bad)
+            }
             (State::Changed, _) => {
                 let (less, more) = (count(Change::Removed), count(Change::Added));
-                let date = if self.ignored.is_empty() { "" } else { "; ///DATE is ignored" };
+                let date = if ignored.is_empty() { "" } else { "; ///DATE is ignored" };
                 Cell::from(format!("differs: -{less} +{more} lines{date}")).tone(Tone::Bad)
             }
         }
@@ -352,8 +364,8 @@ impl Report for Differences {
     fn view(&self) -> View {
         let mut view = View::default();
         for file in &self.files {
-            let Some(hunks) = file.hunks.as_ref().filter(|_| !file.only_line_endings) else { continue };
-            let named = |of: &Of, other: &Of| match &*file.file {
+            let Some(hunks) = file.more.changes() else { continue };
+            let named = |of: &Of, other: &Of| match &*file.more.file {
                 "" => format!("{of}: {}", file.name),
                 own => of.of(own, other),
             };
@@ -361,7 +373,7 @@ impl Report for Differences {
             view = view.and(Section::Lines(unified(&old, &new, hunks)));
         }
         let mut table = Table::new(&["name", "result"], "");
-        for file in self.files.iter().filter(|file| file.state != State::Same) {
+        for file in self.files.iter().filter(|file| file.more.state != State::Same) {
             table.row([file.name.as_str().into(), file.result(&self.old, &self.new)]);
         }
         if !table.rows.is_empty() {
@@ -374,10 +386,14 @@ impl Report for Differences {
         if self.equal {
             return None;
         }
-        let gravest = self.files.iter().filter_map(|file| file.error.as_ref()).max_by_key(|error| gravity(error.kind));
-        Some(match gravest {
-            Some(error) => Failure { message: self.summary(), code: None, ..error.clone() },
+        let failures = self.files.iter().filter_map(|file| file.error.as_ref()).map(ItemError::failure);
+        Some(match failures.max_by_key(|failure| gravity(failure.kind)) {
+            Some(gravest) => Failure { message: self.summary(), code: None, ..gravest },
             None => Failure::new(Kind::ConditionNotMet, self.summary()),
         })
+    }
+
+    fn rows(&self) -> RowsOf {
+        FILES
     }
 }

@@ -84,7 +84,7 @@ impl DiffOptions {
         let making = Making { folder: folder.clone(), scope: Some(self.scope(&old)), resume: false, force: false };
         // An aborted read is not useful, but a refusal of the controller is a difference.
         let unread = match read(making).await {
-            Ok(made) => made.gravest().filter(|failure| failure.kind != Kind::Refused),
+            Ok(made) => made.unread(),
             Err(failure) if failure.kind == Kind::Interrupted => Some(Failure::new(failure.kind, "interrupted")),
             Err(failure) => Some(failure),
         };

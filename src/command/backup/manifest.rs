@@ -310,20 +310,6 @@ pub fn check_origin(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(
         .hint("select the robot of the backup, or add --force to use this robot anyway"))
 }
 
-/// Progress of a part of a backup, or of a file transfer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum State {
-    /// Done now.
-    Done,
-    /// Done earlier.
-    Kept,
-    /// Failed; see `error`.
-    Failed,
-    /// Not tried because of an earlier failure.
-    NotTried,
-}
-
 /// A file in the folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Saved {
@@ -393,6 +379,13 @@ pub struct Hash {
 }
 
 impl Hash {
+    /// Hash of a text.
+    pub fn of(bytes: &[u8]) -> Self {
+        let mut hash = Self::default();
+        hash.take(bytes);
+        hash
+    }
+
     /// Adds bytes.
     pub fn take(&mut self, bytes: &[u8]) {
         self.sha256.update(bytes);
@@ -402,6 +395,11 @@ impl Hash {
     /// Hash in lower-case hexadecimal.
     pub fn hex(self) -> String {
         hex(&self.sha256.finalize())
+    }
+
+    /// Manifest data of a file with this content.
+    pub fn saved(self, file: String) -> Saved {
+        Saved { file, bytes: self.bytes, sha256: self.hex() }
     }
 }
 

@@ -7,10 +7,11 @@ use std::time::Duration;
 use serde_json::Value;
 use tokio::time::Instant;
 
-use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved, State};
-use super::{BackedUp, Item, Items, Making};
+use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved};
+use super::{BackedUp, Making};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::local::{Target, make_folder, own_folder};
+use crate::command::robot::file::{FileItem, State};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -87,7 +88,7 @@ impl<C: About> Task<C> {
             list.files = kept.cloned().collect();
         }
         list.write(folder)?;
-        Ok(Saving { list, folder, screen, items: Vec::new(), written: Instant::now(), is_closed: false })
+        Ok(Saving { list, folder, screen, files: Vec::new(), written: Instant::now(), is_closed: false })
     }
 }
 
@@ -117,7 +118,7 @@ pub struct Saving<'a, C: About> {
     list: Manifest<C>,
     folder: &'a Path,
     screen: &'a Screen,
-    items: Vec<Item>,
+    files: Vec<FileItem>,
     written: Instant,
     is_closed: bool,
 }
@@ -129,8 +130,8 @@ impl<C: About> Saving<'_, C> {
     }
 
     /// Results so far.
-    pub fn items(&self) -> &[Item] {
-        &self.items
+    pub fn files(&mut self) -> &mut Vec<FileItem> {
+        &mut self.files
     }
 
     /// Reads a part into its file, unless the file exists. Returns whether the next part can be tried.
@@ -139,11 +140,11 @@ impl<C: About> Saving<'_, C> {
         mut entry: Entry,
         read: impl Future<Output = Result<Part, Failure>>,
     ) -> Result<bool, Failure> {
-        let mut item = Item::pending(&entry.name);
+        let mut file = FileItem::pending(&entry.name);
         let same = |known: &&Entry| known.name == entry.name && known.name_hex == entry.name_hex;
         if let Some(Entry { copy: Some(copy), left_out, .. }) = self.list.files.iter().find(same) {
-            item.saved(State::Kept, copy, left_out);
-            self.items.push(item);
+            file.more.left_out.clone_from(left_out);
+            self.files.push(self.saved(file, State::Kept, copy));
             return Ok(true);
         }
         let goes_on = match read.await {
@@ -152,8 +153,8 @@ impl<C: About> Saving<'_, C> {
                     Content::Text(file, text) => write_text(self.folder, file, &text)?,
                     Content::File(copy) => copy,
                 };
-                item.saved(State::Done, &copy, &part.left_out);
-                item.notes = part.notes;
+                (file.more.left_out, file.more.notes) = (part.left_out.clone(), part.notes);
+                file = self.saved(file, State::Done, &copy);
                 entry.copy = Some(copy);
                 entry.holds = part.holds.unwrap_or(entry.holds);
                 entry.left_out = [part.left_out, part.absent].concat();
@@ -161,10 +162,10 @@ impl<C: About> Saving<'_, C> {
             }
             Err(failure) => {
                 entry.error = Some(Reason::from(&failure));
-                item.fail(failure)
+                file.fail(failure)
             }
         };
-        self.items.push(item);
+        self.files.push(file);
         self.list.files.push(entry);
         if self.written.elapsed() >= WRITE_EVERY {
             self.list.write(self.folder)?;
@@ -173,14 +174,20 @@ impl<C: About> Saving<'_, C> {
         Ok(goes_on)
     }
 
+    /// Result of a part whose file is in the folder.
+    fn saved(&self, mut file: FileItem, state: State, copy: &Saved) -> FileItem {
+        file.succeed(state);
+        file.of_copy(self.folder, copy)
+    }
+
     /// Ends the backup; `rest` was not read.
-    pub fn end(mut self, rest: impl IntoIterator<Item = Item>) -> Result<BackedUp, Failure> {
+    pub fn end(mut self, rest: impl IntoIterator<Item = FileItem>) -> Result<BackedUp, Failure> {
         self.is_closed = true;
-        self.items.extend(rest);
-        let items = Items::new(std::mem::take(&mut self.items));
-        self.list.complete = items.is_complete();
+        self.files.extend(rest);
+        let files = std::mem::take(&mut self.files);
+        self.list.complete = files.iter().all(|file| file.ok);
         self.list.write(self.folder)?;
-        Ok(BackedUp::new(self.folder, self.list.scope.clone(), self.list.complete, items))
+        Ok(BackedUp::new(self.folder, self.list.scope.clone(), self.list.complete, files))
     }
 }
 
@@ -198,7 +205,5 @@ fn write_text(folder: &Path, file: String, text: &str) -> Result<Saved, Failure>
     let mut draft = Target::new(folder.join(&file), true)?.begin()?;
     draft.write(text.as_bytes())?;
     draft.commit()?;
-    let mut hash = Hash::default();
-    hash.take(text.as_bytes());
-    Ok(Saved { file, bytes: hash.bytes, sha256: hash.hex() })
+    Ok(Hash::of(text.as_bytes()).saved(file))
 }

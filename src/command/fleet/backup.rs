@@ -15,7 +15,7 @@ use crate::command::frame::local::own_folder;
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{AnyContext, Command, Context};
 use crate::controller::Risk;
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::settings::Robot;
 
 /// Arguments of `armctl restore`.
@@ -76,12 +76,7 @@ pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
         return Err(Failure::usage(message).hint("compare robots of one family").into());
     }
     for (robot, outcome) in robots.iter().zip(run.gather(&reading, &robots).await) {
-        let failure = match outcome {
-            // Data that a controller refuses is a difference, not a failure.
-            Ok(report) => report.failure().filter(|failure| failure.kind != Kind::Refused),
-            Err(failure) => Some(failure),
-        };
-        if let Some(failure) = failure {
+        if let Err(failure) = outcome {
             let message = format!("nothing was compared: {}", failure.message);
             return Err(RunError::at(robot, &reading, Failure { message, ..failure }));
         }
@@ -114,7 +109,9 @@ impl Command for Reading {
     async fn run(&self, context: Context<'_, Fleet>) -> Result<BackedUp, Failure> {
         let folder = self.place(context.robot);
         let making = Making { folder, scope: Some(self.scope.clone()), resume: false, force: false };
-        Fleet::back_up(context, making).await
+        let made = Fleet::back_up(context, making).await?;
+        // Data that a controller refuses is a difference, not a failure.
+        made.unread().map_or(Ok(made), Err)
     }
 }
 

@@ -26,14 +26,22 @@ impl ItemError {
 
     /// Failure of a command with only this item.
     pub fn failure(&self) -> Failure {
-        let Self { asked, failure } = self;
-        Failure { message: format!("{asked}: {}", failure.message), ..failure.clone() }
+        about(&self.asked, self.failure.clone())
     }
 
     /// Short text for a column.
     pub fn cell(&self) -> Cell {
         Cell::from(brief(&self.failure)).tone(Tone::Bad)
     }
+}
+
+/// Failure that starts with the name of the item.
+pub fn about(name: &str, failure: Failure) -> Failure {
+    // Failures of a local file with the same name already include it.
+    if failure.message.strip_prefix(name).is_some_and(|rest| rest.starts_with([':', ' '])) {
+        return failure;
+    }
+    Failure { message: format!("{name}: {}", failure.message), ..failure }
 }
 
 /// Short text for a column: the first sentence and the code.

@@ -1,6 +1,7 @@
 //! Data types common to all families: one type per concept. JSON, schemas, CSV and tables follow from them.
 
 pub mod alarm;
+pub mod file;
 pub mod io;
 pub mod item;
 pub mod motion;

@@ -114,6 +114,6 @@ impl Backups for Toyo {
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
-        Ok(restore(context, restoring).await?.of_folder(&restoring.folder))
+        restore(context, restoring).await
     }
 }

@@ -11,7 +11,7 @@ use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview, panel};
 use crate::command::backup::words::Backups;
-use crate::command::backup::{BackedUp, Items, Making, Restored, Restoring};
+use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
 use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
@@ -91,7 +91,6 @@ impl Backups for Yerc {
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
-        let results = Restore::of(restoring).run(context).await?;
-        Ok(Restored::new(&restoring.folder, Items::from(results)))
+        Restore::of(restoring).run(context).await
     }
 }

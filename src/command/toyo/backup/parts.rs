@@ -1,17 +1,9 @@
-//! The parts of a controller, and what became of each.
+//! The parts of a controller.
 
 use std::fmt;
 use std::str::FromStr;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use crate::command::backup::manifest::{LeftOut, State};
-use crate::command::backup::{self, Item};
-use crate::command::toyo::eeprom::Cells;
 use crate::controller::nearest::nearest;
-use crate::failure::Failure;
-use crate::output::view::{Cell, Table, Tone};
 
 /// What is stored in a file of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,90 +95,6 @@ impl FromStr for Part {
             None => format!("there is no part '{name}'"),
         })
     }
-}
-
-/// Result of a part.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct PartResult {
-    /// `parameters`, `points-1`, `palletizing-03`.
-    pub part: String,
-    /// What was done.
-    pub state: State,
-    /// Its file in the folder.
-    pub file: Option<String>,
-    /// What of it is not in the file, or not on the controller.
-    pub left_out: Vec<LeftOut>,
-    /// EEPROM cells, where some are written.
-    pub cells: Option<Cells>,
-    /// Why it failed.
-    pub error: Option<Failure>,
-}
-
-impl PartResult {
-    /// Before it is tried.
-    pub fn pending(part: impl fmt::Display) -> Self {
-        Self {
-            part: part.to_string(),
-            state: State::NotTried,
-            file: None,
-            left_out: Vec::new(),
-            cells: None,
-            error: None,
-        }
-    }
-
-    /// It failed. Says whether the next part can be tried: after a "no" to this one it can, on a broken line it cannot.
-    pub fn fail(&mut self, failure: Failure) -> bool {
-        let goes_on = backup::goes_on(&failure);
-        self.state = State::Failed;
-        self.error = Some(failure);
-        goes_on
-    }
-}
-
-impl From<PartResult> for Item {
-    fn from(PartResult { part, state, file, left_out, cells, error }: PartResult) -> Self {
-        let count = |cells: u32| usize::try_from(cells).unwrap_or(usize::MAX);
-        let (written, unchanged) =
-            cells.map(|cells| (count(cells.cells_written), count(cells.cells_unchanged))).unzip();
-        Self { state, file, written, unchanged, left_out, error, ..Self::pending(part) }
-    }
-}
-
-/// A line for each part.
-pub fn table(parts: &[PartResult], done: &'static str) -> Table {
-    let mut table = Table::new(&["part", "result"], "no parts");
-    for part in parts {
-        let result = match (part.state, &part.error, part.cells) {
-            (State::Failed, Some(error), _) => Cell::from(error.message.as_str()).tone(Tone::Bad),
-            (State::Failed, None, _) => Cell::from("failed").tone(Tone::Bad),
-            (State::NotTried, _, Some(cells)) => {
-                Cell::from(format!("{}; the rest not tried", cells.in_words())).tone(Tone::Warning)
-            }
-            (State::NotTried, ..) => Cell::from("not tried").tone(Tone::Warning),
-            (State::Kept, ..) => Cell::from("kept"),
-            (State::Done, _, Some(cells)) => Cell::from(cells.in_words()).tone(Tone::Good),
-            (State::Done, _, None) => Cell::from(done).tone(Tone::Good),
-        };
-        let left_out: Vec<&str> = part.left_out.iter().map(|left| left.key.as_str()).collect();
-        let left_out = if left_out.is_empty() { String::new() } else { format!("; without {}", left_out.join(", ")) };
-        table.row([part.part.as_str().into(), Cell { text: result.text + &left_out, ..result }]);
-    }
-    table
-}
-
-/// Why work on parts is no success: the gravest failure, and how many parts there are of which kind.
-pub fn failure(parts: &[PartResult]) -> Option<Failure> {
-    let failed = parts.iter().filter_map(|part| Some((&part.part, part.error.as_ref()?)));
-    let (name, gravest) = failed.clone().next_back()?;
-    let count = |state| parts.iter().filter(|part| part.state == state).count();
-    let not_tried = match count(State::NotTried) {
-        0 => String::new(),
-        left => format!(", {left} not tried"),
-    };
-    let total = parts.len();
-    let message = format!("{} of {total} parts failed{not_tried}: {name}: {}", count(State::Failed), gravest.message);
-    Some(Failure { message, ..gravest.clone() })
 }
 
 #[cfg(test)]

@@ -1,23 +1,18 @@
 //! `toyo restore`.
 
-use std::path::Path;
-
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::content::{self, Content};
 use super::manifest::{Controller, Manifest};
-use super::parts::{self, Part, PartResult};
+use super::parts::Part;
 use crate::command::backup::manifest;
-use crate::command::backup::manifest::{LeftOut, MANIFEST, State};
+use crate::command::backup::manifest::{LeftOut, MANIFEST, Saved};
 use crate::command::backup::options::RestoreOptions;
-use crate::command::backup::{
-    self, Item, Items, NOT_CHOSEN, NOT_MACHINE, Only, POWER_CYCLE, Restoring, would_leave, would_write,
-};
+use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Only, Restored, Restoring, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::local::own_folder;
+use crate::command::robot::file::{FileItem, State};
 use crate::command::toyo::eeprom::{Cell, Cells};
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::{Link, wrong};
@@ -25,7 +20,7 @@ use crate::command::toyo::program::steps;
 use crate::command::toyo::stores::{self, Store, StoreResult, StoreTask};
 use crate::command::toyo::values::NOT_IN_MANUAL;
 use crate::command::toyo::{param, tasks};
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
@@ -33,7 +28,6 @@ use crate::controller::toyo::table::{self, Group, Parameter};
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
-use crate::output::view::View;
 
 /// Writes back what a backup holds.
 #[derive(Debug, Args)]
@@ -63,6 +57,7 @@ struct Asked {
 /// A part with what is to be stored.
 struct Job {
     part: Part,
+    saved: Saved,
     content: Content,
 }
 
@@ -119,7 +114,7 @@ impl Asked {
         for part in parts {
             if let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) {
                 copy.check(folder)?;
-                jobs.push(Job { part, content: Content::load(part, folder, screen)? });
+                jobs.push(Job { part, saved: copy.clone(), content: Content::load(part, folder, screen)? });
             }
         }
         if link.is_dry() {
@@ -173,7 +168,9 @@ impl Asked {
         if !self.restoring.force {
             identify(backup, &found, self.restoring.machine)?;
         }
-        let mut results: Vec<PartResult> = jobs.iter().map(|job| pending(job.part)).collect();
+        let folder = &self.restoring.folder;
+        let pending = |job: &Job| FileItem::values(job.part).of_copy(folder, &job.saved);
+        let mut results: Vec<FileItem> = jobs.iter().map(pending).collect();
         let mut machine = self.machine_stores(jobs)?;
         stores::look(link, screen, &mut machine).await?;
         let changed: Vec<&Parameter> = machine.iter().filter(|store| store.differs()).filter_map(parameter).collect();
@@ -197,13 +194,13 @@ impl Asked {
             let needs_power_cycle = stored.is_ok();
             if let Some(result) = parameters.and_then(|index| results.get_mut(index)) {
                 match stored {
-                    Ok(fates) => result.cells = Some(stores::sum(&fates)),
-                    Err(failure) => {
-                        result.fail(failure);
-                    }
+                    Ok(fates) => count(result, stores::sum(&fates)),
+                    Err(failure) => drop(result.fail(failure)),
                 }
             }
-            return Ok(Restored { parts: results, needs_power_cycle });
+            let mut restored = Restored::new(folder, results);
+            restored.needs_power_cycle = needs_power_cycle;
+            return Ok(restored);
         }
         for Looked { index, job, stores } in &looked {
             let outcome = store(link, screen, job, stores).await;
@@ -212,13 +209,13 @@ impl Asked {
             }
         }
         if !speed.is_empty() {
-            let mut result = PartResult::pending("override");
-            if results.iter().all(|result| matches!(result.state, State::Done | State::Failed)) {
+            let mut result = FileItem::values("override");
+            if results.iter().all(|result| result.more.state != State::NotTried) {
                 settle(&mut result, store_all(link, screen, SPEED, &speed).await);
             }
             results.push(result);
         }
-        Ok(Restored { parts: results, needs_power_cycle: false })
+        Ok(Restored::new(folder, results))
     }
 
     /// Machine and special parameters, where they are wanted.
@@ -299,7 +296,7 @@ async fn look_at<'j>(
     screen: &Screen,
     jobs: &'j [Job],
     found: &Controller,
-    results: &mut [PartResult],
+    results: &mut [FileItem],
 ) -> Result<Vec<Looked<'j>>, Failure> {
     let (mut looked, mut read) = (Vec::new(), screen.parts_progress("parts read", jobs.len()));
     for ((index, job), result) in jobs.iter().enumerate().zip(results) {
@@ -319,7 +316,7 @@ async fn look_at<'j>(
 }
 
 async fn look_at_one(link: &mut Link, screen: &Screen, job: &Job, found: &Controller) -> Result<Vec<Store>, Failure> {
-    let Job { part, content } = job;
+    let Job { part, content, .. } = job;
     choose(link, *part).await?;
     let room = match part {
         Part::Points(task) | Part::Program(task) => found.task_steps[usize::from(*task) - 1],
@@ -362,11 +359,6 @@ fn parameter(store: &Store) -> Option<&'static Parameter> {
     store.cell.read.parameter()
 }
 
-/// A part before it is tried.
-fn pending(part: Part) -> PartResult {
-    PartResult { file: Some(part.file()), ..PartResult::pending(part) }
-}
-
 /// The override that the backup has.
 fn speed(backup: &Controller) -> Result<Option<Store>, Failure> {
     let Some(percent) = backup.speed_override_percent else { return Ok(None) };
@@ -407,7 +399,7 @@ fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()
 
 /// Whether all programs fit the tasks; before anything is written.
 fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
-    for Job { part, content } in jobs {
+    for Job { part, content, .. } in jobs {
         let Part::Program(task) = part else { continue };
         let room = found.task_steps[usize::from(*task) - 1];
         if content.steps() > room {
@@ -460,53 +452,21 @@ async fn store_all(
 }
 
 /// Writes down what became of a part, and says whether the next one can be tried.
-fn settle(result: &mut PartResult, outcome: Result<(Cells, Vec<LeftOut>), Failure>) -> bool {
+fn settle(result: &mut FileItem, outcome: Result<(Cells, Vec<LeftOut>), Failure>) -> bool {
     match outcome {
         Ok((cells, left_out)) => {
-            result.state = State::Done;
-            result.cells = Some(cells);
-            result.left_out = left_out;
+            result.succeed(State::Done);
+            count(result, cells);
+            result.more.left_out = left_out;
             true
         }
         Err(failure) => result.fail(failure),
     }
 }
 
-/// Result of a backup.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Restored {
-    /// In the order of writing.
-    parts: Vec<PartResult>,
-    /// Machine parameters were changed, and nothing else was written: nothing but communication works until the
-    /// controller's power was switched off and on.
-    needs_power_cycle: bool,
-}
-
-impl Restored {
-    fn is_interrupted(&self) -> bool {
-        let kinds = self.parts.iter().filter_map(|part| part.error.as_ref());
-        kinds.into_iter().any(|failure| failure.kind == Kind::Interrupted)
-    }
-}
-
-impl Restored {
-    /// As all families report it.
-    pub fn of_folder(self, folder: &Path) -> backup::Restored {
-        let Self { parts, needs_power_cycle } = self;
-        let items = Items::new(parts.into_iter().map(Item::from).collect());
-        let mut restored = backup::Restored::new(folder, items);
-        restored.needs_power_cycle = needs_power_cycle;
-        restored
-    }
-}
-
-impl Report for Restored {
-    fn view(&self) -> View {
-        View::table(parts::table(&self.parts, "restored"))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        let not_done = self.needs_power_cycle.then(|| Failure::new(Kind::ConditionNotMet, POWER_CYCLE));
-        parts::failure(&self.parts).or(not_done)
-    }
+/// Writes down how many values were written and how many were equal.
+fn count(result: &mut FileItem, cells: Cells) {
+    let number = |cells: u32| usize::try_from(cells).unwrap_or(usize::MAX);
+    (result.more.written, result.more.unchanged) =
+        (Some(number(cells.cells_written)), Some(number(cells.cells_unchanged)));
 }

@@ -1,27 +1,25 @@
 //! `toyo backup`.
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::content::{self, Text};
 use super::manifest::Controller;
-use super::parts::{self, Part, PartResult};
+use super::parts::Part;
 use crate::command::backup::manifest::Entry;
 use crate::command::backup::options::BackupOptions;
 use crate::command::backup::saving::{self, Task, cut_off_by_ctrl_c};
-use crate::command::backup::{self, Item, Making, Only};
+use crate::command::backup::{BackedUp, Making, Only};
 use crate::command::frame::dry_run::unknown;
+use crate::command::robot::file::FileItem;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::tasks;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::output::view::View;
 use crate::settings::Robot;
 
 /// Saves all that is stored in a controller in a folder of text files.
@@ -53,29 +51,20 @@ impl Command for Backup {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<BackedUp, Failure> {
         let making = self.options.making(self.current_task.then(|| CURRENT_TASK.to_owned()));
-        let (controller, made) = make(context, making, self.current_task).await?;
-        Ok(BackedUp::new(controller, made))
+        make(context, making, self.current_task).await
     }
 }
 
 /// Makes a backup; of the current task only where nothing may be changed.
-pub async fn back_up(
-    context: Context<'_, Toyo>,
-    mut making: Making,
-    current_task: bool,
-) -> Result<backup::BackedUp, Failure> {
+pub async fn back_up(context: Context<'_, Toyo>, mut making: Making, current_task: bool) -> Result<BackedUp, Failure> {
     let is_said = making.scope.iter().flatten().any(|word| word == CURRENT_TASK);
     if current_task && !making.resume && !is_said {
         making.scope.get_or_insert_default().push(CURRENT_TASK.to_owned());
     }
-    Ok(make(context, making, current_task).await?.1)
+    make(context, making, current_task).await
 }
 
-async fn make(
-    context: Context<'_, Toyo>,
-    making: Making,
-    current_task: bool,
-) -> Result<(Controller, backup::BackedUp), Failure> {
+async fn make(context: Context<'_, Toyo>, making: Making, current_task: bool) -> Result<BackedUp, Failure> {
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
     if link.is_dry() {
@@ -93,7 +82,7 @@ async fn save(
     link: &mut Link,
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
-) -> Result<(Controller, backup::BackedUp), Failure> {
+) -> Result<BackedUp, Failure> {
     let controller = content::controller(link).await?;
     let mut chosen = parts(link, &controller, task.scope.iter().any(|word| word == CURRENT_TASK)).await?;
     let only = Only::of_scope(&task.scope);
@@ -115,12 +104,11 @@ async fn save(
         }
         saved.advance(1);
     }
-    let tried = list.items().len();
-    let made = list.end(chosen[tried..].iter().map(Item::pending))?;
-    Ok((controller, made))
+    let tried = list.files().len();
+    list.end(chosen[tried..].iter().map(FileItem::pending))
 }
 
-async fn dry_run<T>(link: &mut Link, current_task: bool) -> Result<T, Failure> {
+async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackedUp, Failure> {
     content::plan_controller(link);
     link.plan(&Request::bare(table::Command::Mtsk), "which task is the current one");
     link.plan(&content::first_read(Part::Parameters)?, "the first of the parameters");
@@ -139,42 +127,4 @@ async fn parts(link: &mut Link, controller: &Controller, current_task: bool) -> 
     let points: Vec<u8> = controller.point_tasks().into_iter().filter(wanted).collect();
     let programs: Vec<u8> = controller.program_tasks().into_iter().filter(wanted).collect();
     Ok(Part::all(&points, &programs))
-}
-
-/// What is in the folder now.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct BackedUp {
-    /// The folder.
-    folder: String,
-    /// The list of what is in it.
-    manifest: String,
-    /// Whether nothing is missing.
-    complete: bool,
-    controller: Controller,
-    parts: Vec<PartResult>,
-}
-
-impl BackedUp {
-    fn new(controller: Controller, made: backup::BackedUp) -> Self {
-        let backup::BackedUp { folder, manifest, complete, items, .. } = made;
-        let part = |Item { name, state, file, left_out, error, .. }| PartResult {
-            part: name,
-            state,
-            file,
-            left_out,
-            cells: None,
-            error,
-        };
-        Self { folder, manifest, complete, controller, parts: items.files.into_iter().map(part).collect() }
-    }
-}
-
-impl Report for BackedUp {
-    fn view(&self) -> View {
-        View::table(parts::table(&self.parts, "saved"))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        Some(backup::with_hint(parts::failure(&self.parts)?, "--resume reads what is missing"))
-    }
 }

@@ -66,7 +66,7 @@ fn files(folder: impl AsRef<Path>) -> BTreeMap<String, String> {
 }
 
 fn part<'d>(data: &'d Value, name: &str) -> &'d Value {
-    data["parts"].as_array().unwrap().iter().find(|part| part["part"] == name).unwrap()
+    data["files"].as_array().unwrap().iter().find(|part| part["name"] == name).unwrap()
 }
 
 fn failure(bench: &mut Bench, words: &[&str]) -> Failure {
@@ -104,7 +104,7 @@ fn what_is_restored_is_what_was_saved() {
     let first = desk.saved();
     let mut bench = controller(EMPTY);
     let restored = bench.data(&["restore", &first]);
-    let written = |data: &Value, name: &str| part(data, name)["cells"]["cells_written"].clone();
+    let written = |data: &Value, name: &str| part(data, name)["written"].clone();
     assert_eq!(written(&restored, "points-1"), 2);
     assert_eq!(written(&restored, "program-1"), 3);
     assert_eq!(written(&restored, "program-2"), 2);
@@ -127,8 +127,8 @@ fn what_is_there_is_not_written_again() {
     let desk = Desk::new();
     let folder = desk.saved();
     let restored = controller(FULL).data(&["restore", &folder]);
-    for part in restored["parts"].as_array().unwrap() {
-        assert_eq!((&part["state"], &part["cells"]["cells_written"]), (&"done".into(), &0.into()), "{part}");
+    for part in restored["files"].as_array().unwrap() {
+        assert_eq!((&part["state"], &part["written"]), (&"done".into(), &0.into()), "{part}");
     }
 }
 
@@ -141,9 +141,9 @@ fn a_backup_that_was_cut_off_goes_on() {
     let (mut bench, _) = Bench::with_faults(FULL, silent);
     let (data, failed) = bench.run(&["backup", folder]).unwrap();
     let failed = failed.unwrap();
-    assert_eq!((failed.kind, &data["complete"]), (Kind::NoAnswer, &false.into()));
-    assert!(failed.message.starts_with("1 of 21 parts failed, 14 not tried: palletizing-05: "), "{}", failed.message);
-    assert!(failed.hint.unwrap().ends_with("--resume reads what is missing"));
+    assert_eq!((failed.kind, &data["complete"]), (Kind::Mixed, &false.into()));
+    assert!(failed.message.starts_with("1 of 21 failed, 14 not tried: palletizing-05: "), "{}", failed.message);
+    assert!(failed.hint.unwrap().ends_with("read the missing parts with --resume"));
     assert_eq!(failure(&mut controller(FULL), &["backup", folder]).kind, Kind::Local);
     let (mut bench, heard) = Bench::with_faults(FULL, |_, _| Fault::None);
     let data = bench.data(&["backup", folder, "--resume"]);
@@ -163,7 +163,7 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
     let refuse = |block: &str, _| if block.starts_with("@RESY") { Fault::Answered("@NG") } else { Fault::None };
     let (mut bench, _) = Bench::with_faults(FULL, refuse);
     let (data, failed) = bench.run(&["backup", folder]).unwrap();
-    assert_eq!((failed.unwrap().kind, &part(&data, "program-2")["state"]), (Kind::Refused, &"done".into()));
+    assert_eq!((failed.unwrap().kind, &part(&data, "program-2")["state"]), (Kind::Mixed, &"done".into()));
     let list = std::fs::read_to_string(desk.path("saved/manifest.json")).unwrap();
     let list: Value = serde_json::from_str(&list).unwrap();
     assert!(list["files"][1]["error"]["message"].as_str().unwrap().contains("@NG"));
@@ -240,7 +240,7 @@ fn a_restore_that_fails_says_how_far_it_got() {
     );
     let mut bench = controller(EMPTY);
     let data = bench.data(&["restore", &folder, "--resume=palletizing-03"]);
-    assert_eq!(data["parts"][0]["part"], "palletizing-03");
+    assert_eq!(data["files"][0]["name"], "palletizing-03");
 }
 
 #[test]

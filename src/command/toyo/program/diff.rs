@@ -8,8 +8,11 @@ use serde::Serialize;
 
 use super::get::Get;
 use super::text;
-use crate::command::backup::text_diff::{self, Hunk, TextDifference};
+use crate::command::backup::compare::{Compared, State};
+use crate::command::backup::manifest::Hash;
+use crate::command::backup::text_diff::{self, TextDifference};
 use crate::command::frame::names;
+use crate::command::robot::file::{FILES, FileItem};
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::{files, tasks};
 use crate::command::{Command, Context, Report};
@@ -18,6 +21,7 @@ use crate::controller::text::Encoding;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::program::{MOST_STEPS, check_named, used};
 use crate::failure::{Failure, Kind};
+use crate::output::csv::RowsOf;
 use crate::output::view::{Section, View};
 
 /// Compares the steps of a program in the controller with those of a text file. The exit code is 8 if they differ.
@@ -57,7 +61,8 @@ impl Command for Diff {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Difference, Failure> {
         let Context { robot, link, screen, .. } = context;
         let name = files::shown(&self.file);
-        let checked = check_named(&files::read(&self.file)?, MOST_STEPS, None, names::of(robot, screen));
+        let bytes = files::read(&self.file)?;
+        let checked = check_named(&bytes, MOST_STEPS, None, names::of(robot, screen));
         let program = text::program(&name, checked, &screen.silenced())?;
         let get = Get::whole(self.task());
         if link.is_dry() {
@@ -67,36 +72,53 @@ impl Command for Diff {
         let (task, _, answers) = tasks::done(link, outcome).await?;
         let found: Vec<Record> = answers.into_iter().collect::<Result<_, _>>()?;
         let wanted: Vec<Record> = program.steps.into_iter().map(|step| step.record).collect();
-        Ok(Difference::new(task, name, &found[..used(&found)], &wanted[..used(&wanted)]))
+        let difference = Difference::new(task, &found[..used(&found)], &wanted[..used(&wanted)]);
+        let path = Some(self.file.display().to_string()).filter(|path| path != "-");
+        let [file] = difference.files;
+        Ok(Difference { files: [FileItem { path, ..file }.holding(Hash::of(&bytes))], ..difference })
     }
 }
 
-/// How a program in the controller and a file differ.
+/// How a program in the controller (old) and a file (new) differ.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Difference {
     task: u8,
-    file: String,
     /// Whether the steps are the same.
     equal: bool,
+    /// The file.
+    files: [FileItem<Steps>; 1],
+}
+
+/// What there is to say about the steps of a file.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct Steps {
+    /// How steps differ; a line is a step.
+    #[serde(flatten)]
+    compared: Compared,
     /// Steps in the controller, up to the last that is no NOP.
     controller_steps: usize,
     /// Steps of the file, up to the last that is no NOP.
     file_steps: usize,
-    /// Changes from the controller (old) to the file (new); a line is a step.
-    hunks: Vec<Hunk>,
 }
 
 impl Difference {
-    fn new(task: u8, file: String, found: &[Record], wanted: &[Record]) -> Self {
+    fn new(task: u8, found: &[Record], wanted: &[Record]) -> Self {
         let lines = |steps: &[Record]| steps.iter().map(|step| format!("{}\n", step.written())).collect::<String>();
         let equal = found.len() == wanted.len() && found.iter().zip(wanted).all(|(one, other)| one == other);
         let difference = TextDifference::of(Encoding::Utf8, lines(found).as_bytes(), lines(wanted).as_bytes());
-        let hunks = difference.filter(|_| !equal).map(|difference| difference.hunks).unwrap_or_default();
-        Self { task, file, equal, controller_steps: found.len(), file_steps: wanted.len(), hunks }
+        let compared = if equal { Compared::new(State::Same) } else { Compared::texts(difference) };
+        let steps = Steps { compared, controller_steps: found.len(), file_steps: wanted.len() };
+        Self { task, equal, files: [FileItem::new(format!("program-{task}"), steps, Ok(()))] }
+    }
+
+    /// Name of the file.
+    fn file(&self) -> &str {
+        self.files[0].path.as_deref().unwrap_or("stdin")
     }
 
     fn summary(&self) -> String {
-        let Self { task, file, equal, controller_steps, file_steps, .. } = self;
+        let (Self { task, equal, .. }, file) = (self, self.file());
+        let Steps { controller_steps, file_steps, .. } = &self.files[0].more;
         if *equal {
             format!("the program of task {task} and {file} are the same, {file_steps} steps")
         } else {
@@ -107,15 +129,17 @@ impl Difference {
 
 impl Report for Difference {
     fn view(&self) -> View {
-        if self.equal {
-            return View::text(self.summary());
-        }
+        let Some(hunks) = self.files[0].more.compared.changes() else { return View::text(self.summary()) };
         let old = format!("task {} (controller)", self.task);
-        View::default().and(Section::Lines(text_diff::unified(&old, &self.file, &self.hunks)))
+        View::default().and(Section::Lines(text_diff::unified(&old, self.file(), hunks)))
     }
 
     fn failure(&self) -> Option<Failure> {
         (!self.equal).then(|| Failure::new(Kind::ConditionNotMet, self.summary()))
+    }
+
+    fn rows(&self) -> RowsOf {
+        FILES
     }
 }
 
@@ -132,12 +156,12 @@ mod tests {
         let path = file.path().to_str().unwrap();
         std::fs::write(path, "# the same\nspd v=5\nnext: JMP TAG=next\nEND\nNOP\n").unwrap();
         let (same, failure) = bench.run(&["program", "diff", path]).unwrap();
-        assert!(failure.is_none() && same["equal"] == true && same["file_steps"] == 4, "{same}");
+        assert!(failure.is_none() && same["equal"] == true && same["files"][0]["file_steps"] == 4, "{same}");
         std::fs::write(path, "SPD V=6\nnext: JMP TAG=next\nEND\n").unwrap();
         let (other, failure) = bench.run(&["program", "diff", path, "1"]).unwrap();
         assert_eq!(failure.map(|failure| (failure.kind, failure.kind.exit())), Some((Kind::ConditionNotMet, 8)));
         assert_eq!(
-            other["hunks"][0]["lines"][0],
+            other["files"][0]["hunks"][0]["lines"][0],
             serde_json::json!({ "change": "removed", "text": "SPD V=05", "ending": "lf" })
         );
         assert_eq!(blocks(&["program", "diff", path]).unwrap(), ["@MTSK", "@RPAR E22", "@RSTX 0001"]);

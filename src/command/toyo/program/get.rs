@@ -8,9 +8,12 @@ use serde::Serialize;
 
 use super::kept::Source;
 use super::steps;
+use crate::command::backup::manifest::Hash;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::local::Target;
 use crate::command::frame::names;
+use crate::command::robot::file::FileItem;
+use crate::command::robot::item::Plain;
 use crate::command::toyo::items::{self, Answers, Item, in_a_word};
 use crate::command::toyo::link::{Link, Toyo, misuse};
 use crate::command::toyo::tasks;
@@ -24,7 +27,7 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::csv::RowsOf;
 use crate::output::escape;
-use crate::output::view::View;
+use crate::output::view::{Cell, View};
 
 /// Reads the program of a task as text, which `program put` writes back.
 #[derive(Debug, Args)]
@@ -109,17 +112,19 @@ impl Command for Get {
                 (listing_named(&read, &unread, style, &rows, names::of(robot, screen)).text, false)
             }
         };
-        let (file, not_written) = match target {
-            Some(target) if unread.is_empty() => {
+        let is_written = target.is_some() && unread.is_empty();
+        let written = match &target {
+            Some(target) if is_written => {
                 let mut draft = target.begin()?;
                 draft.write(text.as_bytes())?;
-                draft.commit()?;
-                (Some(target.path().display().to_string()), None)
+                draft.commit()
             }
             // What looks like a program shall be one, and nothing whole be replaced by it.
-            Some(target) => (None, Some(target.path().display().to_string())),
-            None => (None, None),
+            Some(_) => Err(Failure::new(Kind::ConditionNotMet, NOT_WRITTEN)),
+            None => Ok(()),
         };
+        let file = FileItem::new(format!("program-{task}"), Plain {}, written).holding(Hash::of(text.as_bytes()));
+        let file = target.iter().fold(file, |file, target| file.at(target.path()));
         let shown = if is_whole { program::used(&read) } else { read.len() };
         let step = |(step, answer): (u16, Result<Record, Failure>)| {
             Item::kept("step", step.into(), answer.map(|record| Step::of(step.into(), &record)))
@@ -133,10 +138,9 @@ impl Command for Get {
             tags: program::tags(&read, self.from.into()).into_iter().map(|(tag, step)| Tag { tag, step }).collect(),
             steps: (self.from..).zip(answers).take(shown).map(step).collect(),
             is_source,
-            text: file.is_none().then_some(text),
-            file,
+            text: (!is_written).then_some(text),
+            files: [file],
             read_steps: read.len(),
-            not_written,
         })
     }
 }
@@ -192,6 +196,9 @@ fn other_program(source: &Source, differences: usize) -> String {
     )
 }
 
+/// Why there is no file.
+const NOT_WRITTEN: &str = "was not written, as the program is not whole";
+
 /// Why steps were not read.
 fn unread(answers: &Answers) -> Unread {
     let why = |failure: &Failure| match failure.kind {
@@ -234,13 +241,10 @@ pub struct Got {
     is_source: bool,
     /// The text as a file has it, with `?` for what was not read; null if it went to a file.
     text: Option<String>,
-    /// The file that was written; none is where a step was not read.
-    file: Option<String>,
+    /// The text, and the file that it went to; no file is written where a step was not read.
+    files: [FileItem<Plain>; 1],
     #[serde(skip)]
     read_steps: usize,
-    /// The file that was to be written.
-    #[serde(skip)]
-    not_written: Option<String>,
 }
 
 /// A tag.
@@ -276,7 +280,7 @@ impl Report for Got {
             return View::text(text.clone());
         }
         View::fields([
-            ("file", self.file.clone().unwrap_or_default().into()),
+            ("file", Cell::maybe(self.files[0].path.as_deref())),
             ("task", self.task.into()),
             ("steps read", format!("{} to {}", self.first_step, self.last_step).into()),
             ("used steps", self.used_steps.into()),
@@ -285,8 +289,8 @@ impl Report for Got {
 
     fn failure(&self) -> Option<Failure> {
         let failure = items::failure(self.read_steps, self.steps.iter().map(Item::error))?;
-        let Some(file) = &self.not_written else { return Some(failure) };
-        let message = format!("{}; {file} was not written, as the program is not whole", failure.message);
+        let [FileItem { error: Some(_), path: Some(file), .. }] = &self.files else { return Some(failure) };
+        let message = format!("{}; {file} {NOT_WRITTEN}", failure.message);
         Some(Failure { message, ..failure })
     }
 }
@@ -338,7 +342,7 @@ mod tests {
         let path = file.path().to_str().unwrap();
         let words = ["program", "get", path, "--force"];
         let (got, failure) = with_step_2(Fault::Answered("@NG")).run(&words).unwrap();
-        assert!(got["file"].is_null() && got["text"].as_str().unwrap().contains("\n?  # step 2"), "{got}");
+        assert!(got["files"][0]["ok"] == false && got["text"].as_str().unwrap().contains("\n?  # step 2"), "{got}");
         let failure = failure.unwrap();
         assert!(failure.message.ends_with("was not written, as the program is not whole"), "{failure}");
         assert_eq!(std::fs::read_to_string(path).unwrap(), "whole");

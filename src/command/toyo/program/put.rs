@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -12,10 +12,13 @@ use super::and_mode;
 use super::check::Labelled;
 use super::steps;
 use super::text;
+use crate::command::backup::manifest::Hash;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::names;
+use crate::command::robot::file::{FILES, FileItem};
+use crate::command::robot::item::Plain;
 use crate::command::toyo::eeprom::{Cells, THERE};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
@@ -29,6 +32,7 @@ use crate::controller::toyo::program::{self, MOST_STEPS, Part, Program, check_na
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Section, View};
 
 /// Writes a program from a text file.
@@ -183,8 +187,11 @@ impl Put {
             self.keep(link, screen, (task, room), bytes, &program);
         }
         cells.cells_unchanged = u32::try_from(found.len() - changes.len()).unwrap_or(u32::MAX);
+        let path = (self.expected.is_none() && self.file != Path::new("-")).then(|| name.clone());
+        let file = FileItem::new(format!("program-{task}"), Plain {}, Ok(())).holding(Hash::of(bytes));
         Ok(Stored {
-            file: name,
+            files: [FileItem { path, ..file }],
+            shown: name,
             task,
             first_step: first,
             last_step: last,
@@ -319,7 +326,10 @@ fn account(failure: Failure, name: &str, first: u16, next: u16, left: usize) -> 
 /// A program that is on the controller now.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stored {
-    file: String,
+    /// The file with the program.
+    files: [FileItem<Plain>; 1],
+    #[serde(skip)]
+    shown: String,
     task: u8,
     first_step: u16,
     /// The last step of the file.
@@ -336,9 +346,9 @@ pub struct Stored {
 
 impl Report for Stored {
     fn view(&self) -> View {
-        let Self { file, task, first_step, last_step, cleared_steps, unread_steps, labels, cells } = self;
+        let Self { shown, task, first_step, last_step, cleared_steps, unread_steps, labels, cells, .. } = self;
         let mut fields = vec![
-            ("file", file.as_str().into()),
+            ("file", shown.as_str().into()),
             ("task", (*task).into()),
             ("steps", format!("{first_step} to {last_step}").into()),
             ("cleared behind", (*cleared_steps).into()),
@@ -349,5 +359,9 @@ impl Report for Stored {
         }
         fields.extend(labels.iter().map(|label| ("label", label.in_a_line().into())));
         View { sections: vec![Section::Fields(fields)] }
+    }
+
+    fn rows(&self) -> RowsOf {
+        FILES
     }
 }

@@ -1,15 +1,14 @@
 //! `yerc backup`: all files of the controller in a folder, with a manifest.
 
-use std::path::PathBuf;
-
 use super::manifest::Controller;
 use super::name::{self, Shown, type_word};
-use super::transfer;
+use super::transfer::{self, Download};
 use crate::command::Context;
-use crate::command::backup::manifest::{Entry, Hash, Saved};
+use crate::command::backup::manifest::Entry;
 use crate::command::backup::saving::{Content, Part, Task, cut_off_by_ctrl_c};
-use crate::command::backup::{self, Item, Items, Making, Only};
+use crate::command::backup::{BackedUp, Making, Only};
 use crate::command::frame::local::{LocalNames, Target};
+use crate::command::robot::file::FileItem;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::controller::text::hex;
@@ -20,7 +19,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 
 /// Makes a backup.
-pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<backup::BackedUp, Failure> {
+pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<BackedUp, Failure> {
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
     if link.is_dry() {
@@ -28,7 +27,7 @@ pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<backu
         link.plan_next(&question)?;
         transfer::plan_all(link, transfer::LISTS, FileType::ALL.iter().map(|kind| files::list(*kind)))?;
         link.then("downloads every listed file (service 0x16) and acknowledges each block");
-        return Ok(backup::BackedUp::new(&task.folder, task.scope, false, Items::new(Vec::new())));
+        return Ok(BackedUp::new(&task.folder, task.scope, false, Vec::new()));
     }
     cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task))).await
 }
@@ -44,7 +43,7 @@ async fn save(
     link: &mut Link,
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
-) -> Result<backup::BackedUp, Failure> {
+) -> Result<BackedUp, Failure> {
     let only = Only::of_scope(&task.scope);
     let controller = Controller::ask(link).await?;
     let (mut work, mut refused) = (Vec::new(), Vec::new());
@@ -54,7 +53,7 @@ async fn save(
         match transfer::list(link, kind).await {
             Ok(names) => work.extend(names.into_iter().map(|name| (kind, name))),
             Err(failure) if failure.kind == Kind::Refused => {
-                let mut list = Item::pending(kind.filter());
+                let mut list = FileItem::pending(kind.filter());
                 list.fail(failure);
                 refused.push(list);
             }
@@ -85,41 +84,21 @@ async fn save(
             let malformed = |failure| Failure { kind: Kind::Malformed, ..failure };
             let local = local.clone().map_err(malformed)?;
             let file = name::exact(name.clone()).map_err(malformed)?;
-            let copy = fetch(link, screen, &label, &file, task.folder.join(&local)).await?;
-            let notes = if copy.bytes == 0 { vec!["empty".to_owned()] } else { Vec::new() };
-            Ok(Part { notes, ..Part::new(Content::File(Saved { file: local, ..copy })) })
+            let target = Target::new(task.folder.join(&local), true)?;
+            let content = transfer::save(link, screen, &label, &target, Download::Listed(&file)).await?;
+            let notes = if content.bytes == 0 { vec!["empty".to_owned()] } else { Vec::new() };
+            Ok(Part { notes, ..Part::new(Content::File(content.saved(local))) })
         };
         if !saving.part(entry, fetched).await? {
             break;
         }
         saved.advance(1);
     }
-    let tried = saving.items().len();
-    let rest = work[tried..].iter().map(|listed| Item::pending(encoding.decode(&listed.name)));
-    let mut made = saving.end(rest.chain(refused))?;
-    for (item, listed) in made.items.files.iter_mut().zip(&work) {
-        item.name_hex = Shown::new(encoding, &listed.name).name_hex;
+    let files = saving.files();
+    let tried = files.len();
+    files.extend(work[tried..].iter().map(|listed| FileItem::pending(encoding.decode(&listed.name))));
+    for (file, listed) in files.iter_mut().zip(&work) {
+        file.more.name_hex = Shown::new(encoding, &listed.name).name_hex;
     }
-    Ok(made)
-}
-
-/// Downloads a file; the caller renames the copy.
-async fn fetch(
-    link: &mut Link,
-    screen: &Screen,
-    label: &str,
-    file: &files::FileName,
-    path: PathBuf,
-) -> Result<Saved, Failure> {
-    let mut draft = Target::new(path, true)?.begin()?;
-    let mut progress = screen.bytes_progress(label, None);
-    let mut hash = Hash::default();
-    transfer::fetch_listed(link, file, |block| {
-        progress.advance(block.len() as u64);
-        hash.take(block);
-        draft.write(block)
-    })
-    .await?;
-    draft.commit()?;
-    Ok(Saved { file: String::new(), bytes: hash.bytes, sha256: hash.hex() })
+    saving.end(refused)
 }

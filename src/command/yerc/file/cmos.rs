@@ -9,15 +9,15 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::transfer;
-use crate::command::frame::dry_run::Reason;
+use crate::command::backup::manifest::Hash;
+use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::local::{Target, folder_of, make_folder, own_folder};
+use crate::command::robot::file::{FileItem, Files, State};
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yerc::files;
 use crate::failure::{Failure, Kind};
@@ -48,11 +48,11 @@ pub struct Cmos {
 
 impl Command for Cmos {
     type Family = Yerc;
-    type Report = BatchBackup;
+    type Report = Files;
     const ID: &'static str = "yerc.file.cmos";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<BatchBackup, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let Some(file) = self.file.as_deref().filter(|_| !self.start_only) else {
             return self.start(link, screen).await;
@@ -70,7 +70,7 @@ impl Command for Cmos {
                 let reason = reason.depending_on("whether the controller creates the backup first or sends it at once");
                 link.plan_download(&files::batch_backup(), reason)?;
             }
-            return Ok(BatchBackup { path: None, bytes: None });
+            return Err(unknown());
         }
         if several {
             make_folder(&folder)?;
@@ -80,7 +80,7 @@ impl Command for Cmos {
 }
 
 impl Cmos {
-    async fn start(&self, link: &mut Link, screen: &Screen) -> Result<BatchBackup, Failure> {
+    async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files, Failure> {
         let _waiting = Waiting::new(screen, MAKING);
         // The transfer ends at its first block, so that the controller keeps its existing backup.
         let had_one = |_: &[u8]| {
@@ -88,21 +88,22 @@ impl Cmos {
                 .hint("download it with --download-only"))
         };
         self.ask(link, had_one).await?;
-        Ok(BatchBackup { path: None, bytes: None })
+        Ok(made(FileItem::pending(NAME)))
     }
 
-    async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<BatchBackup, Failure> {
-        let mut draft = target.begin()?;
+    async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<Files, Failure> {
+        let (mut draft, mut hash) = (target.begin()?, Hash::default());
         let requests = if self.download_only { &[FETCHING][..] } else { &[MAKING, FETCHING] };
         for what in requests {
             let mut waiting = Waiting::new(screen, what);
             let came = self.ask(link, |block| {
                 waiting.advance(block);
+                hash.take(block);
                 draft.write(block)
             });
-            if let Some(bytes) = came.await? {
+            if came.await?.is_some() {
                 draft.commit()?;
-                return Ok(BatchBackup { path: Some(target.path().display().to_string()), bytes: Some(bytes) });
+                return Ok(made(FileItem::pending(NAME).at(target.path()).holding(hash)));
             }
         }
         Err(Failure::new(Kind::Malformed, "the controller created a backup instead of sending the existing one").hint(
@@ -125,6 +126,8 @@ impl Cmos {
     }
 }
 
+/// Name on the controller.
+const NAME: &str = "CMOSBK.BIN";
 const MAKING: &str = "the controller creates its backup (about ten minutes)";
 const FETCHING: &str = "waiting for the backup";
 
@@ -144,26 +147,19 @@ impl<'a> Waiting<'a> {
     fn advance(&mut self, block: &[u8]) {
         if !self.has_begun {
             self.has_begun = true;
-            self.progress = self.screen.bytes_progress("CMOSBK.BIN", None);
+            self.progress = self.screen.bytes_progress(NAME, None);
         }
         self.progress.advance(block.len() as u64);
     }
 }
 
-/// Result of the batch backup.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct BatchBackup {
-    /// The local file; null if the backup was left on the controller.
-    path: Option<String>,
-    /// Size of the file; null if the backup was left on the controller.
-    bytes: Option<u64>,
-}
-
-impl Report for BatchBackup {
-    fn view(&self) -> View {
-        match (&self.path, self.bytes) {
-            (Some(path), Some(bytes)) => View::text(format!("batch backup saved in {path}, {bytes} bytes")),
-            _ => View::text("batch backup created on the controller; --download-only downloads it"),
+/// Report of the batch backup; it has a path unless it was left on the controller.
+fn made(mut file: FileItem) -> Files {
+    file.succeed(State::Done);
+    Files::new(vec![file], |files| match files {
+        [FileItem { path: Some(path), bytes: Some(bytes), .. }] => {
+            View::text(format!("batch backup saved in {path}, {bytes} bytes"))
         }
-    }
+        _ => View::text("batch backup created on the controller; --download-only downloads it"),
+    })
 }

@@ -2,6 +2,7 @@
 
 use super::content::Pieces;
 use crate::command::backup::dated::WithoutDate;
+use crate::command::backup::manifest::Hash;
 use crate::failure::Failure;
 
 /// Result of a comparison.
@@ -74,8 +75,8 @@ impl<'a> Comparer<'a> {
         Ok(())
     }
 
-    /// Result after the last block.
-    pub fn finish(mut self) -> Result<Comparison, Failure> {
+    /// Result after the last block, with the hash of the local file.
+    pub fn finish(mut self) -> Result<(Comparison, Hash), Failure> {
         let rest = self.without.as_mut().map_or(&[][..], |[theirs, _]| theirs.rest());
         self.compare(rest)?;
         self.fill()?;
@@ -93,7 +94,7 @@ impl<'a> Comparer<'a> {
             *controller_bytes = controller_bytes.saturating_add(theirs.dropped());
             *local_bytes = local_bytes.saturating_add(ours.dropped());
         }
-        Ok(self.so_far)
+        Ok((self.so_far, self.pieces.hash))
     }
 
     fn fill(&mut self) -> Result<(), Failure> {
@@ -136,7 +137,7 @@ mod tests {
         for block in blocks {
             comparer.take(block).unwrap();
         }
-        comparer.finish().unwrap()
+        comparer.finish().unwrap().0
     }
 
     #[test]
@@ -181,7 +182,7 @@ mod tests {
         let mut content = Content::open_any(file.path()).unwrap();
         let mut comparer = Comparer::new(content.pieces().unwrap(), true);
         comparer.take(theirs).unwrap();
-        assert_eq!(comparer.finish().unwrap().first_difference, Some(22));
+        assert_eq!(comparer.finish().unwrap().0.first_difference, Some(22));
         let ([old, new], dates_differ) = aligned(theirs.to_vec(), ours.to_vec());
         assert_eq!((&old[..], &new[..], dates_differ), (&theirs[..], &b"/JOB\r\n///DATE 2026\r\nNOW\r\n"[..], true));
     }
@@ -200,7 +201,7 @@ mod tests {
             for size in [1, 7, 479] {
                 let mut comparer = Comparer::new(content.pieces().unwrap(), true);
                 theirs.chunks(size).for_each(|block| comparer.take(block).unwrap());
-                let found = comparer.finish().unwrap();
+                let found = comparer.finish().unwrap().0;
                 let expected = Comparison {
                     controller_bytes: theirs.len() as u64,
                     local_bytes: ours.len() as u64,

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 
+use crate::command::backup::manifest::Hash;
 use crate::failure::Failure;
 use crate::files;
 
@@ -112,7 +113,8 @@ impl Content {
     /// Pieces of the file, starting at its beginning.
     pub fn pieces(&mut self) -> Result<Pieces<'_>, Failure> {
         self.file.rewind().with_context(|| self.path.display().to_string())?;
-        Ok(Pieces { file: &self.file, path: &self.path, fixer: self.fixes.then(Fixer::default) })
+        let fixer = self.fixes.then(Fixer::default);
+        Ok(Pieces { file: &self.file, path: &self.path, fixer, hash: Hash::default() })
     }
 }
 
@@ -122,6 +124,8 @@ pub struct Pieces<'a> {
     file: &'a File,
     path: &'a Path,
     fixer: Option<Fixer>,
+    /// Hash of the pieces so far.
+    pub hash: Hash,
 }
 
 impl Pieces<'_> {
@@ -130,10 +134,11 @@ impl Pieces<'_> {
         let mut piece = Vec::with_capacity(PIECE);
         let read = self.file.take(PIECE as u64).read_to_end(&mut piece);
         read.with_context(|| self.path.display().to_string())?;
-        Ok(match &mut self.fixer {
-            Some(fixer) => fixer.fixed(&piece),
-            None => piece,
-        })
+        if let Some(fixer) = &mut self.fixer {
+            piece = fixer.fixed(&piece);
+        }
+        self.hash.take(&piece);
+        Ok(piece)
     }
 }
 

@@ -4,9 +4,9 @@ use clap::Args;
 
 use super::lists::{Lists, There};
 use super::name::{self, Shown};
-use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::frame::dry_run::Reason;
+use crate::command::robot::file::{FileItem, Files};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
@@ -24,21 +24,24 @@ pub struct Delete {
     names: Vec<String>,
 }
 
-const SHAPE: Shape = Shape { done: "deleted", has_paths: false, has_bytes: false };
+/// Report of deletions.
+fn report(files: Vec<FileItem>) -> Files {
+    Files::new(files, |files| FileItem::transfers(files, "deleted"))
+}
 
 impl Command for Delete {
     type Family = Yerc;
-    type Report = Results;
+    type Report = Files;
     const ID: &'static str = "yerc.file.delete";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "delete files";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
         let Context { link, authority, .. } = context;
         let files = name::all_typed(link.encoding, &self.names)?;
-        let pending = |file: &FileName| FileResult::pending(Shown::new(link.encoding, file.as_bytes()), None);
-        let mut results: Vec<FileResult> = files.iter().map(pending).collect();
+        let pending = |file: &FileName| Shown::new(link.encoding, file.as_bytes()).pending();
+        let mut results: Vec<FileItem> = files.iter().map(pending).collect();
         let lists = Lists::ask(link, &files).await?;
         authority.confirm(&change(link.encoding, lists.as_ref(), &files)).await?;
         let Some(lists) = lists else {
@@ -46,7 +49,7 @@ impl Command for Delete {
                 let reason = Reason::about("if the file is listed").depending_on("whether the file is listed");
                 link.plan_if(&file.delete(), reason);
             }
-            return Ok(Results::new(results, SHAPE));
+            return Ok(report(results));
         };
         for (file, result) in files.iter().zip(&mut results) {
             let outcome = match lists.tell(file) {
@@ -57,7 +60,7 @@ impl Command for Delete {
                 break;
             }
         }
-        Results::new(results, SHAPE).report()
+        report(results).or_only_failure()
     }
 }
 

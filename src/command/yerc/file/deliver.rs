@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::lists::{Lists, There};
-use super::results::FileResult;
-use super::transfer;
+use super::transfer::{self, Download};
+use crate::command::backup::manifest::Hash;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::local::{Target, folder_of, local_name};
@@ -85,15 +85,15 @@ pub fn plan(link: &mut Link, delivery: &mut Delivery, manner: Manner, reason: Re
     Ok(())
 }
 
-/// Uploads a file and records the steps in `result`.
+/// Uploads a file and adds the steps to `notes`. Returns the content that was sent.
 pub async fn deliver(
     link: &mut Link,
     screen: &Screen,
     delivery: &mut Delivery,
     manner: Manner,
-    result: &mut FileResult,
-) -> Result<Option<u64>, Failure> {
-    let bytes = match send(link, screen, delivery).await {
+    notes: &mut Vec<String>,
+) -> Result<Hash, Failure> {
+    let sent = match send(link, screen, delivery).await {
         Err(failure) if transfer::is_job_exists(&failure) => {
             if !manner.replace {
                 return Err(failure.hint(
@@ -101,21 +101,21 @@ pub async fn deliver(
                      file diff` shows the differences",
                 ));
             }
-            let bytes = replace(link, screen, delivery).await?;
-            result.notes.push("replaced".to_owned());
-            bytes
+            let sent = replace(link, screen, delivery).await?;
+            notes.push("replaced".to_owned());
+            sent
         }
         Err(failure) if failure.kind == Kind::Refused => return Err(with_own_name(link, delivery, failure)),
         sent => sent?,
     };
     if delivery.content.fixes_line_endings() {
-        result.notes.push("line_endings_fixed".to_owned());
+        notes.push("line_endings_fixed".to_owned());
     }
     if manner.verify {
         verify(link, screen, delivery, manner.ignore_header).await?;
-        result.notes.push("verified".to_owned());
+        notes.push("verified".to_owned());
     }
-    Ok(Some(bytes))
+    Ok(sent)
 }
 
 impl Delivery {
@@ -136,7 +136,7 @@ fn with_own_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure 
     }
 }
 
-async fn send(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<u64, Failure> {
+async fn send(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<Hash, Failure> {
     let name = link.encoding.decode(delivery.file.as_bytes());
     let mut progress = screen.bytes_progress(&name, Some(delivery.content.size()));
     transfer::send(link, &delivery.file, &mut delivery.content, &mut progress).await
@@ -154,7 +154,7 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
     })
     .await
     .map_err(|failure| Failure { message: format!("sent, but not read back: {}", failure.message), ..failure })?;
-    match comparer.finish()? {
+    match comparer.finish()?.0 {
         Comparison { first_difference: None, .. } => Ok(()),
         Comparison { controller_bytes, local_bytes, first_difference: Some(at), .. } => Err(Failure::new(
             Kind::Malformed,
@@ -172,7 +172,7 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
 
 /// Replaces an existing job. A local copy of it exists from before its deletion until the new job is on the
 /// controller.
-async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<u64, Failure> {
+async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<Hash, Failure> {
     let mut old = OldCopy::fetch(link, screen, delivery).await?;
     old.is_needed = true;
     if let Err(failure) = transfer::remove(link, &delivery.file).await {
@@ -180,9 +180,9 @@ async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> R
         return Err(old.told(failure));
     }
     let failure = match send(link, screen, delivery).await {
-        Ok(bytes) => {
+        Ok(sent) => {
             old.is_needed = false;
-            return Ok(bytes);
+            return Ok(sent);
         }
         Err(failure) => failure,
     };
@@ -214,17 +214,11 @@ struct OldCopy {
 impl OldCopy {
     async fn fetch(link: &mut Link, screen: &Screen, delivery: &Delivery) -> Result<Self, Failure> {
         let name = link.encoding.decode(delivery.file.as_bytes());
-        let mut progress = screen.bytes_progress(&format!("{name} (copy of the old job)"), None);
+        let label = format!("{name} (copy of the old job)");
         let local = local_name(link.encoding, delivery.file.as_bytes());
         let target = Self::place(&folder_of(delivery.content.path()), &local)?;
         let path = target.path().to_owned();
-        let mut draft = target.begin()?;
-        transfer::fetch(link, &delivery.file, |block| {
-            progress.advance(block.len() as u64);
-            draft.write(block)
-        })
-        .await?;
-        draft.commit()?;
+        transfer::save(link, screen, &label, &target, Download::Named(&delivery.file)).await?;
         Ok(Self { path, screen: *screen, is_needed: false, is_told: false })
     }
 

@@ -1,6 +1,6 @@
 //! `yerc file diff`: changes that an upload of the local file would make.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -10,15 +10,18 @@ use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
+use crate::command::backup::compare::{Compared, State};
 use crate::command::backup::dated::{DATE_LINE, aligned};
-use crate::command::backup::text_diff;
-use crate::command::backup::text_diff::{Change, DiffLine, Ending, MOST_TEXT, TextDifference};
+use crate::command::backup::manifest::Hash;
+use crate::command::backup::text_diff::{self, Change, Ending, MOST_TEXT, TextDifference};
 use crate::command::frame::local::{local_name, own_folder};
+use crate::command::robot::file::{FILES, FileItem};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::files::FileType;
 use crate::failure::{Failure, Kind};
+use crate::output::csv::RowsOf;
 use crate::output::view::{Section, View};
 
 /// Compares a file on the controller with a local file.
@@ -68,7 +71,7 @@ impl Command for Diff {
         })
         .await
         .map_err(|failure| transfer::about(&shown.name, failure))?;
-        let comparison = comparer.finish()?;
+        let (comparison, hash) = comparer.finish()?;
         drop(progress);
         let text = if comparison.first_difference.is_some() && comparison.local_bytes <= MOST_TEXT as u64 {
             let mut ours = Vec::new();
@@ -87,93 +90,53 @@ impl Command for Diff {
         } else {
             None
         };
-        Ok(Difference::new(shown, local.display().to_string(), comparison, text))
+        Ok(Difference::new(shown, &local, (comparison, hash), text))
     }
 }
 
-/// Difference between a file on the controller and a local file.
+/// Difference between a file on the controller (old) and a local file (new).
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Difference {
-    #[serde(flatten)]
-    name: Shown,
-    /// Local file.
-    path: String,
     /// Whether the files are equal, apart from ignored lines.
     equal: bool,
-    /// Differing lines that are ignored: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
-    ignored: Vec<&'static str>,
+    /// The local file.
+    files: [FileItem<Sides>; 1],
+}
+
+/// Fields of the compared files.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct Sides {
+    /// Bytes of the name, if the text does not convert back to them.
+    name_hex: Option<String>,
+    #[serde(flatten)]
+    compared: Compared,
+    /// Size of the controller's file.
     controller_bytes: u64,
-    local_bytes: u64,
     /// Offset of the first difference.
     first_difference_offset: Option<u64>,
-    /// Whether only line endings differ; null if a file is not text.
-    only_line_endings: Option<bool>,
-    /// Changes from the controller's file to the local file; null if a file is not text or too large.
-    hunks: Option<Vec<Hunk>>,
-}
-
-/// A hunk of changes.
-#[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
-struct Hunk {
-    /// First line in the controller's file, starting with 1; 0 if there is none.
-    controller_start: usize,
-    controller_lines: usize,
-    /// First line in the local file, starting with 1; 0 if there is none.
-    local_start: usize,
-    local_lines: usize,
-    lines: Vec<DiffLine>,
-}
-
-impl From<text_diff::Hunk> for Hunk {
-    fn from(hunk: text_diff::Hunk) -> Self {
-        Self {
-            controller_start: hunk.old_start,
-            controller_lines: hunk.old_lines,
-            local_start: hunk.new_start,
-            local_lines: hunk.new_lines,
-            lines: hunk.lines,
-        }
-    }
-}
-
-impl From<&Hunk> for text_diff::Hunk {
-    fn from(hunk: &Hunk) -> Self {
-        Self {
-            old_start: hunk.controller_start,
-            old_lines: hunk.controller_lines,
-            new_start: hunk.local_start,
-            new_lines: hunk.local_lines,
-            lines: hunk.lines.clone(),
-        }
-    }
 }
 
 impl Difference {
-    fn new(name: Shown, path: String, comparison: Comparison, text: Option<TextDifference>) -> Self {
-        let Comparison { controller_bytes, local_bytes, first_difference, dates_differ } = comparison;
-        let equal = first_difference.is_none();
-        let (hunks, only_line_endings) = match text {
-            _ if equal => (Some(Vec::new()), Some(false)),
-            Some(text) => (Some(text.hunks.into_iter().map(Hunk::from).collect()), Some(text.only_line_endings)),
-            None => (None, None),
+    fn new(name: Shown, local: &Path, (comparison, hash): (Comparison, Hash), text: Option<TextDifference>) -> Self {
+        let Comparison { controller_bytes, first_difference, dates_differ, .. } = comparison;
+        let mut compared = match first_difference {
+            Some(_) => Compared::texts(text),
+            None if dates_differ => Compared::new(State::SameButDate),
+            None => Compared::new(State::Same),
         };
-        Self {
-            name,
-            path,
-            equal,
-            ignored: if dates_differ { vec![DATE_LINE] } else { Vec::new() },
-            controller_bytes,
-            local_bytes,
-            first_difference_offset: first_difference,
-            only_line_endings,
-            hunks,
-        }
+        compared.ignored.extend(dates_differ.then_some(DATE_LINE));
+        let Shown { name, name_hex } = name;
+        let more = Sides { name_hex, compared, controller_bytes, first_difference_offset: first_difference };
+        let file = FileItem::new(name, more, Ok(())).at(local).holding(hash);
+        Self { equal: first_difference.is_none(), files: [file] }
     }
 
     fn summary(&self) -> String {
-        let Self { name: Shown { name, .. }, path, controller_bytes, local_bytes, .. } = self;
-        match (self.first_difference_offset, self.only_line_endings) {
-            (None, _) if !self.ignored.is_empty() => {
+        let [FileItem { name, path, bytes, more, .. }] = &self.files;
+        let (path, local_bytes) = (path.as_deref().unwrap_or_default(), bytes.unwrap_or_default());
+        let Sides { compared, controller_bytes, first_difference_offset, .. } = more;
+        match (first_difference_offset, compared.only_line_endings) {
+            (None, _) if !compared.ignored.is_empty() => {
                 format!(
                     "{name} on the controller and {path} are the same, except for the line {DATE_LINE}, which is \
                      ignored"
@@ -194,16 +157,16 @@ impl Difference {
 
 impl Report for Difference {
     fn view(&self) -> View {
-        match &self.hunks {
-            Some(hunks) if !self.equal && self.only_line_endings == Some(false) => {
-                let hunks: Vec<text_diff::Hunk> = hunks.iter().map(text_diff::Hunk::from).collect();
-                let old = format!("{} (controller)", self.name.name);
-                let mut lines = text_diff::unified(&old, &self.path, &hunks);
-                if !self.ignored.is_empty() {
-                    lines.push(format!("the line {DATE_LINE} also differs and is ignored").into());
-                }
-                View::default().and(Section::Lines(lines))
+        let [FileItem { name, path, more: Sides { compared, .. }, .. }] = &self.files;
+        let path = path.as_deref().unwrap_or_default();
+        if let Some(hunks) = compared.changes() {
+            let mut lines = text_diff::unified(&format!("{name} (controller)"), path, hunks);
+            if !compared.ignored.is_empty() {
+                lines.push(format!("the line {DATE_LINE} also differs and is ignored").into());
             }
+            return View::default().and(Section::Lines(lines));
+        }
+        match &compared.hunks {
             Some(hunks) if !self.equal => {
                 let ends = |bare: Change| {
                     let lines = hunks.iter().flat_map(|hunk| &hunk.lines).filter(|line| line.change == bare);
@@ -213,9 +176,8 @@ impl Report for Difference {
                     named.iter().filter(|(n, _)| *n > 0).map(|(n, name)| format!("{n} with {name}")).collect::<Vec<_>>()
                 };
                 View::text(format!(
-                    "only line endings differ: on the controller {} where {} has {}",
+                    "only line endings differ: on the controller {} where {path} has {}",
                     ends(Change::Removed).join(", "),
-                    self.path,
                     ends(Change::Added).join(", ")
                 ))
             }
@@ -225,6 +187,10 @@ impl Report for Difference {
 
     fn failure(&self) -> Option<Failure> {
         (!self.equal).then(|| Failure::new(Kind::ConditionNotMet, self.summary()))
+    }
+
+    fn rows(&self) -> RowsOf {
+        FILES
     }
 }
 
@@ -244,7 +210,8 @@ mod tests {
             dates_differ: false,
         };
         let text = TextDifference::of(Encoding::ShiftJis, theirs, ours);
-        Difference::new(Shown::new(Encoding::ShiftJis, b"A.JBI"), "a.jbi".to_owned(), comparison, text)
+        let name = Shown::new(Encoding::ShiftJis, b"A.JBI");
+        Difference::new(name, Path::new("a.jbi"), (comparison, Hash::of(ours)), text)
     }
 
     fn text(theirs: &[u8], ours: &[u8]) -> String {
@@ -274,8 +241,8 @@ mod tests {
     #[test]
     fn line_endings_alone_are_said_in_a_line() {
         let found = difference(b"a\r\nb\r\nc\r\n", b"a\nb\r\nc");
-        assert_eq!(found.only_line_endings, Some(true));
-        assert_eq!(found.hunks.as_ref().map(Vec::len), Some(1));
+        let Compared { only_line_endings, hunks, .. } = &found.files[0].more.compared;
+        assert_eq!((*only_line_endings, hunks.as_ref().map(Vec::len)), (Some(true), Some(1)));
         assert_eq!(
             render::text(&found.view(), 80, false),
             "only line endings differ: on the controller 2 with CR LF where a.jbi has 1 with LF, 1 with no line \
@@ -289,13 +256,13 @@ mod tests {
             text(b"a\0bc", b"a\0bd!"),
             "A.JBI on the controller (4 bytes) and a.jbi (5 bytes) differ, starting at byte 3\n"
         );
-        assert!(difference(b"a\0bc", b"a\0bd!").hunks.is_none());
+        assert!(difference(b"a\0bc", b"a\0bd!").files[0].more.compared.hunks.is_none());
     }
 
     #[test]
     fn bytes_that_look_alike_in_text_still_differ() {
         // Both decode to the same character, but a controller may treat them as different.
         let found = difference(b"\x81\xca\r\n", b"\xee\xf9\r\n");
-        assert_eq!(found.hunks.map(|hunks| hunks[0].lines.len()), Some(2));
+        assert_eq!(found.files[0].more.compared.hunks.as_ref().map(|hunks| hunks[0].lines.len()), Some(2));
     }
 }

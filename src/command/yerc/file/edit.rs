@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::content::{Content, JobRules};
 use super::deliver::{Delivery, Manner, deliver};
 use super::name::{self, Shown};
-use super::results::FileResult;
 use super::transfer;
 use crate::command::backup::dated::aligned;
 use crate::command::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MOST_TEXT, TextDifference};
@@ -127,10 +126,9 @@ impl Edit {
         let (less, more) = (count(LineChange::Removed), count(LineChange::Added));
         let change = Change::new(format!("overwrite the job {}: -{less} +{more} lines", shown.name));
         context.authority.confirm(&change).await?;
-        let mut result = FileResult::pending(shown.clone(), None);
         let manner = Manner { verify: true, ignore_header: true, replace: true };
-        let bytes = deliver(context.link, screen, &mut delivery, manner, &mut result).await?;
-        Ok(EditedJob { name: shown, changed: true, bytes: bytes.unwrap_or_default(), hunks })
+        let sent = deliver(context.link, screen, &mut delivery, manner, &mut Vec::new()).await?;
+        Ok(EditedJob { name: shown, changed: true, bytes: sent.bytes, hunks })
     }
 }
 

@@ -3,22 +3,20 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::name;
 use super::pattern::{self, Wanted, is_pattern};
-use super::results::{FileResult, Results, Shape};
-use super::transfer;
+use super::transfer::{self, Download};
+use crate::command::frame::dry_run::unknown;
 use crate::command::frame::local::{LocalNames, Target, make_folder, own_folder};
+use crate::command::robot::file::{FileItem, Files};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::files::FileName;
 use crate::failure::Failure;
-use crate::output::csv::RowsOf;
 use crate::output::view::View;
 use crate::output::{Screen, escape};
 
@@ -36,14 +34,12 @@ pub struct Get {
     force: bool,
 }
 
-const SHAPE: Shape = Shape { done: "saved", has_paths: true, has_bytes: true };
-
 impl Command for Get {
     type Family = Yerc;
-    type Report = Fetched;
+    type Report = Files;
     const ID: &'static str = "yerc.file.get";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Fetched, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let to_stdout = self.dir == Path::new("-");
         if to_stdout {
@@ -60,12 +56,13 @@ impl Command for Get {
         }
         let looking = screen.spinner("looking for files");
         let Some(wanted) = pattern::find(link, &self.names).await? else {
-            return Ok(Fetched { results: None });
+            return Err(unknown());
         };
         drop(looking);
         if let ([file], true) = (&typed[..], to_stdout) {
             print(link, screen, file).await?;
-            return Ok(Fetched { results: None });
+            // Stdout has the file itself.
+            return Ok(Files::new(Vec::new(), |_| View::default()));
         }
         let mut names = LocalNames::new(link.encoding);
         let (mut work, mut results) = (Vec::with_capacity(wanted.len()), Vec::with_capacity(wanted.len()));
@@ -74,7 +71,11 @@ impl Command for Get {
                 Ok((local, file)) => Ok((file, Target::new(folder.join(local), self.force)?)),
                 Err(failure) => Err(failure),
             };
-            results.push(FileResult::pending(name, placed.as_ref().ok().map(|(_, target)| target.path())));
+            let file = name.pending();
+            results.push(match &placed {
+                Ok((_, target)) => file.at(target.path()),
+                Err(_) => file,
+            });
             work.push(placed);
         }
         if !to_stdout && folder != Path::new("") && work.iter().any(Result::is_ok) {
@@ -82,14 +83,17 @@ impl Command for Get {
         }
         for (work, result) in work.into_iter().zip(&mut results) {
             let outcome = match work {
-                Ok((file, target)) => save(link, screen, &file, &target).await,
+                Ok((file, target)) => {
+                    let label = link.encoding.decode(file.as_bytes());
+                    transfer::save(link, screen, &label, &target, Download::Named(&file)).await
+                }
                 Err(failure) => Err(failure),
             };
             if !result.settle(outcome.map(Some)) {
                 break;
             }
         }
-        Ok(Fetched { results: Some(Results::new(results, SHAPE).report()?) })
+        Files::new(results, |files| FileItem::transfers(files, "saved")).or_only_failure()
     }
 }
 
@@ -106,44 +110,11 @@ impl Get {
     }
 }
 
-/// Downloaded files; none if stdout has the file itself.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Fetched {
-    #[serde(flatten)]
-    results: Option<Results>,
-}
-
-impl Report for Fetched {
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("files")
-    }
-
-    fn view(&self) -> View {
-        self.results.as_ref().map(Report::view).unwrap_or_default()
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.results.as_ref().and_then(Report::failure)
-    }
-}
-
 /// Target path of each file, all checked before the first download.
 fn targets(encoding: Encoding, files: &[FileName], folder: &Path, force: bool) -> Result<Vec<Target>, Failure> {
     let mut names = LocalNames::new(encoding);
     let target = |file: &FileName| Target::new(folder.join(names.assign(file.as_bytes())?), force);
     files.iter().map(target).collect()
-}
-
-async fn save(link: &mut Link, screen: &Screen, file: &FileName, target: &Target) -> Result<u64, Failure> {
-    let mut draft = target.begin()?;
-    let mut progress = screen.bytes_progress(&link.encoding.decode(file.as_bytes()), None);
-    let bytes = transfer::fetch(link, file, |block| {
-        progress.advance(block.len() as u64);
-        draft.write(block)
-    })
-    .await?;
-    draft.commit()?;
-    Ok(bytes)
 }
 
 async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<(), Failure> {

@@ -7,13 +7,12 @@ use serde::Serialize;
 use super::name::{Shown, TypeArg, type_word, word_of};
 use super::transfer;
 use crate::command::backup;
-use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
+use crate::command::robot::file::{FileItem, Files};
 use crate::command::yerc::link::Yerc;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::yerc::files;
 use crate::failure::Failure;
-use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Table, View};
 
 /// Lists the files on the controller.
@@ -33,10 +32,10 @@ fn filter(text: &str) -> Result<String, String> {
 
 impl Command for List {
     type Family = Yerc;
-    type Report = Listing;
+    type Report = Files<Listed>;
     const ID: &'static str = "yerc.file.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files<Listed>, Failure> {
         let Context { link, screen, .. } = context;
         let filters = match &self.filter {
             Some(filter) => vec![(filter.clone(), None)],
@@ -48,26 +47,27 @@ impl Command for List {
         })?;
         if link.is_dry() {
             transfer::plan_all(link, transfer::LISTS, requests)?;
-            return Ok(Listing::default());
+            return Ok(Files::new(Vec::new(), table));
         }
-        let mut listing = Listing { asked: filters.len(), ..Listing::default() };
+        let mut listed = Vec::new();
         // The file service may still be busy with an aborted transfer of another client.
         let _looking = screen.spinner("looking for files");
         for ((filter, kind), request) in filters.iter().zip(&requests) {
             match transfer::list_by(link, request).await {
-                Ok(names) => listing.files.extend(names.iter().map(|name| Listed {
-                    name: Shown::new(link.encoding, name),
-                    file_type: word_of(name).or(kind.map(type_word)),
+                Ok(names) => listed.extend(names.iter().map(|bytes| {
+                    let Shown { name, name_hex } = Shown::new(link.encoding, bytes);
+                    let file_type = word_of(bytes).or(kind.map(type_word));
+                    FileItem::new(name, Listed { name_hex, file_type }, Ok(()))
                 })),
                 // A controller may list jobs but refuse to list parameters.
-                Err(failure) if backup::goes_on(&failure) && listing.asked > 1 => {
-                    let error = ItemError::new(filter.as_str(), failure);
-                    listing.refused.push(RefusedList { file_type: kind.map(type_word), error });
+                Err(failure) if backup::goes_on(&failure) && filters.len() > 1 => {
+                    let more = Listed { name_hex: None, file_type: kind.map(type_word) };
+                    listed.push(FileItem::new(filter, more, Err(failure)));
                 }
                 Err(failure) => return Err(transfer::about(&shown(filter), failure)),
             }
         }
-        Ok(listing)
+        Ok(Files::new(listed, table).asked(filters.len()))
     }
 }
 
@@ -76,53 +76,21 @@ fn shown(filter: &str) -> String {
     if filter.is_empty() { "the empty filter".to_owned() } else { filter.to_owned() }
 }
 
-/// Files on the controller.
-#[derive(Debug, Default, Serialize, JsonSchema)]
-pub struct Listing {
-    /// In the order of the controller, one type after the other.
-    files: Vec<Listed>,
-    /// Types that could not be listed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    refused: Vec<RefusedList>,
-    #[serde(skip)]
-    asked: usize,
-}
-
-/// A file.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Listed {
-    #[serde(flatten)]
-    name: Shown,
+/// Fields of a listed file, or of a type that could not be listed: its name is the filter.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Listed {
+    /// Bytes of the name, if the text does not convert back to them; as an argument, use them with the prefix `hex:`.
+    name_hex: Option<String>,
     /// `jbi`, `dat`, `cnd`, `prm`, `sys` or `lst`; null for any other extension.
     #[serde(rename = "type")]
     file_type: Option<&'static str>,
 }
 
-/// A type that could not be listed.
-#[derive(Debug, Serialize, JsonSchema)]
-struct RefusedList {
-    #[serde(rename = "type")]
-    file_type: Option<&'static str>,
-    error: ItemError,
-}
-
-impl Report for Listing {
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("files")
+fn table(files: &[FileItem<Listed>]) -> View {
+    let mut table = Table::new(&["name", "type", "error"], "no files of this type");
+    for file in files {
+        let error = file.error.as_ref().map(ItemError::cell);
+        table.row([file.name.as_str().into(), Cell::maybe(file.more.file_type), Cell::maybe(error)]);
     }
-
-    fn view(&self) -> View {
-        let mut table = Table::new(&["name", "type"], "no files of this type");
-        for file in &self.files {
-            table.row([file.name.name.as_str().into(), Cell::maybe(file.file_type)]);
-        }
-        for list in &self.refused {
-            table.row([list.error.cell(), Cell::maybe(list.file_type)]);
-        }
-        View::table(table)
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::verdict(self.asked, self.refused.iter().map(|list| &list.error))
-    }
+    View::table(table.without_blank("error"))
 }

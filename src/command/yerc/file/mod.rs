@@ -17,7 +17,6 @@ mod pattern;
 mod put;
 mod read;
 mod restore;
-mod results;
 mod transfer;
 
 pub use backup::back_up;

@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::robot::file::FileItem;
 use crate::controller::text::{Encoding, unhex};
 use crate::controller::yerc::files::{FileName, FileType};
 use crate::failure::Failure;
@@ -23,6 +24,13 @@ impl Shown {
     pub fn new(encoding: Encoding, name: &[u8]) -> Self {
         let name = encoding.name(name);
         Self { name: name.text, name_hex: name.hex }
+    }
+
+    /// File that was not tried yet.
+    pub fn pending(self) -> FileItem {
+        let mut file = FileItem::pending(self.name);
+        file.more.name_hex = self.name_hex;
+        file
     }
 }
 

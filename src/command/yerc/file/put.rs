@@ -8,9 +8,9 @@ use super::content::{Content, JobRules};
 use super::deliver::{self, Delivery, Manner, deliver};
 use super::lists::{Lists, There};
 use super::name::{self, Shown};
-use super::results::{FileResult, Results, Shape};
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::local::controller_name;
+use crate::command::robot::file::{FileItem, Files};
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -46,30 +46,33 @@ pub struct Put {
     force: bool,
 }
 
-const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
+/// Report of uploads.
+fn report(files: Vec<FileItem>) -> Files {
+    Files::new(files, |files| FileItem::transfers(files, "sent"))
+}
 
 impl Command for Put {
     type Family = Yerc;
-    type Report = Results;
+    type Report = Files;
     const ID: &'static str = "yerc.file.put";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite files of the same name";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
         let Context { link, screen, authority, .. } = context;
         let mut deliveries = self.deliveries(link.encoding)?;
-        let mut results: Vec<FileResult> = Vec::with_capacity(deliveries.len());
+        let mut results: Vec<FileItem> = Vec::with_capacity(deliveries.len());
         for delivery in &deliveries {
             let Delivery { file, content } = delivery;
-            let mut result = FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path()));
+            let mut result = Shown::new(link.encoding, file.as_bytes()).pending().at(content.path());
             if let Some((own, sent)) = delivery.other_name(link.encoding) {
                 screen.note(&format!(
                     "warning: {} has //NAME {own} but is sent as {sent}: a controller may refuse it, or store it as \
                      {own}",
                     content.path().display()
                 ));
-                result.notes.push("name_differs".to_owned());
+                result.more.notes.push("name_differs".to_owned());
             }
             results.push(result);
         }
@@ -80,17 +83,17 @@ impl Command for Put {
             for delivery in &mut deliveries {
                 deliver::plan(link, delivery, manner, Reason::default())?;
             }
-            return Ok(Results::new(results, SHAPE));
+            return Ok(report(results));
         };
         for (delivery, result) in deliveries.iter_mut().zip(&mut results) {
             // An unlisted file was not confirmed, so it is not deleted.
             let replace = manner.replace && lists.tell(&delivery.file) != There::No;
-            let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, result).await;
-            if !result.settle(outcome) {
+            let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, &mut result.more.notes).await;
+            if !result.settle(outcome.map(Some)) {
                 break;
             }
         }
-        Results::new(results, SHAPE).report()
+        report(results).or_only_failure()
     }
 }
 

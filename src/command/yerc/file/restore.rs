@@ -9,15 +9,15 @@ use super::deliver::{self, Delivery, Manner, deliver};
 use super::lists::{Lists, There};
 use super::manifest::{Manifest, controller_file};
 use super::name::Shown;
-use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::Context;
 use crate::command::backup::manifest;
-use crate::command::backup::manifest::{Entry, State};
-use crate::command::backup::{NOT_CHOSEN, Only, Restoring, would_leave, would_write};
+use crate::command::backup::manifest::Entry;
+use crate::command::backup::{NOT_CHOSEN, Only, Restored, Restoring, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::local::own_folder;
+use crate::command::robot::file::{FileItem, State};
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::controller::yerc::files::{FileName, FileType};
@@ -40,8 +40,6 @@ pub struct Restore {
 /// Jobs that the controller does not overwrite by itself are replaced.
 const MANNER: Manner = Manner { verify: false, ignore_header: false, replace: true };
 
-const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
-
 /// Order of sending: jobs need their data and conditions first, and after parameters a controller may need a restart.
 const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
 /// Types that are sent by default. Parameters and system data change the controller itself.
@@ -62,7 +60,7 @@ impl Restore {
     }
 
     /// Sends what differs.
-    pub async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
+    pub async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several, authority } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
         manifest::check_origin(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
@@ -74,19 +72,16 @@ impl Restore {
                 .hint("check the model (?model=…); --force sends the files anyway"));
         }
         let chosen = self.chosen(&manifest)?;
-        let mut deliveries = Vec::with_capacity(chosen.len());
+        let (mut deliveries, mut results) = (Vec::with_capacity(chosen.len()), Vec::with_capacity(chosen.len()));
         for (file, entry) in chosen {
             let Some(copy) = &entry.copy else { continue };
             copy.check(&folder)?;
             if copy.bytes > 0 {
+                results.push(Shown::new(link.encoding, file.as_bytes()).pending().of_copy(&folder, copy));
                 deliveries.push(Delivery { file, content: Content::open(&folder.join(&copy.file))? });
             } else {
                 screen.note(&format!("{} is empty and cannot be sent", entry.name));
             }
-        }
-        let mut results = Vec::with_capacity(deliveries.len());
-        for Delivery { file, content } in &deliveries {
-            results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
         }
         if link.is_dry() {
             Self::plan_items(link, &manifest, &deliveries);
@@ -94,27 +89,30 @@ impl Restore {
         let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
         let Some(lists) = lists else {
             plan(link, &mut deliveries, &authority).await?;
-            return Ok(Results::new(results, SHAPE));
+            return Ok(Restored::new(&folder, results));
         };
         if !compare(link, screen, &lists, &mut deliveries, &mut results).await? {
-            return Results::new(results, SHAPE).report();
+            return Ok(Restored::new(&folder, results));
         }
         // Equal files are skipped, and files that could not be compared are not sent.
-        let mut open: Vec<(Delivery, &mut FileResult)> =
-            deliveries.into_iter().zip(&mut results).filter(|(_, result)| result.state == State::NotTried).collect();
+        let mut open: Vec<(Delivery, &mut FileItem)> = deliveries
+            .into_iter()
+            .zip(&mut results)
+            .filter(|(_, result)| result.more.state == State::NotTried)
+            .collect();
         deliver::confirm(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery)).await?;
         let mut sent = screen.parts_progress("files sent", open.len());
         for (delivery, result) in &mut open {
             // An unlisted file was not confirmed, so it is not deleted.
             let replace = lists.tell(&delivery.file) != There::No;
-            let outcome = deliver(link, screen, delivery, Manner { replace, ..MANNER }, result).await;
-            if !result.settle(outcome) {
+            let outcome = deliver(link, screen, delivery, Manner { replace, ..MANNER }, &mut result.more.notes).await;
+            if !result.settle(outcome.map(Some)) {
                 break;
             }
             sent.advance(1);
         }
         drop(open);
-        Results::new(results, SHAPE).report()
+        Ok(Restored::new(&folder, results))
     }
 }
 
@@ -162,17 +160,17 @@ async fn compare(
     screen: &Screen,
     lists: &Lists,
     deliveries: &mut [Delivery],
-    results: &mut [FileResult],
+    results: &mut [FileItem],
 ) -> Result<bool, Failure> {
     for (Delivery { file, content }, result) in deliveries.iter_mut().zip(results) {
         if lists.tell(file) == There::No {
             continue;
         }
         match transfer::is_same(link, screen, file, content, MANNER.ignore_header).await {
-            Ok(true) => result.state = State::Kept,
+            Ok(true) => result.succeed(State::Kept),
             Ok(false) => {}
             Err(failure) => {
-                if !result.settle(Err(failure)) {
+                if !result.fail(failure) {
                     return Ok(false);
                 }
             }

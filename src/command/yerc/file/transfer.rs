@@ -4,7 +4,10 @@ use std::time::Duration;
 
 use super::compare::Comparer;
 use super::content::Content;
+use crate::command::backup::manifest::Hash;
 use crate::command::frame::dry_run::Reason;
+pub use crate::command::frame::items::about;
+use crate::command::frame::local::Target;
 use crate::command::yerc::link::{Link, Refusal};
 use crate::controller::yerc::files::{self, FileName, FileType, split_list};
 use crate::controller::yerc::request::Request;
@@ -93,10 +96,43 @@ pub async fn is_same(
         comparer.take(block)
     });
     match fetched.await {
-        Ok(_) => Ok(comparer.finish()?.first_difference.is_none()),
+        Ok(_) => Ok(comparer.finish()?.0.first_difference.is_none()),
         Err(failure) if failure.kind == Kind::Refused => Ok(false),
         Err(failure) => Err(failure),
     }
+}
+
+/// Downloads a file to a local one.
+pub async fn save(
+    link: &mut Link,
+    screen: &Screen,
+    label: &str,
+    target: &Target,
+    download: Download<'_>,
+) -> Result<Hash, Failure> {
+    let mut draft = target.begin()?;
+    let mut progress = screen.bytes_progress(label, None);
+    let mut hash = Hash::default();
+    let take = |block: &[u8]| {
+        progress.advance(block.len() as u64);
+        hash.take(block);
+        draft.write(block)
+    };
+    match download {
+        Download::Named(file) => fetch(link, file, take).await?,
+        Download::Listed(file) => fetch_listed(link, file, take).await?,
+    };
+    draft.commit()?;
+    Ok(hash)
+}
+
+/// A file to download.
+#[derive(Debug, Clone, Copy)]
+pub enum Download<'a> {
+    /// A file that may be missing.
+    Named(&'a FileName),
+    /// A file that was just listed; it may be empty.
+    Listed(&'a FileName),
 }
 
 /// Batch backup: `None` if the controller has created it, its size if it was received.
@@ -124,13 +160,13 @@ pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     }
 }
 
-/// Uploads a file.
+/// Uploads a file. Returns the content that was sent.
 pub async fn send(
     link: &mut Link,
     file: &FileName,
     content: &mut Content,
     progress: &mut Progress,
-) -> Result<u64, Failure> {
+) -> Result<Hash, Failure> {
     let total = content.size();
     let path = content.path().display().to_string();
     let mut pieces = content.pieces()?;
@@ -143,9 +179,10 @@ pub async fn send(
         .await?;
     let name = link.encoding.decode(file.as_bytes());
     match end {
-        UploadEnd::Unnumbered { bytes, .. } if is_listed(link, file).await => Ok(bytes),
-        end => given(&end, total, &name, &path),
+        UploadEnd::Unnumbered { .. } if is_listed(link, file).await => {}
+        end => drop(given(&end, total, &name, &path)?),
     }
+    Ok(pieces.hash)
 }
 
 /// Whether the controller lists a file with this name.
@@ -182,15 +219,6 @@ pub fn is_job_exists(failure: &Failure) -> bool {
 pub fn not_listed() -> Failure {
     Failure::new(Kind::Refused, "the file does not exist on the controller")
         .hint("`yerc file list` shows the names; names are case-sensitive")
-}
-
-/// Failure that starts with the name of the file.
-pub fn about(name: &str, failure: Failure) -> Failure {
-    // Failures of a local file with the same name already include it.
-    if failure.message.strip_prefix(name).is_some_and(|rest| rest.starts_with([':', ' '])) {
-        return failure;
-    }
-    Failure { message: format!("{name}: {}", failure.message), ..failure }
 }
 
 /// Received size, or the failure of the transfer.

@@ -4,11 +4,12 @@ use super::content::{self, Controller, Store};
 use super::parts::Part;
 use crate::command::Context;
 use crate::command::backup::manifest;
-use crate::command::backup::manifest::{LeftOut, State};
-use crate::command::backup::{Item, Items, NOT_CHOSEN, NOT_MACHINE, Restored, Restoring, would_leave, would_write};
+use crate::command::backup::manifest::LeftOut;
+use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Restored, Restoring, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::interrupt::interruptible;
+use crate::command::robot::file::{FileItem, State};
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::refusal::refused;
@@ -36,13 +37,14 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
     let manifest: manifest::Manifest<Controller> = manifest::existing(folder)?;
     let saved = || manifest.files.iter().filter(|entry| entry.copy.is_some());
     only.check(&saved().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
-    let mut jobs = Vec::new();
+    let (mut jobs, mut items) = (Vec::new(), Vec::new());
     for part in Part::in_order_of_writing().filter(|part| only.has(&part.to_string()) && *part != Part::Info) {
         let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) else { continue };
         if part.is_machine() && !machine {
             continue;
         }
         copy.check(folder)?;
+        items.push(FileItem::values(part).of_copy(folder, copy));
         jobs.push(Job { part, called: part.to_string(), stores: content::load(part, folder)? });
     }
     if jobs.is_empty() {
@@ -54,7 +56,6 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
         return dry_run(link, &jobs);
     }
     check_origin(link, &manifest.controller, *force).await?;
-    let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
     let mut found = Comparison::default();
     let mut compared = screen.parts_progress("parts compared", jobs.len());
     for (job, item) in jobs.iter().zip(&mut items) {
@@ -62,7 +63,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
         compared.advance(1);
     }
     carry_out((link, screen, &authority), &jobs, &found, &mut items, &folder.display().to_string()).await?;
-    Ok(Restored::new(folder, Items::new(items)))
+    Ok(Restored::new(folder, items))
 }
 
 /// Writes the differing values after confirmation; `by` names their source.
@@ -70,7 +71,7 @@ pub async fn carry_out(
     (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
     jobs: &[Job],
     found: &Comparison,
-    items: &mut [Item],
+    items: &mut [FileItem],
     by: &str,
 ) -> Result<(), Failure> {
     authority.confirm(&found.change(by)).await?;
@@ -78,7 +79,7 @@ pub async fn carry_out(
     match interruptible(write_all(link, screen, jobs, found, items)).await {
         Ok(outcome) => outcome,
         Err(failure) => {
-            let first = items.iter_mut().find(|item| matches!(item.state, State::NotTried));
+            let first = items.iter_mut().find(|item| item.more.state == State::NotTried);
             first.ok_or_else(|| failure.clone())?.fail(failure);
             Ok(())
         }
@@ -118,10 +119,6 @@ async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Resu
     Ok(())
 }
 
-fn pending(part: Part) -> Item {
-    Item { file: Some(part.file()), written: Some(0), unchanged: Some(0), ..Item::pending(part) }
-}
-
 /// Comparison of the controller with the backup.
 #[derive(Default)]
 pub struct Comparison {
@@ -140,7 +137,7 @@ impl Comparison {
         link: &mut Link,
         screen: &Screen,
         Job { part, called, stores }: &Job,
-        item: &mut Item,
+        item: &mut FileItem,
     ) -> Result<(), Failure> {
         let mut progress = screen.items_progress(&format!("comparing {called}"), stores.len() as u64);
         let mut differ = Vec::new();
@@ -156,10 +153,10 @@ impl Comparison {
     }
 
     /// Decides whether a value must be written, and counts it.
-    pub fn sort(&mut self, part: Part, store: &Store, there: Option<&Values>, item: &mut Item) -> bool {
+    pub fn sort(&mut self, part: Part, store: &Store, there: Option<&Values>, item: &mut FileItem) -> bool {
         match there {
             Some(values) if store.is_there(values) => {
-                count(&mut item.unchanged);
+                count(&mut item.more.unchanged);
                 return false;
             }
             Some(values) => {
@@ -193,7 +190,7 @@ async fn write_all(
     screen: &Screen,
     jobs: &[Job],
     found: &Comparison,
-    items: &mut [Item],
+    items: &mut [FileItem],
 ) -> Result<(), Failure> {
     let mut written = screen.parts_progress("parts written", jobs.len());
     for ((job, differ), item) in jobs.iter().zip(&found.differ).zip(items) {
@@ -213,22 +210,22 @@ async fn write(
     screen: &Screen,
     Job { called, stores, .. }: &Job,
     differ: &[usize],
-    item: &mut Item,
+    item: &mut FileItem,
 ) -> Result<(), Failure> {
     let mut progress = screen.items_progress(&format!("writing {called}"), differ.len() as u64);
     let mut refusal = None;
     for store in differ.iter().filter_map(|at| stores.get(*at)) {
         match content::ask(link, &store.write).await.map_err(|failure| named(store, failure))? {
-            Ok(_) => count(&mut item.written),
+            Ok(_) => count(&mut item.more.written),
             Err(alarm) => {
                 let failure = refused(store.write.row(), alarm);
-                item.left_out.push(LeftOut { key: store.key.clone(), why: failure.message.clone() });
+                item.more.left_out.push(LeftOut { key: store.key.clone(), why: failure.message.clone() });
                 refusal.get_or_insert(named(store, failure));
             }
         }
         progress.advance(1);
     }
-    item.state = State::Done;
+    item.succeed(State::Done);
     refusal.map_or(Ok(()), Err)
 }
 

@@ -7,11 +7,12 @@ use clap::Args;
 
 use super::content::{self, Controller, GAP, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
-use crate::command::backup::manifest::{Entry, State};
+use crate::command::backup::manifest::Entry;
 use crate::command::backup::options::BackupOptions;
 use crate::command::backup::saving::{self, Saving, Task, cut_off_by_ctrl_c};
-use crate::command::backup::{BackedUp, Item, Making, Only};
+use crate::command::backup::{BackedUp, Making, Only};
 use crate::command::frame::dry_run::unknown;
+use crate::command::robot::file::{FileItem, State};
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, runs};
@@ -110,14 +111,14 @@ async fn save(
     let list = task.begin((screen, robot), controller.clone(), |earlier, _| earlier.controller.robots == robots)?;
     let mut reading = Reading { link, screen, task, controller, asked, list };
     let goes_on = reading.all().await?;
-    let Reading { asked, list, .. } = reading;
-    let tried: Vec<String> = list.items().iter().map(|item| item.name.clone()).collect();
+    let Reading { asked, mut list, .. } = reading;
+    let tried: Vec<String> = list.files().iter().map(|file| file.name.clone()).collect();
     let rest = Part::single().into_iter().chain([Part::Points(0), Part::Comments(0)]).filter(|_| !goes_on);
     let rest = rest.filter(|part| asked.has(*part) && !tried.contains(&part.to_string()));
-    let mut made = list.end(rest.map(Item::pending))?;
-    // Refusals appear only in the list of items.
-    made.items.files.iter_mut().filter(|item| item.state == State::Kept).for_each(|item| item.left_out.clear());
-    Ok(made)
+    // Refusals appear only in the manifest.
+    let kept = list.files().iter_mut().filter(|file| file.more.state == State::Kept);
+    kept.for_each(|file| file.more.left_out.clear());
+    list.end(rest.map(FileItem::pending))
 }
 
 /// A backup in progress.

@@ -11,10 +11,11 @@ use super::content::{Store, ask};
 use super::parts::{COMMENTS, POINTS, Part};
 use super::restore::{Comparison, IF_IT_DIFFERS, Job, carry_out, named};
 use super::rows::Row as Cells;
-use crate::command::backup::{Item, Items};
+use crate::command::backup::{AGAIN, with_hint};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::sheet::{self, SheetManner};
 use crate::command::frame::text_files;
+use crate::command::robot::file::{FILES, FileItem, Files};
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::yrcx::numbers::{Numbers, runs, single};
 use crate::command::{Command, Context, Report};
@@ -25,6 +26,7 @@ use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Section, View};
 
 /// Arguments of `point dump`.
@@ -274,8 +276,7 @@ impl Command for Restore {
             stores: Vec::new(),
         });
         let mut found = Comparison { differ: vec![Vec::new(), Vec::new()], ..Comparison::default() };
-        let mut items =
-            ["points", "comments"].map(|kind| Item { written: Some(0), unchanged: Some(0), ..Item::pending(kind) });
+        let mut items = ["points", "comments"].map(FileItem::values);
         let mut progress = screen.items_progress("comparing points", points.len() as u64);
         for point in &points {
             let number = point.number;
@@ -297,7 +298,8 @@ impl Command for Restore {
         drop(progress);
         carry_out((link, screen, &authority), &jobs, &found, &mut items, &name).await?;
         let items = items.into_iter().zip(&jobs).filter(|(_, job)| !job.stores.is_empty()).map(|(item, _)| item);
-        Ok(Restored { file: name, items: Items::new(items.collect()) })
+        let items = Files::new(items.collect(), |files| FileItem::results(files, ["written", "unchanged"]));
+        Ok(Restored { file: name, items })
     }
 }
 
@@ -305,7 +307,7 @@ impl Command for Restore {
 fn add(
     jobs: &mut [Job],
     found: &mut Comparison,
-    items: &mut [Item],
+    items: &mut [FileItem],
     at: usize,
     store: Option<Store>,
     old: Option<&Values>,
@@ -351,16 +353,20 @@ fn dry_run(link: &mut Link, points: &[Point], wrong: impl Fn(&Point, &str) -> Fa
 pub struct Restored {
     file: String,
     #[serde(flatten)]
-    items: Items,
+    items: Files,
 }
 
 impl Report for Restored {
     fn view(&self) -> View {
-        self.items.view(["written", "unchanged"])
+        self.items.view()
     }
 
     fn failure(&self) -> Option<Failure> {
-        self.items.failure("run the same command again to continue; equal values are not written again")
+        Some(with_hint(self.items.failure()?, AGAIN))
+    }
+
+    fn rows(&self) -> RowsOf {
+        FILES
     }
 }
 
