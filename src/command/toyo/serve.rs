@@ -43,7 +43,7 @@ pub struct Serve {
     /// Start state (TOML): modes, memory, inputs, errors, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Faults on the line, such as noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
+    /// Faults, such as noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
     #[arg(long, value_name = "FAULTS")]
     fault: Option<LineFaultSpec>,
     /// Take lines on stdin; `help` lists them
@@ -107,6 +107,13 @@ impl serve::Server for Toyo {
 
     fn console(&mut self, line: &str) -> Result<String, String> {
         self.simulated.0.console(self.server.now(), line)
+    }
+
+    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String> {
+        let faults: Option<LineFaultSpec> = faults.map(str::parse).transpose().map_err(|error| format!("{error}"))?;
+        self.simulated.0.set_busy(faults.as_ref().map_or(0.0, |faults| faults.busy.fraction()));
+        self.server.set_faults(faults);
+        Ok(())
     }
 }
 

@@ -21,7 +21,7 @@ pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpe
         }
     };
     Ok(match faults {
-        Some(faults) => start.with_busy(f64::from(faults.busy.per_10_000()) / 10_000.0),
+        Some(faults) => start.with_busy(faults.busy.fraction()),
         None => start,
     })
 }
