@@ -43,7 +43,7 @@ use crate::output::view::View;
                   million rewrites. So after a restore that was cut off the same command goes on where it ended.\n\n\
                   Machine parameters (E) and special ones (U) are left out unless --machine is given. They come first; \
                   if one of E was changed, nothing else is written, as only communication works until the \
-                  controller's power was switched off and on. Then restore again without --machine.\n\nSteps and all \
+                  controller's power was restart. Then restore again without --machine.\n\nSteps and all \
                   else are written in program mode; a controller in another mode is switched to it, and back."
 )]
 pub struct Restore {
@@ -478,7 +478,7 @@ pub struct Restored {
     /// In the order of writing.
     parts: Vec<PartResult>,
     /// Machine parameters were changed, and nothing else was written: nothing but communication works until the
-    /// controller's power was switched off and on.
+    /// controller's power was restart.
     needs_power_cycle: bool,
 }
 

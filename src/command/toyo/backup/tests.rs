@@ -229,7 +229,7 @@ fn a_restore_that_fails_says_how_far_it_got() {
     let failed = failed.unwrap();
     assert_eq!(failed.kind, Kind::OutcomeUnknown);
     assert!(
-        failed.message.contains("palletizing-03: ") && failed.message.contains("written or not: start"),
+        failed.message.contains("palletizing-03: ") && failed.message.contains("unknown: start"),
         "{}",
         failed.message
     );

@@ -155,7 +155,7 @@ impl Copy {
         link.plan(&steps::rooms_request(), "whether there is room");
         link.plan(&steps::rooms_request(), "whether there is room for the copy");
         for step in self.from..=self.to {
-            link.plan(&steps::read_request(step), "what is copied");
+            link.plan(&steps::read_request(step), "the source of the copy");
         }
         tasks::choose(link, self.to_task.or(self.from_task)).await?;
         let there: Vec<Request> = (self.at..=self.end()).map(steps::read_request).collect();

@@ -309,7 +309,7 @@ mod tests {
         let mut bench = with_step_2(Fault::Answered("@NG"));
         let (got, failure) = bench.run(&["program", "get"]).unwrap();
         let failure = failure.unwrap();
-        let why = "the controller refused RSTX 0002 (@NG): the status does not tell why";
+        let why = "the controller refused RSTX 0002 (@NG): the status shows no reason";
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Mixed, Some("NG")));
         assert_eq!(failure.message, format!("1 of 2000 failed: {why}"));
         let steps = got["steps"].as_array().unwrap();

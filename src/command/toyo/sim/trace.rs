@@ -110,7 +110,7 @@ struct Port {
     bits: String,
 }
 
-/// A step of a task, and where it stands in its file.
+/// A step of a task, with its location in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct At {
     task: usize,
