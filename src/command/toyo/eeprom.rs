@@ -54,11 +54,11 @@ impl Cells {
 }
 
 impl Link {
-    /// Stores one cell, unless it holds that already. A dry run notes the question and the order, and goes on.
+    /// Writes one cell unless it is equal. A dry run records the requests and continues.
     ///
     /// # Errors
-    /// As those of [`Link::ask`]; [`Kind::OutcomeUnknown`] if it cannot be read back, and [`Kind::Malformed`] if
-    /// something else is there afterwards.
+    /// Like [`Link::ask`]; [`Kind::OutcomeUnknown`] if the cell cannot be read back, and [`Kind::Malformed`] if it then
+    /// has another value.
     pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>, Failure> {
         if self.is_dry() {
             self.plan(&cell.read, THERE);
@@ -73,18 +73,18 @@ impl Link {
         Ok(Some(found))
     }
 
-    /// Notes in a dry run what [`Link::overwrite`] sends, if the cell holds something else: the block that writes it, in
-    /// which `?` stands for what is kept, and the question that reads it back.
+    /// Records in a dry run the requests of [`Link::overwrite`] for a cell that differs: the block that writes it, in
+    /// which `?` stands for kept values, and the request that reads it back.
     pub async fn plan_overwriting(&mut self, read: &Request, write: &str) -> Result<(), Failure> {
         self.plan_order(write, DIFFERS).await?;
         self.plan_if(read, DIFFERS);
         Ok(())
     }
 
-    /// Stores one cell that is known to hold something else, and reads it back.
+    /// Writes one cell that is known to differ, and reads it back.
     ///
     /// # Errors
-    /// As those of [`Link::store`].
+    /// Like [`Link::store`].
     pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
         self.ask(&cell.write).await?;
         if let Some(warning) = self.write_log.written(cell.read.text().trim_start_matches('@')) {

@@ -9,7 +9,7 @@ use crate::failure::{Failure, Kind};
 /// Reads the current task, selects `wanted` temporarily if it differs, and returns the task that is then current.
 pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> {
     if link.is_dry() {
-        link.plan(&Request::bare(Command::Mtsk), "which task is the current one");
+        link.plan(&Request::bare(Command::Mtsk), "the current task");
         if let Some(task) = wanted {
             let back = format!("@{} TASK=?", Command::Ctsk.row().word);
             link.plan_to_borrow(&choice(task), &back, "whether it differs from the current task").await?;

@@ -99,8 +99,8 @@ impl FromStr for Part {
         }
         let names: Vec<String> = all.iter().map(ToString::to_string).collect();
         Err(match nearest(name, names.iter().map(String::as_str)) {
-            Some(near) => format!("there is no part '{name}'; did you mean {near}?"),
-            None => format!("there is no part '{name}'"),
+            Some(near) => format!("unknown part '{name}'; did you mean {near}?"),
+            None => format!("unknown part '{name}'"),
         })
     }
 }
@@ -161,7 +161,7 @@ pub fn table(parts: &[PartResult], done: &'static str) -> Table {
             (State::Failed, Some(error), _) => Cell::from(error.message.as_str()).tone(Tone::Bad),
             (State::Failed, None, _) => Cell::from("failed").tone(Tone::Bad),
             (State::NotTried, _, Some(cells)) => {
-                Cell::from(format!("{}; the rest not tried", cells.in_words())).tone(Tone::Warning)
+                Cell::from(format!("{}; the others were not tried", cells.in_words())).tone(Tone::Warning)
             }
             (State::NotTried, ..) => Cell::from("not tried").tone(Tone::Warning),
             (State::Kept, ..) => Cell::from("kept"),

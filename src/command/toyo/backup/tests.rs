@@ -143,7 +143,7 @@ fn a_backup_that_was_cut_off_goes_on() {
     let failed = failed.unwrap();
     assert_eq!((failed.kind, &data["complete"]), (Kind::NoAnswer, &false.into()));
     assert!(failed.message.starts_with("1 of 21 parts failed, 14 not tried: palletizing-05: "), "{}", failed.message);
-    assert!(failed.hint.unwrap().ends_with("--resume reads what is missing"));
+    assert!(failed.hint.unwrap().ends_with("use --resume to read the missing parts"));
     assert_eq!(failure(&mut controller(FULL), &["backup", folder]).kind, Kind::Local);
     let (mut bench, heard) = Bench::with_faults(FULL, |_, _| Fault::None);
     let data = bench.data(&["backup", folder, "--resume"]);
