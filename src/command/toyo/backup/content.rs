@@ -40,7 +40,7 @@ pub enum Content {
     Easy(Vec<easy_text::Filled>),
 }
 
-/// Asks what kind of controller it is.
+/// Asks type and version of the controller.
 pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
     let system = link.ask(&Request::bare(Command::Sysp)).await?;
     let shown = |name: &str, show: fn(&Field, &Value) -> String| {
@@ -66,7 +66,7 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
 
 /// What a dry run notes of [`controller`].
 pub fn plan_controller(link: &mut Link) {
-    link.plan(&Request::bare(Command::Sysp), "what kind of controller it is");
+    link.plan(&Request::bare(Command::Sysp), "type and version of the controller");
     link.plan(&task_axes(), "which tasks have axes");
     link.plan(&letters_request(), "the letters of the axes");
     link.plan(&Request::bare(Command::Rovr), "the override");
