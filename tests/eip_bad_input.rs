@@ -164,15 +164,15 @@ fn owner(target: &str) -> (Value, Value, Value) {
 #[test]
 fn an_owner_is_found_where_the_board_says_so_but_once() {
     // Who only reads sees what the board says of itself; what it refuses takes a try.
-    for (mischief, is_said) in [("trailing", true), ("unowned", false)] {
-        let board = Board::start(&["--mischief", mischief]);
-        assert_eq!(owner(&board.target), ("ok".into(), false.into(), false.into()), "{mischief}");
+    for (fault, is_said) in [("trailing", true), ("unowned", false)] {
+        let board = Board::start(&["--fault", fault]);
+        assert_eq!(owner(&board.target), ("ok".into(), false.into(), false.into()), "{fault}");
         let mut holder = armctl(&board.target, "yrcx info servo --watch 1h").spawn().unwrap();
         BufReader::new(holder.stdout.take().unwrap()).lines().next().unwrap().unwrap();
         let (exit, _, code, message, _) = told(&board.target, "yrcx info servo");
-        assert_eq!((exit, &*code), (3, "0x0106"), "{mischief}: {message}");
+        assert_eq!((exit, &*code), (3, "0x0106"), "{fault}: {message}");
         let layer = if is_said { "warning" } else { "ok" };
-        assert_eq!(owner(&board.target), (layer.into(), is_said.into(), true.into()), "{mischief}");
+        assert_eq!(owner(&board.target), (layer.into(), is_said.into(), true.into()), "{fault}");
         let sent = Command::new("kill").args(["-s", "INT", &holder.id().to_string()]).status().unwrap();
         assert!(sent.success());
         assert_eq!(holder.wait().unwrap().code(), Some(130));
@@ -252,7 +252,7 @@ const NOBODY: &str = "check the address; check that the controller is on and its
 #[test]
 fn a_board_that_misbehaves() {
     const LINK: &str = "check the connection: `-v` counts received packets";
-    for (mischief, line, message, hint) in [
+    for (fault, line, message, hint) in [
         ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NOBODY),
         ("mute", "yrcx io get", "no answer to RegisterSession within 400 ms", NOBODY),
         ("reset", "yrcx info servo", "the TCP connection ended before the answer to ForwardOpen", NOBODY),
@@ -272,34 +272,34 @@ fn a_board_that_misbehaves() {
         ("wrong-id", "yrcx info servo", "the controller sends no data", LINK),
         ("wrong-size", "yrcx info servo", "the controller sends no data", LINK),
     ] {
-        tells(&Board::start(&["--mischief", mischief]).target, line, 4, "", message, hint);
+        tells(&Board::start(&["--fault", fault]).target, line, 4, "", message, hint);
     }
     for line in ["yrcx info servo", "yrcx io get", "yrcx eip get 4 100 3"] {
-        let (exit, _, _, message, hint) = told(&Board::start(&["--mischief", "garbage"]).target, line);
+        let (exit, _, _, message, hint) = told(&Board::start(&["--fault", "garbage"]).target, line);
         assert!(exit == 5 && message.contains("cannot decode"), "{line}: {exit} {message}");
         assert_eq!(hint, "check that this is the address of an EtherNet/IP device");
     }
     // Stale, doubled and miscounted images are passed over: a numbering that stands still is a silence.
-    for (mischief, works) in [("double", true), ("drop", true), ("stale", false), ("wrong-sequence", false)] {
-        let board = Board::start(&["--mischief", mischief]);
+    for (fault, works) in [("double", true), ("half-rate", true), ("stale", false), ("wrong-sequence", false)] {
+        let board = Board::start(&["--fault", fault]);
         let output = armctl(&board.target, "yrcx info servo").output().unwrap();
-        assert_eq!(output.status.success(), works, "{mischief}: {}", String::from_utf8_lossy(&output.stderr));
-        assert!(works || output.status.code() == Some(4), "{mischief}");
+        assert_eq!(output.status.success(), works, "{fault}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(works || output.status.code() == Some(4), "{fault}");
     }
 }
 
 #[test]
 fn a_change_whose_answer_is_lost_is_not_repeated() {
-    let board = Board::start(&["--mischief", "frozen"]);
+    let board = Board::start(&["--fault", "frozen"]);
     let (exit, kind, _, message, hint) = told(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(hint, "`yrcx status` shows whether servos and motor power are on");
     // What is there is read first; without an answer nothing is written.
-    let board = Board::start(&["--mischief", "reset"]);
+    let board = Board::start(&["--fault", "reset"]);
     let (exit, kind, _, message, _) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (4, "no_answer"), "{message}");
     assert!(message.ends_with("nothing was written"), "{message}");
-    let board = Board::start(&["--mischief", "reset-set"]);
+    let board = Board::start(&["--fault", "reset-set"]);
     let (exit, kind, _, message, hint) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(

@@ -68,7 +68,7 @@ fn failed(output: &Output) -> (i32, String) {
 
 #[test]
 fn what_the_adapter_does_wrong_has_its_exit_code() {
-    for (mischief, exit, part) in [
+    for (fault, exit, part) in [
         ("mute", 4, "no answer to"),
         ("reset", 4, "ended before"),
         ("stall", 4, "sends no data"),
@@ -76,16 +76,16 @@ fn what_the_adapter_does_wrong_has_its_exit_code() {
         ("wrong-size", 4, "sends no data"),
         ("garbage", 5, "cannot decode"),
     ] {
-        let output = Simulator::start(&["--mischief", mischief]).run("yrcx info servo");
+        let output = Simulator::start(&["--fault", fault]).run("yrcx info servo");
         let (code, stderr) = failed(&output);
-        assert!(code == exit && stderr.contains(part), "{mischief}: {code} {stderr}");
-        assert!(output.stdout.is_empty(), "{mischief}");
+        assert!(code == exit && stderr.contains(part), "{fault}: {code} {stderr}");
+        assert!(output.stdout.is_empty(), "{fault}");
     }
 }
 
 #[test]
 fn images_that_are_lost_or_doubled_do_no_harm() {
-    for fault in ["--mischief=drop", "--mischief=double", "--fault=drop=10%,dup=10%,reorder=10%,seed=7"] {
+    for fault in ["--fault=half-rate", "--fault=double", "--fault=drop=10%,dup=10%,reorder=10%,seed=7"] {
         let output = Simulator::start(&[fault]).run("yrcx info servo --json");
         assert!(output.status.success(), "{fault}: {:?}", failed(&output));
         let report: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -154,7 +154,7 @@ fn looking_leaves_the_owner_alone() {
 
 #[test]
 fn a_board_that_lets_nobody_read_is_listened_to() {
-    let output = Simulator::start(&["--mischief", "unreadable"]).run("yrcx io get cpu-ok --json");
+    let output = Simulator::start(&["--fault", "unreadable"]).run("yrcx io get cpu-ok --json");
     let heard: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(heard["data"]["items"][0]["value"], true);
 }
@@ -162,15 +162,15 @@ fn a_board_that_lets_nobody_read_is_listened_to() {
 #[test]
 fn a_simulator_in_this_process_has_faults_too() {
     let run = |url: &str| armctl().args(["-t", url, "--timeout", "400ms", "yrcx", "info", "servo"]).output().unwrap();
-    for url in ["sim:?fault=drop=5%25,seed=7", "sim:?mischief=double", "sim:?mischief=drop"] {
+    for url in ["sim:?fault=drop=5%25,seed=7", "sim:?fault=double", "sim:?fault=half-rate"] {
         assert!(run(url).status.success(), "{url}: {:?}", failed(&run(url)));
     }
     for (url, exit, part) in [
-        ("sim:?mischief=stall", 4, "sends no data"),
-        ("sim:?mischief=mute", 4, "within 400 ms"),
-        ("sim:?mischief=garbage", 5, "cannot decode"),
-        ("sim:?mischief=none", 2, "wrong-sequence"),
-        ("sim:?fault=busy=5%25", 2, "the fault busy does not exist for yrcx"),
+        ("sim:?fault=stall", 4, "sends no data"),
+        ("sim:?fault=mute", 4, "within 400 ms"),
+        ("sim:?fault=garbage", 5, "cannot decode"),
+        ("sim:?fault=none", 2, "wrong-sequence"),
+        ("sim:?fault=busy=5%25", 2, "unknown fault 'busy'; the faults are drop, dup"),
     ] {
         let (code, stderr) = failed(&run(url));
         assert!(code == exit && stderr.contains(part), "{url}: {code} {stderr}");

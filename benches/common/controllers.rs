@@ -92,7 +92,7 @@ async fn toyo(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -
 async fn yrcx(tell: impl FnOnce(String) -> anyhow::Result<()>) -> anyhow::Result<()> {
     let start = yrcx_controller::simulator::Start::default();
     // It has threads of its own.
-    let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+    let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), Default::default())?;
     tell(format!("eip://{}", server.address()))?;
     std::future::pending().await
 }

@@ -147,7 +147,7 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
     println!("servo status, from giving it to the report: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
         let runtime = runtime()?;
-        let server = simulated::serve(Start::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+        let server = simulated::serve(Start::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), Default::default())?;
         let target = format!("eip://{}?rpi={}ms", server.address(), rpi.as_millis()).parse()?;
         let sources =
             Sources { selection: Selection { target: Some(target), ..Selection::default() }, ..Sources::default() };

@@ -17,7 +17,7 @@ use armctl::transport::sim::locked;
 use armctl::transport::stream_server::StreamServer;
 use profirust::phy::ProfibusPhy;
 use profirust::{Baudrate, dp, fdl};
-use tokio::sync::oneshot;
+use tokio::sync::mpsc::unbounded_channel;
 
 use super::Effort;
 use super::common::table::{Goal, Row, Table};
@@ -93,14 +93,14 @@ fn with_slave(master: impl FnOnce(&Shared, &str) -> anyhow::Result<f64>) -> anyh
         let _guard = runtime.enter();
         StreamServer::pseudo_terminal(None, None)?
     };
-    let (quit, quits) = oneshot::channel::<()>();
+    let (faults, changed) = unbounded_channel();
     let mut peer = Arc::clone(&shared.0);
     let thread = thread::spawn(move || {
-        runtime.block_on(server.run(&mut peer, quits));
+        runtime.block_on(server.run(&mut peer, changed));
         runtime.shutdown_background();
     });
     let figure = master(&shared, &port);
-    drop(quit);
+    drop(faults);
     thread.join().expect("the slave does not panic");
     figure
 }

@@ -14,6 +14,7 @@ use tokio::io::{AsyncBufReadExt as _, AsyncRead, AsyncReadExt as _, BufReader};
 use super::frame::interrupt::interruptible;
 use super::frame::run::{Run, RunError};
 use super::{Report, SchemaEntry};
+use crate::controller::simulator::console::help_line;
 use crate::failure::{Failure, Kind, plain};
 use crate::output::view::View;
 
@@ -55,6 +56,8 @@ pub trait Server {
     async fn turn(&mut self) -> io::Result<()>;
     /// Executes a console line and returns the result or the reason for a failure.
     fn console(&mut self, line: &str) -> Result<String, String>;
+    /// Sets the faults of link and device in the form of `--fault`; `None` removes all faults.
+    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String>;
 }
 
 /// Schema of the report of a simulator that listens.
@@ -107,11 +110,26 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
             Some(None) => console = None,
             Some(Some(line)) if line.trim().is_empty() => {}
             Some(Some(line)) if line.trim() == "quit" => return Ok(()),
-            Some(Some(line)) => match server.console(&line) {
+            Some(Some(line)) => match console_line(&mut server, &line) {
                 Ok(text) => run.screen.note(&text),
                 Err(why) => run.screen.failure(&Failure::usage(why).hint("`help` lists the console commands")),
             },
         }
+    }
+}
+
+/// Executes a console line: `fault` is common to all simulators, the other lines are those of the family.
+fn console_line(server: &mut impl Server, line: &str) -> Result<String, String> {
+    let line = line.trim();
+    if line == "help" {
+        let fault = help_line("fault FAULTS|off", "set or remove faults, as with --fault: fault delay=50ms");
+        return Ok(format!("{}\n{fault}", server.console(line)?));
+    }
+    let (word, faults) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    match (word, faults.trim()) {
+        ("fault", "off") => server.set_faults(None).map(|()| "no faults".to_owned()),
+        ("fault", faults) => server.set_faults(Some(faults)).map(|()| format!("faults: {faults}")),
+        _ => server.console(line),
     }
 }
 

@@ -118,8 +118,7 @@ pub enum Place {
     Serial(Serial),
     /// `tcp://HOST:PORT[?baud=9600]`.
     Tcp(Tcp),
-    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…&mischief=…]`: the built-in simulator of the family, in this
-    /// process.
+    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…]`: the built-in simulator of the family, in this process.
     Sim(Sim),
     /// A URL of one of the [`BUSES`].
     Bus(Bus),
@@ -185,10 +184,8 @@ pub struct Sim {
     pub baud: Option<u32>,
     /// File with the start state.
     pub state: Option<PathBuf>,
-    /// Faults of the line, in the form of `armctl sim --fault`.
+    /// Faults of link and device, in the form of `armctl sim --fault`.
     pub fault: Option<String>,
-    /// Faults of a yrcx controller, in the form of `armctl sim yrcx --mischief`.
-    pub mischief: Option<String>,
     /// Fieldbus of a yrcx controller, of [`bus::simulators`]. Without it, a network is only simulated if it has faults.
     pub bus: Option<&'static str>,
 }
@@ -385,7 +382,6 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
         baud: baud(query)?,
         state: query.take("state").map(PathBuf::from),
         fault: query.take("fault"),
-        mischief: query.take("mischief"),
         bus: query.take("bus").map(|name| bus(&name)).transpose()?,
     })
 }
@@ -407,7 +403,6 @@ impl Sim {
             ("move_words", self.traits.move_words.is_some(), Family::Yerc),
             ("axes", self.axes.is_some(), Family::Toyo),
             ("baud", self.baud.is_some(), Family::Toyo),
-            ("mischief", self.mischief.is_some(), Family::Yrcx),
             ("bus", self.bus.is_some(), Family::Yrcx),
         ];
         match given.iter().find(|(_, is_given, owner)| *is_given && *owner != family) {
@@ -538,8 +533,8 @@ mod tests {
         for (url, family, why) in [
             ("sim:?axes=2&baud=9600&state=a.toml&fault=echo", Family::Toyo, None),
             ("sim:?model=fs100&move_words=25&state=a.toml", Family::Yerc, None),
-            ("sim:?state=a.toml&fault=drop=5%25&mischief=stall", Family::Yrcx, None),
-            ("sim:?mischief=stall", Family::Toyo, Some("'mischief' in a sim: URL is for yrcx, not for toyo")),
+            ("sim:?state=a.toml&bus=eip&fault=drop=5%25,stall", Family::Yrcx, None),
+            ("sim:?bus=eip", Family::Toyo, Some("'bus' in a sim: URL is for yrcx, not for toyo")),
             ("sim:?bus=eip", Family::Yrcx, None),
             ("sim:?bus=eip", Family::Toyo, Some("'bus' in a sim: URL is for yrcx, not for toyo")),
             ("sim:?axes=2", Family::Yerc, Some("'axes' in a sim: URL is for toyo, not for yerc")),

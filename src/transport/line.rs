@@ -112,6 +112,12 @@ impl Wire {
         Self { there: Way::new(pace, there), back: Way::new(pace, back), has_echo, time: Duration::ZERO }
     }
 
+    /// Changes the faults. Bytes in transit keep theirs.
+    pub fn set_faults(&mut self, faults: Option<LineFaultSpec>) {
+        self.has_echo = faults.as_ref().is_some_and(|spec| spec.echo);
+        (self.there.faults, self.back.faults) = faults.map(LineFaults::pair).unzip();
+    }
+
     /// Sends bytes of the host at `now`.
     pub fn send(&mut self, now: Duration, bytes: &[u8]) {
         self.there.put(now, bytes);

@@ -61,6 +61,11 @@ impl Server {
         self.start.elapsed()
     }
 
+    /// Changes the faults: to the service, from the service. Datagrams in transit keep theirs.
+    pub fn set_faults(&mut self, faults: Option<(Faults, Faults)>) {
+        self.faults = faults;
+    }
+
     /// Waits for one event and handles it. Call it in a loop.
     pub async fn turn(&mut self, service: &mut impl Service) -> io::Result<()> {
         let mut buffers = [[0; BUFFER]; 2];

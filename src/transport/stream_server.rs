@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::oneshot;
+use tokio::sync::mpsc::UnboundedReceiver;
 use tokio::time::Instant;
 
 use super::fault::LineFaultSpec;
@@ -70,12 +70,20 @@ impl StreamServer {
         self.start.elapsed()
     }
 
-    /// Serves until `quits` fires, or until the line fails.
-    pub async fn run(&mut self, peer: &mut impl Peer, mut quits: oneshot::Receiver<()>) {
+    /// Changes the faults of the line.
+    pub fn set_faults(&mut self, faults: Option<LineFaultSpec>) {
+        self.wire.set_faults(faults);
+    }
+
+    /// Serves until the sender of `faults` is dropped, or until the line fails. What it sends are new faults.
+    pub async fn run(&mut self, peer: &mut impl Peer, mut faults: UnboundedReceiver<Option<LineFaultSpec>>) {
         loop {
             tokio::select! {
                 turned = self.turn(peer) => if turned.is_err() { return },
-                _ = &mut quits => return,
+                changed = faults.recv() => match changed {
+                    Some(faults) => self.set_faults(faults),
+                    None => return,
+                },
             }
         }
     }

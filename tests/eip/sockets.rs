@@ -76,9 +76,9 @@ async fn what_a_device_shows_can_be_read_beside_its_owner() {
     owner.set_run(1, true).unwrap();
     shows(&mut reader, &|reading| reading.as_deref().is_ok_and(|image| image == [0xA5; 48])).await;
     // A device that goes silent is told, and so is that it is back.
-    server.with(|adapter, _| adapter.misbehave(Some(AdapterFault::Mute)));
+    server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Mute)));
     shows(&mut reader, &|reading| matches!(reading, Err(EipError::NoAnswer { .. }))).await;
-    server.with(|adapter, _| adapter.misbehave(None));
+    server.with(|adapter, _| adapter.set_fault(None));
     shows(&mut reader, &Result::is_ok).await;
     reader.close().await;
     assert_eq!(server.with(|adapter, _| adapter.peers().count()), 1, "the owner and nobody else");
@@ -170,11 +170,11 @@ async fn a_lost_link_is_opened_again() {
     let mut connection = scanner.open(server.address(), settings, Tap::default()).await.unwrap();
     connection.set_image(1, &[7; 48]).unwrap();
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
-    server.with(|adapter, _| adapter.misbehave(Some(AdapterFault::Stall)));
+    server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Stall)));
     let view = connection.until(|view| view.state == State::Lost).await;
     assert_eq!(view.trouble, Some(EipError::Silent { after: 640 * MS }));
     assert_eq!(connection.set_image(1, &[8; 48]), Err(EipError::Outdated));
-    server.with(|adapter, _| adapter.misbehave(None));
+    server.with(|adapter, _| adapter.set_fault(None));
     connection.until(|view| view.generation == 2 && view.state == State::Open).await;
     let rest: Vec<u8> = resting().iter().map(|byte| !byte).collect();
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *rest)).await;
@@ -197,9 +197,9 @@ async fn a_reset_is_told_and_the_next_request_goes_by_a_new_connection() {
     let mut client = Client::new(server.address(), Duration::from_secs(3), Tap::default());
     let message = Message::get(1, 1, 1);
     assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
-    server.with(|adapter, _| adapter.misbehave(Some(AdapterFault::Reset)));
+    server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Reset)));
     assert_eq!(client.ask("the vendor", &message).await, Err(EipError::Hangup { what: "the vendor" }));
-    server.with(|adapter, _| adapter.misbehave(None));
+    server.with(|adapter, _| adapter.set_fault(None));
     assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
     client.close().await;
 }

@@ -144,9 +144,9 @@ fn a_lost_device_is_found_again_and_begins_at_rest() {
 fn every_opening_has_a_number_of_its_own() {
     let mut world = World::open(setup(), settings(), "");
     for generation in 2..6 {
-        world.adapter.misbehave(Some(AdapterFault::Stall));
+        world.adapter.set_fault(Some(AdapterFault::Stall));
         world.until(400 * MS, |world| world.view().state == State::Lost);
-        world.adapter.misbehave(None);
+        world.adapter.set_fault(None);
         world.until(20_000 * MS, |world| world.view().generation == generation);
         // A stream that was heard makes the next wait short again.
         world.run(100 * MS);
@@ -186,7 +186,7 @@ fn images_go_on_without_tcp() {
 #[test]
 fn the_first_image_may_take_ten_seconds() {
     let mut world = World::new(setup(), settings(), "");
-    world.adapter.misbehave(Some(AdapterFault::Stall));
+    world.adapter.set_fault(Some(AdapterFault::Stall));
     world.until(100 * MS, |world| world.view().state == State::Open);
     world.run(9_900 * MS);
     assert_eq!((world.view().state, world.view().input), (State::Open, None));
@@ -217,7 +217,7 @@ fn the_adapter_waits_ten_seconds_for_the_first_image_and_the_time_out_for_the_ne
 fn what_an_adapter_can_do_wrong_is_noticed() {
     // What it does, and whether the connection is lost by it.
     let cases = [
-        (AdapterFault::Drop, false),
+        (AdapterFault::HalfRate, false),
         (AdapterFault::Double, false),
         (AdapterFault::Stall, true),
         (AdapterFault::Stale, true),
@@ -228,19 +228,15 @@ fn what_an_adapter_can_do_wrong_is_noticed() {
         (AdapterFault::Mute, false),
         (AdapterFault::Garbage, false),
     ];
-    for (mischief, loses) in cases {
+    for (fault, loses) in cases {
         let mut world = World::open(setup(), settings(), "");
         world.run(100 * MS);
-        world.adapter.misbehave(Some(mischief));
+        world.adapter.set_fault(Some(fault));
         world.run(1000 * MS);
         let statistics = world.view().statistics;
-        assert_eq!(
-            world.view().generation > 1 || world.view().state == State::Lost,
-            loses,
-            "{mischief:?} {statistics:?}"
-        );
-        match mischief {
-            AdapterFault::Drop => assert!(statistics.lost > 20 && statistics.late > 20),
+        assert_eq!(world.view().generation > 1 || world.view().state == State::Lost, loses, "{fault:?} {statistics:?}");
+        match fault {
+            AdapterFault::HalfRate => assert!(statistics.lost > 20 && statistics.late > 20),
             AdapterFault::Double | AdapterFault::Stale => assert!(statistics.stale >= 15),
             AdapterFault::WrongSize => assert!(statistics.misfit >= 15),
             _ => {}
@@ -256,13 +252,13 @@ fn an_adapter_that_answers_nothing_ends_the_opening() {
         (AdapterFault::Reset, |trouble| matches!(trouble, EipError::Hangup { what: "ForwardOpen" })),
         (AdapterFault::Garbage, |trouble| matches!(trouble, EipError::Malformed { what: "ForwardOpen", .. })),
     ];
-    for (mischief, is_it) in cases {
+    for (fault, is_it) in cases {
         let mut world = World::new(setup(), settings(), "");
-        world.adapter.misbehave(Some(mischief));
+        world.adapter.set_fault(Some(fault));
         world.until(20_000 * MS, |world| world.originator.is_finished());
         let view = world.view();
         assert_eq!((view.state, view.generation), (State::Closed, 0));
-        assert!(is_it(view.trouble.as_ref().unwrap()), "{mischief:?}: {:?}", view.trouble);
+        assert!(is_it(view.trouble.as_ref().unwrap()), "{fault:?}: {:?}", view.trouble);
     }
 }
 

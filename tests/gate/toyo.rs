@@ -30,7 +30,7 @@ fn what_somebody_wrote_is_asked_before_it_is_replaced() {
         ("program delete 1", "delete a step of task 1 (step 1: TAG TAG=005)"),
         ("param set P01 ax2=150", "overwrite a parameter (P01 (soft-limit-plus): ax2="),
         ("init points", "clear the coordinate table"),
-        ("card write", "overwrite what is on the memory card"),
+        ("card write", "overwrite the content of the memory card"),
         ("raw @DSTX=0001", "send @DSTX=0001"),
     ] {
         desk.fails(&format!("-r cell toyo {line}"), 7, part);

@@ -166,7 +166,7 @@ impl Report for BackedUp {
     }
 
     fn failure(&self) -> Option<Failure> {
-        Some(with_hint(self.files.failure()?, "read the missing parts with --resume"))
+        Some(with_hint(self.files.failure()?, "use --resume to read the missing parts"))
     }
 
     fn rows(&self) -> RowsOf {
@@ -234,7 +234,7 @@ mod tests {
         part.fail(Failure::new(Kind::NoAnswer, "silence").hint("cable"));
         let hint = |report: &dyn Fn(Vec<FileItem>) -> Option<Failure>| report(vec![part.clone()]).unwrap().hint;
         let backed_up = |files| BackedUp::new("here".as_ref(), Vec::new(), false, files).failure();
-        assert_eq!(hint(&backed_up).as_deref(), Some("cable\nread the missing parts with --resume"));
+        assert_eq!(hint(&backed_up).as_deref(), Some("cable\nuse --resume to read the missing parts"));
         let restored = |files| Restored::new("here".as_ref(), files).failure();
         assert_eq!(hint(&restored).as_deref(), Some(format!("cable\n{AGAIN}").as_str()));
     }

@@ -33,17 +33,17 @@ commands! {
         List(List),
         /// Alarm history, the latest first
         History(History),
-        /// Print alarms as they come and go
+        /// Print alarms when they occur and end
         Watch(Watch<List>),
         /// Reset the alarm
         #[command(alias = "cancel")]
         Reset(Reset),
-        /// The point at which the alarm occurred
+        /// The point of the alarm
         Point(Point),
     }
 }
 
-/// The error that is present (TO 2-2, 4-1).
+/// Show the present alarm (TO 2-2, 4-1).
 #[derive(Debug, Args)]
 pub struct List {}
 
@@ -70,49 +70,49 @@ impl Watchable for List {
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
-/// The code of the error that is present. One that has none is code 00.
+/// Code of the present error; code 00 if the controller does not report the code.
 async fn present(link: &mut Link) -> Result<Option<u8>, Failure> {
     let status = link.status_of(&[0, 1]).await?;
     Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
 }
 
-/// The error that is present, as one of a list.
+/// The present alarms as a list.
 pub(super) async fn now(link: &mut Link) -> Result<Vec<Told>, Failure> {
     Ok(present(link).await?.map(told).into_iter().collect())
 }
 
-/// What the controller tells of an error besides.
+/// Additional keys of a toyo alarm.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Axis {
-    /// The axis it is about.
+    /// Axis of the alarm.
     #[serde(rename = "axis_number")]
     axis: Option<u8>,
-    /// In the history: power went off here, and there is no error and no time.
+    /// History: power-off without alarm and time.
     power_off: bool,
-    /// In the history: the alarm as it came; normally 00.
+    /// History: the alarm field as received; normally 00.
     alarm: Option<String>,
 }
 
 impl Besides for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
-        // The text names it.
+        // The text already names the cause.
         Vec::new()
     }
 }
 
-/// An error with what may be behind it.
+/// Entry for an alarm, with its causes.
 fn entry(code: u8) -> AlarmEntry<Axis> {
     let errors::Explanation { axis, .. } = errors::explain(code);
     AlarmEntry { alarm: told(code), own: Axis { axis, power_off: false, alarm: None } }
 }
 
-/// The same with what `alarms.toml` says of it.
+/// The entry with additions from `alarms.toml`.
 fn explained(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
 }
 
-/// The errors of the past (TO 2-8, EHTR; KCA-20 and KCA-25).
+/// Show the alarm history (TO 2-8, EHTR; KCA-20 and KCA-25).
 #[derive(Debug, Args)]
 pub struct History {
     /// At most N entries
@@ -132,7 +132,7 @@ impl Command for History {
             for number in 1..=self.limit {
                 match number {
                     1 => link.plan(&question(number), "the latest"),
-                    _ => link.plan_if(&question(number), "whether there is one before"),
+                    _ => link.plan_if(&question(number), "whether there is an earlier entry"),
                 }
             }
             return Err(unknown());
@@ -143,7 +143,8 @@ impl Command for History {
             progress.say(&format!("error history {number} of {} at most", self.limit));
             let record = match link.try_ask(&question(number)).await? {
                 Ok(record) => record,
-                // A controller without history refuses the first entry; one with a short history, one beyond its end.
+                // A controller without history refuses the first entry; a controller with a short history refuses an
+                // entry beyond its end.
                 Err(_) if number > 1 => break,
                 Err(_) => link.ask(&question(number)).await?,
             };
@@ -154,7 +155,7 @@ impl Command for History {
     }
 }
 
-/// An entry of the history as it came; `None` if it is empty.
+/// Entry of the history; `None` if it is empty.
 fn past(record: &Record) -> Option<AlarmEntry<Axis>> {
     if record.byte("error") == Some(errors::NONE) {
         return None;
@@ -173,7 +174,7 @@ fn past(record: &Record) -> Option<AlarmEntry<Axis>> {
     })
 }
 
-/// Cancels the error, and looks whether it is gone (TO 2-7).
+/// Reset the alarm, and check whether it has ended (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Reset {}
 
@@ -188,22 +189,22 @@ impl Command for Reset {
         let code = |status: &Status| (status.error != errors::NONE).then(|| format!("{:02X}", status.error));
         let old = Old::read(link.status_before(1).await?.as_ref().and_then(code));
         link.ask(&Request::bare(table::Command::Cerr)).await?;
-        let is_gone = becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await?;
+        let is_gone = becomes(link, (0, "whether the alarm has ended"), |status| !status.has_error()).await?;
         let left = if is_gone { None } else { present(link).await?.map(told) };
         let words = left
             .as_ref()
-            .map_or_else(|| "no error any more".to_owned(), |left| format!("still there: {}", left.line()));
+            .map_or_else(|| "the alarm has ended".to_owned(), |left| format!("still there: {}", left.line()));
         let new = New::of("fault_code", left.as_ref().and_then(|left| left.code.clone()), words);
         Ok(Cancelled { done: new.replaces(old), alarms: left.into_iter().collect() })
     }
 }
 
-/// What is left after an error was cancelled.
+/// Alarms after a reset.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Cancelled {
     #[serde(flatten)]
     done: Done,
-    /// The error that is still present; none where all is well.
+    /// Alarms that are still present.
     alarms: Vec<Told>,
 }
 
@@ -222,13 +223,13 @@ impl Report for Cancelled {
 
     fn failure(&self) -> Option<Failure> {
         let left = self.alarms.first()?;
-        let message = format!("the controller accepted it, but error {} is present", left.line());
+        let message = format!("the controller accepted the reset, but error {} is still present", left.line());
         let failure = Failure::new(failure::Kind::ConditionNotMet, message);
         Some(failure.hint(left.remedy.clone().unwrap_or_default()).code(left.code.clone().unwrap_or_default()))
     }
 }
 
-/// The point at which the error came up (TO 2-8, MERP). The manual does not tell the form of the answer.
+/// Show the point of the alarm (TO 2-8, MERP). The manual does not define the form of the answer.
 #[derive(Debug, Args)]
 pub struct Point {}
 
@@ -244,10 +245,10 @@ impl Command for Point {
     }
 }
 
-/// The point at which the error came up.
+/// Point of the alarm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PointReport {
-    /// As the controller writes it; null if there is none.
+    /// Text of the controller; null if there is none.
     point: Option<String>,
 }
 

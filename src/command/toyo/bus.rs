@@ -13,11 +13,11 @@ use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::output::view::{Cell, View};
 
-/// Asks for settings and errors of CC-Link.
+/// Show settings and errors of CC-Link.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Controllers without CC-Link refuse it. What the error and status bytes mean, the manual of the \
-                        bus tells, not that of the host communication."
+    after_help = "Controllers without CC-Link refuse the command. The manual of the bus describes the error and \
+                        status bytes."
 )]
 pub struct Bus {}
 
@@ -47,12 +47,12 @@ impl Command for Bus {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CcLink {
     station: u8,
-    /// Bits a second: `156K`, `625K`, `2.5M`, `5M` or `10M`.
+    /// Bits per second: `156K`, `625K`, `2.5M`, `5M` or `10M`.
     rate: &'static str,
     hardware_version: u8,
-    /// The three error bytes, hexadecimal.
+    /// Three error bytes, hexadecimal.
     errors: [String; 3],
-    /// The two bytes of the main status, hexadecimal.
+    /// Two bytes of the main status, hexadecimal.
     main_status: [String; 2],
 }
 

@@ -25,14 +25,14 @@ commands! {
     }
 }
 
-/// Reads everything from the memory card, and waits until it is done (TO 2-3).
+/// Read everything from the memory card, and wait for the end (TO 2-3).
 #[derive(Debug, Args)]
 pub struct Read {
     #[command(flatten)]
     end: MotionEnd,
 }
 
-/// Writes everything to the memory card, over what is on it, and waits until it is done (TO 2-3).
+/// Write everything to the memory card, replace its content, and wait for the end (TO 2-3).
 #[derive(Debug, Args)]
 pub struct Write {
     #[command(flatten)]
@@ -45,13 +45,13 @@ impl Command for Read {
     const ID: &'static str = "toyo.card.read";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str =
-        "replace programs, tables and parameters of the controller by those on the memory card";
+        "replace programs, tables and parameters of the controller with the content of the memory card";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
         let work = Accepted {
             work: Work::Card,
             order: table::Command::Rmca,
-            done: "reading the card was accepted",
+            done: "the controller accepted the card read",
             doing: "reading the card",
         };
         transfer(context, work, self.end.no_wait()).await
@@ -63,13 +63,13 @@ impl Command for Write {
     type Report = Transferred;
     const ID: &'static str = "toyo.card.write";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite what is on the memory card";
+    const INTENT: &'static str = "overwrite the content of the memory card";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
         let work = Accepted {
             work: Work::Card,
             order: table::Command::Wmca,
-            done: "writing the card was accepted",
+            done: "the controller accepted the card write",
             doing: "writing the card",
         };
         transfer(context, work, self.end.no_wait()).await
@@ -93,11 +93,11 @@ async fn transfer(context: Context<'_, Toyo>, work: Accepted, no_wait: bool) -> 
 /// Result of a transfer.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Transferred {
-    /// The controller took the order.
+    /// Whether the controller accepted the command.
     accepted: bool,
-    /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
+    /// Time from acceptance to end; null without a wait, or if the transfer ended before the first read.
     elapsed_ms: Option<u64>,
-    /// Parameter 2 was changed: nothing is executed until the power was off; null if nobody waited.
+    /// Whether parameter 2 changed, so that the controller executes nothing before a restart; null without a wait.
     needs_power_cycle: Option<bool>,
 }
 
@@ -160,7 +160,7 @@ mod tests {
         let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["card", "read"]).unwrap_err();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("E0")));
         assert!(
-            failure.message.starts_with("reading the card was accepted, but an error came up (E0"),
+            failure.message.starts_with("the controller accepted the card read, but an error came up (E0"),
             "{}",
             failure.message
         );

@@ -1,4 +1,4 @@
-//! The layers of a controller for `armctl robots check`.
+//! Layers of a controller for `armctl robots check`.
 
 use super::info;
 use super::link::Link;
@@ -16,7 +16,7 @@ use crate::settings::Robot;
 const LAYERS: &[&str] =
     &["line", "answer", "version", "teach pendant", "mode", "slaves", "power cycle", "error", "servo", "origin"];
 
-/// Looks at them; reads only.
+/// Checks the layers with read requests.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
     match Toyo::connect(robot, access, screen).await {
@@ -35,16 +35,16 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         Ok(status) => status,
         Err(failure) => return layers.fail("answer", &failure),
     };
-    layers.ok("answer", "it answers all pages of the status");
+    layers.ok("answer", "all pages of the status were received");
     match info::version(link).await {
         Ok(version) => layers.ok("version", version),
-        Err(failure) => layers.warn("version", failure.message, "`toyo info` tells more"),
+        Err(failure) => layers.warn("version", failure.message, "`toyo info` shows details"),
     }
     layers.judge(
         "teach pendant",
         !status.pendant_on(),
         ("off", "on"),
-        "nothing is taken that needs the host: switch the teach pendant OFF",
+        "switch the teach pendant OFF to allow commands of the host",
     );
     let mode = status.run_mode().map_or("unknown", RunMode::name);
     layers.ok("mode", mode);
@@ -56,7 +56,7 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     if status.needs_power_cycle() {
         layers.wrong(
             "power cycle",
-            "parameter 2 was changed, and nothing is executed any more",
+            "parameter 2 was changed, and the controller executes nothing before a restart",
             "switch the controller's power off and on",
         );
     } else {
@@ -69,10 +69,9 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         layers.ok("error", "none");
     }
     layers.left_over(&left_over(status));
-    // Power that nobody uses may be what somebody left; it is nothing wrong.
+    // Servo power without use is only a remark, not a failure.
     let is_idle = !status.executing() && !status.homing() && !is_held(robot);
-    let on =
-        if is_idle { "on; nothing runs, and no session holds it: `toyo servo off` takes power away" } else { "on" };
-    layers.judge("servo", status.servo_on(), (on, "off"), "motion wants servo power: `toyo servo on`");
-    layers.judge("origin", status.homed(), ("done", "not done"), "motion wants the origin: `toyo home`");
+    let on = if is_idle { "on; no program runs and no session is open: `toyo servo off`" } else { "on" };
+    layers.judge("servo", status.servo_on(), (on, "off"), "motion needs servo power: `toyo servo on`");
+    layers.judge("origin", status.homed(), ("done", "not done"), "motion needs the origin: `toyo home`");
 }

@@ -1,7 +1,7 @@
-//! What somebody at this computer chose to stay as it is: the host ON, the current task.
+//! Settings that the user chose to keep: the host ON, the current task.
 //!
-//! A controller does not tell who switched its host ON. Whatever is so and was not chosen here, somebody else has left, or is
-//! at work now.
+//! A controller does not report which client switched its host ON. A setting that was not chosen on this computer comes
+//! from another client.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,44 +11,44 @@ use serde::{Deserialize, Serialize};
 use crate::command::frame::local::state_folder;
 use crate::files;
 
-/// What was chosen for one robot.
+/// Choices for one robot.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Choice {
-    /// `toyo host on`, until it is OFF.
+    /// Set by `toyo host on`, until the host is OFF.
     pub host: bool,
-    /// `toyo task set`, until another is found.
+    /// Set by `toyo task set`, until the controller has another current task.
     pub task: Option<u8>,
 }
 
-/// The choices for one robot, among those for all.
+/// Choices of this user. One file has the choices for all robots.
 #[derive(Debug, Default)]
 pub struct Chosen {
-    /// Where they are, for a robot whose state outlives this process.
+    /// Path of the file; `None` for a simulator in this process.
     path: Option<PathBuf>,
     robot: String,
 }
 
-/// What is larger is none that was written here.
+/// Size limit of the file.
 const MOST: u64 = 1 << 20;
 
 impl Chosen {
-    /// For a robot.
+    /// Choices for a robot.
     pub fn of(robot: &str) -> Self {
         Self { path: state_folder().map(|folder| folder.join("toyo-chosen.json")), robot: robot.to_owned() }
     }
 
-    /// For a robot that lasts as long as its link: nobody else has left anything.
+    /// Choices without a file, for a simulator in this process.
     pub fn without_notes() -> Self {
         Self::default()
     }
 
-    /// What was chosen; `None` where that cannot be known.
+    /// The choices for this robot; `None` without a file.
     pub fn get(&self) -> Option<Choice> {
         self.path.is_some().then(|| self.all().get(&self.robot).copied().unwrap_or_default())
     }
 
-    /// Something else is chosen, or nothing any more. What could not be written is a word too many the next time.
+    /// Changes the choices. If the file cannot be written, the only effect is a needless notice later.
     pub fn change(&self, change: impl FnOnce(&mut Choice)) {
         let Some(path) = &self.path else { return };
         let mut all = self.all();

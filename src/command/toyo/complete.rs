@@ -1,4 +1,4 @@
-//! Candidates for arguments.
+//! Completion candidates for arguments.
 
 use crate::command::frame::kind::Named;
 use crate::command::{Candidate, ValueKind};

@@ -1,5 +1,4 @@
-//! The ways to a controller that a robot's target names: a serial port, a device server, the simulator, a session that
-//! holds one of them.
+//! Connection to the controller of a target: serial port, device server, simulator, or a session.
 
 use std::sync::{Arc, Mutex};
 
@@ -21,7 +20,7 @@ use crate::transport::session::host::held;
 use crate::transport::session::place::Claim;
 use crate::transport::stream::Stream;
 
-/// What a robot's target names.
+/// Endpoint of a target.
 fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
     match &robot.target.value.place {
         Place::Serial(target::Serial { path, baud, data_bits, parity, stop_bits }) => {
@@ -44,18 +43,18 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
             Ok(Endpoint::Simulator { start: Box::new(start), baud: sim.baud, faults })
         }
         Place::Udp(_) | Place::Bus(_) => {
-            Err(Failure::usage(format!("toyo is not reached over {}:", robot.target.value.scheme()))
+            Err(Failure::usage(format!("a toyo controller cannot be reached over {}:", robot.target.value.scheme()))
                 .hint("use serial://, tcp:// or sim:"))
         }
     }
 }
 
-/// How a robot's client asks.
+/// Client options for a robot.
 pub fn options(robot: &Robot, access: &Access) -> Options {
     Options { granted: access.granted.clone(), timeout: robot.timeout.value, retries: robot.retries.value }
 }
 
-/// Connects in the way that a robot's target names.
+/// Connects to the target of a robot.
 pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
     let options = options(robot, access);
     if access.dry_run {
@@ -74,18 +73,18 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
     Ok(client)
 }
 
-/// The way of one client, which may have to go it again.
+/// Connector of one client, which can open the line again after a loss.
 struct Way {
     endpoint: Endpoint,
     robot: Robot,
     access: Access,
     screen: Screen,
-    /// What keeps others on this machine from opening the line, as long as this client has it.
+    /// Prevents other processes on this computer from opening the line.
     claim: Mutex<Option<Claim>>,
 }
 
 impl Way {
-    /// Opens the line, or joins the session that holds it.
+    /// Opens the line, or joins the session that has it open.
     async fn open(&self) -> Result<Line, Failure> {
         let Self { endpoint, robot, access, screen, claim } = self;
         if locked(claim).is_none() {
@@ -98,14 +97,14 @@ impl Way {
     }
 }
 
-/// Opens it for a session to hold, which opens it again when it is gone. The controller is asked something first: a line
-/// says nothing by itself.
+/// Opens a line for a session, which opens it again after a loss. A first request checks the controller, because an
+/// open line proves nothing.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<held::Line, Failure> {
     let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;
-    // Over the same connection: a device server may take another one only after a while.
-    let open = link.into_line().ok_or_else(|| Failure::local("a dry run holds no line"))?;
+    // The session uses the same connection, because a device server can need time before it accepts another one.
+    let open = link.into_line().ok_or_else(|| Failure::local("internal error: a dry run has no line"))?;
     let (endpoint, timeout, label) = (endpoint(&robot)?, robot.timeout.value, robot.label());
     Ok(held::Line::new(open, move || {
         let (endpoint, label) = (endpoint.clone(), label.clone());

@@ -24,28 +24,27 @@ commands! {
     }
 }
 
-/// Supplies coordinates to a task: the RSMV that waits for them, or comes next, moves there (TO 2-8, MRSS).
+/// Send coordinates to a task. Its waiting or next RSMV step moves to them (TO 2-8, MRSS).
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Set {
-    /// X, Y, Z and R in mm, -8000.00 to 8000.00; or each by its name, such as z=12.5: the letter of the teach pendant, or
-    /// ax1 to ax4. 0 for an axis that is not there
+    /// X, Y, Z and R in mm, -8000.00 to 8000.00, or by name, such as z=12.5 or ax1=12.5; 0 for a missing axis
     #[arg(required = true, num_args = 4, value_names = ["X", "Y", "Z", "R"], value_parser = coordinate)]
     values: Vec<String>,
-    /// Which task
+    /// Task of the program
     #[arg(long, value_name = "N", default_value = "1", value_parser = |text: &str| read("task", text))]
     task: Value,
-    /// Row of the speed table, 1 to 10; 0 for the speed that the step names
+    /// Row of the speed table, 1 to 10; 0 for the speed of the step
     #[arg(long = "speed-row", value_name = "ROW", default_value = "0", value_parser = |text: &str| read("speed", text))]
     speed: Value,
 }
 
-/// A value of a field of MRSS, in its range.
+/// Parses a field of MRSS within its range.
 fn read(name: &str, text: &str) -> Result<Value, String> {
     field(name).read(text).map_err(|error| error.to_string())
 }
 
-/// A coordinate with or without its name, in its range.
+/// Parses a coordinate with or without its name.
 fn coordinate(text: &str) -> Result<String, String> {
     read("x", assignment(text).map_or(text, |(_, value)| value)).map(|_| text.to_owned())
 }
@@ -56,7 +55,7 @@ fn field(name: &str) -> &'static Field {
 }
 
 impl Set {
-    /// At which speed, in words.
+    /// Text for the speed.
     fn pace(&self) -> String {
         match self.speed {
             Value::Number(0) => "the speed of its step".to_owned(),
@@ -64,9 +63,13 @@ impl Set {
         }
     }
 
-    /// Completes "This will …".
+    /// Text after "This will …".
     fn in_words(&self, place: &str) -> String {
-        format!("have the next RSMV of task {} move to {place} at {}", field("task").meaning(&self.task), self.pace())
+        format!(
+            "move to {place} with the next RSMV step of task {} at {}",
+            field("task").meaning(&self.task),
+            self.pace()
+        )
     }
 }
 
@@ -91,7 +94,8 @@ impl Command for Set {
         let letters = link.letters().await?;
         let changes = Changes::read_by("coordinates", &points::table().body(), &letters, values)?;
         let place = changes.whole().ok_or_else(|| {
-            Failure::usage("coordinates: each axis needs its value").hint("`toyo coordinate set -h` has examples")
+            Failure::usage("coordinates: a value is missing; each axis needs one")
+                .hint("`toyo coordinate set -h` has examples")
         })?;
         let values = std::iter::once(task.clone()).chain(place).chain([speed.clone()]).collect();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;

@@ -1,4 +1,4 @@
-//! Copies of programs from one place to another, which the controller makes itself.
+//! Program copies that the controller makes itself.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -21,34 +21,33 @@ use crate::gate::Change;
 use crate::output::Screen;
 use crate::output::view::View;
 
-/// A copy: what makes it, and what reads its two places.
+/// A program copy, with the requests that read source and target.
 #[derive(Debug)]
 pub struct Copy {
-    /// `easy program`.
+    /// Type of program: `easy program`.
     pub what: &'static str,
-    /// From there.
+    /// Number of the source.
     pub from: i32,
-    /// To there.
+    /// Number of the target.
     pub to: i32,
-    /// Makes it.
+    /// Copy command.
     pub order: Request,
-    /// Read what is copied, and what is there.
+    /// Read requests of source and target.
     pub reads: [Vec<Request>; 2],
 }
 
 impl Copy {
-    /// Copies, unless both places are the same already, once it is confirmed that something is replaced. What is there
-    /// afterwards is read back.
+    /// Copies if source and target differ, after confirmation. The target is read back.
     pub async fn make(self, link: &mut Link, screen: &Screen, authority: &Authority<'_>) -> Result<Copied, Failure> {
         let Self { what, from, to, order, reads: [source, target] } = self;
         if from == to {
             return Err(
-                Failure::usage(format!("{what} {from} cannot be copied to itself")).hint("name two different ones")
+                Failure::usage(format!("{what} {from} cannot be copied to itself")).hint("type two different numbers")
             );
         }
         let letters = link.letters().await?;
         if link.is_dry() {
-            for (reads, about) in [(&source, "what is copied"), (&target, "what it replaces")] {
+            for (reads, about) in [(&source, "the source of the copy"), (&target, "the target of the copy")] {
                 for read in reads {
                     link.plan(read, about);
                 }
@@ -59,8 +58,8 @@ impl Copy {
             }
             return Err(unknown());
         }
-        let wanted = ask_all(link, screen, "reading what is copied", &source).await?;
-        let found = ask_all(link, screen, "reading what it replaces", &target).await?;
+        let wanted = ask_all(link, screen, "reading the source", &source).await?;
+        let found = ask_all(link, screen, "reading the target", &target).await?;
         let differing = differences(&wanted, &found);
         let all = u32::try_from(wanted.len()).unwrap_or(u32::MAX);
         if differing == 0 {
@@ -68,7 +67,7 @@ impl Copy {
         }
         authority.confirm(&replacing(what, (from, to), letters, &target, (&wanted, &found))).await?;
         link.ask(&order).await?;
-        let found = ask_all(link, screen, "reading it back", &target).await.map_err(|failure| {
+        let found = ask_all(link, screen, "reading the target again", &target).await.map_err(|failure| {
             let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
             Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command()))
         })?;
@@ -77,16 +76,16 @@ impl Copy {
                 Kind::Malformed,
                 format!("the controller accepted {} and holds something else", order.text()),
             )
-            .hint("the EEPROM may be worn out, or somebody else writes it at the same time"));
+            .hint("check for a second client that writes the same program, and for a worn EEPROM"));
         }
         Ok(Copied { what, from, to, cells: Cells { cells_written: differing, cells_unchanged: all - differing } })
     }
 }
 
-/// What decides whether it is made.
+/// Condition of the copy.
 const DIFFER: &str = "whether they differ";
 
-/// What a copy replaces, for a person to confirm.
+/// Change to confirm.
 fn replacing(
     what: &str,
     (from, to): (i32, i32),
@@ -119,20 +118,20 @@ fn replacing(
     })
 }
 
-/// What tells a program from the others, and no content of it.
+/// Fields that identify a program and are not content.
 const KEYS: [&str; 2] = ["program", "st"];
 
 fn content(record: &Record) -> Vec<Value> {
     record.pairs().filter(|(field, _)| !KEYS.contains(&field.name)).map(|(_, value)| value.clone()).collect()
 }
 
-/// How many of two rows of records differ by more than their program.
+/// Number of records that differ in content.
 fn differences(one: &[Record], other: &[Record]) -> u32 {
     let differing = one.iter().zip(other).filter(|(one, other)| content(one) != content(other)).count();
     u32::try_from(differing).unwrap_or(u32::MAX)
 }
 
-/// What was copied.
+/// Result of a program copy.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Copied {
     #[serde(skip)]
@@ -146,6 +145,6 @@ pub struct Copied {
 impl Report for Copied {
     fn view(&self) -> View {
         let Self { what, from, to, cells } = self;
-        View::text(format!("{what} {to} is as {what} {from}\n{}", cells.in_words()))
+        View::text(format!("{what} {to} is now equal to {what} {from}\n{}", cells.in_words()))
     }
 }

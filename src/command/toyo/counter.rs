@@ -27,7 +27,7 @@ table_commands! {
 }
 
 commands! {
-    /// What can be done with timers: the protocol only reads them.
+    /// Commands for timers, which the protocol can only read.
     pub enum Timer {
         /// Read timers 1 to 9
         Get(Get<Timers>),
@@ -42,12 +42,12 @@ commands! {
 #[derive(Debug)]
 pub struct Counters;
 
-/// Number and count, as in MCST CN01=0000.
+/// Fields of a counter: number and count, as in MCST CN01=0000.
 fn fields() -> &'static [field::Field] {
     table::Command::Mcst.row().requests[0].fields
 }
 
-/// The number of `CN05`, with or without its letters.
+/// Number of `CN05`, with or without its letters.
 fn bare<'t>(letters: &str, text: &'t str) -> &'t str {
     let has_letters = text.get(..letters.len()).is_some_and(|front| front.eq_ignore_ascii_case(letters));
     if has_letters { &text[letters.len()..] } else { text }
@@ -66,7 +66,7 @@ impl Store for Counters {
         placeholder: "N",
         range: "Counters, 1 to 99: 5, CN05 or 1-10, or a name",
         reading: None,
-        writing: Some("A counter takes 0 to 9999, also while a program runs."),
+        writing: Some("Counters take 0 to 9999, also while a program runs."),
     };
     const IDS: Ids = ids!("toyo.counter");
     const LABELS: Option<Kind> = Some(Kind::Counter);
@@ -122,7 +122,7 @@ fn count(record: &Record) -> Option<i32> {
     record.is_listed().then(|| record.number("count")).flatten()
 }
 
-/// What sets a counter.
+/// Request that sets a counter.
 fn order(counter: i32, count: i32) -> Request {
     Request::of(table::Command::Mcst, [Value::Number(counter), Value::Number(count)])
 }
@@ -137,8 +137,8 @@ impl Writable for Counters {
     }
 
     fn whole(&self, counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
-        let missing = || Failure::usage(format!("{}: a count is needed", Self::name(counter)));
-        let count = draft.ok_or_else(|| missing().hint("give a number from 0 to 9999"))?;
+        let missing = || Failure::usage(format!("{}: the count is missing", Self::name(counter)));
+        let count = draft.ok_or_else(|| missing().hint("type a number from 0 to 9999"))?;
         let record = read(counter).row().answers[0].record(vec![Value::Number(counter), Value::Number(count)]);
         record.map_err(|error| wrong(&error))
     }
@@ -161,8 +161,8 @@ impl Writable for Counters {
             link.ask(&order).await?;
             match count(&read_back(link, &order, &read(*counter)).await?) {
                 Some(found) if found != wanted => {
-                    return Err(not_held(&order, &format!("it stands at {found}"))
-                        .hint("a program that runs may count on it meanwhile"));
+                    return Err(not_held(&order, &format!("the counter is {found}"))
+                        .hint("a running program can change the counter at the same time"));
                 }
                 _ => {}
             }
@@ -175,7 +175,7 @@ impl Writable for Counters {
 #[derive(Debug)]
 pub struct Timers;
 
-/// Number of a timer, as in MTMR TN=1.
+/// Field of the timer number, as in MTMR TN=1.
 fn timer() -> &'static field::Field {
     &table::Command::Mtmr.row().requests[0].fields[0]
 }
@@ -277,7 +277,7 @@ mod tests {
         bench.data(&["counter", "set", "5", "7"]);
         let set = bench.data(&["counter", "set", "5", "8"])["items"][0].clone();
         assert_eq!((&set["old"], &set["new"]), (&7.into(), &8.into()), "{set}");
-        // A controller that does not tell it takes it nevertheless; one that is not there is not written to.
+        // A controller that refuses to report the counter accepts the write. A missing counter is not written.
         let refuses = |block: &str, count| {
             if block == "@MCNT CN=05" && count == 1 { Fault::Answered("@NG") } else { Fault::None }
         };
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn a_stale_ok_is_not_taken_for_that_of_an_order() {
-        // The order before was given up, and its @OK comes when nobody waits for it any more.
+        // The client gave up the previous command, and its @OK arrives later.
         let late = |block: &str, _| match block {
             "@MCST CN05=0007" => Fault::Late(std::time::Duration::from_millis(3010)),
             "@MCST CN06=0001" => Fault::Lost,
@@ -302,7 +302,7 @@ mod tests {
         let (mut bench, heard) = Bench::with_faults("host = true\n", late);
         assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
         heard.borrow_mut().clear();
-        // No `@OK` of its own came: whether it was done is open, not done.
+        // The command received no `@OK`, so its result is unknown.
         assert_eq!(bench.run(&["counter", "set", "6", "1"]).unwrap_err().kind, Kind::OutcomeUnknown);
         assert_eq!(heard.borrow()[..2], ["@MCNT CN=06", "@MCST CN06=0001"], "something harmless is asked first");
     }

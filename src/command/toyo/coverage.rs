@@ -1,11 +1,11 @@
-//! Every one of the 62 commands of the protocol is sent by a named command line (`raw` sends any).
+//! Test that a command line exists for each of the 62 protocol commands, besides `raw`.
 
 use std::collections::BTreeSet;
 
 use super::testing::{Bench, Fault, all_blocks};
 use crate::controller::toyo::table::commands::{ROWS, Row};
 
-/// A command line, and commands that it sends, in the order of its dry run.
+/// A command line and the protocol commands of its dry run, in order.
 #[rustfmt::skip]
 const LINES: &[(&str, &[&str])] = &[
     ("status", &["STAS"]),
@@ -82,7 +82,7 @@ fn every_command_has_a_command_line() {
     assert!(missing.is_empty(), "no command line sends {missing:?}");
 }
 
-/// What the manual does not mark "host ON" is sent while the teach pendant is ON, and the controller decides.
+/// Commands that the manual does not mark "host ON" are sent while the teach pendant is ON, and the controller decides.
 #[test]
 fn the_pendant_keeps_from_being_sent_only_what_needs_the_host() {
     let needs_host = |command: &str| Row::named(command).is_none_or(|row| row.needs_host);
@@ -94,7 +94,7 @@ fn the_pendant_keeps_from_being_sent_only_what_needs_the_host() {
         let sent: BTreeSet<&str> = heard.iter().filter_map(|block| block.get(1..5)).collect();
         for command in *commands {
             let is_sent = sent.contains(command);
-            // What is there already is not written.
+            // Equal values are not written.
             let may_be = if needs_host(command) { !is_sent } else { is_sent || outcome.is_ok() };
             assert!(may_be, "{line}: {command}: {outcome:?}");
         }

@@ -1,7 +1,8 @@
-//! What a command changes for a while, written down before it is done: the host, the current task, the mode, what moves.
+//! Journal of temporary changes, written before each change: the host, the current task, the mode, motion.
 //!
-//! A command puts it all back. One that is killed cannot; so the next one finds the note, looks whether it is still so, and
-//! says how to undo it. A note belongs to a process as long as that holds the lock of its file.
+//! A command restores all changes. A killed process cannot. The next command then finds the journal entry, reads
+//! whether the change is still present, and reports how to undo it. The process that owns an entry holds the lock of
+//! its file.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek as _, Write as _};
@@ -14,57 +15,57 @@ use crate::client::toyo::Moving;
 use crate::command::frame::local::state_folder;
 use crate::files;
 
-/// What is changed and not put back.
+/// Changes that are not restored yet.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Owed {
-    /// The target of the robot.
+    /// Target URL of the robot.
     robot: String,
-    /// Seconds since 1970.
+    /// Time of the first change in seconds since 1970.
     since: u64,
-    /// The host was switched ON, and was OFF before.
+    /// The host was OFF and was switched ON.
     pub host: bool,
-    /// The blocks that put things back, the last change at the end: `@CTSK TASK=01`.
+    /// Blocks that restore settings, in the order of the changes: `@CTSK TASK=01`.
     pub back: Vec<String>,
-    /// What was set in motion: `jog` or `program`.
+    /// Motion that was started: `jog` or `program`.
     pub moving: Option<String>,
 }
 
 impl Owed {
-    /// Whether nothing is left to put back.
+    /// Whether all changes are restored.
     pub fn is_nothing(&self) -> bool {
         !self.host && self.back.is_empty() && self.moving.is_none()
     }
 }
 
-/// The note of one link.
+/// Journal of one link.
 #[derive(Debug, Default)]
 pub struct Debts {
-    /// Where notes are, for a robot whose state outlives this process.
+    /// Folder of the entries; `None` for a simulator in this process.
     folder: Option<PathBuf>,
     owed: Owed,
     file: Option<(File, PathBuf)>,
 }
 
-/// A note that another process has left behind.
+/// Journal entry of a process that has ended.
 #[derive(Debug)]
 pub struct Left {
-    /// What it says.
+    /// Changes that the process did not restore.
     pub owed: Owed,
     path: PathBuf,
 }
 
-/// Notes are small; anything larger is none.
+/// Size limit of an entry.
 const MOST: u64 = 16 * 1024;
-/// A robot that nobody has asked for so long is another one now, and its note goes.
+/// Entries older than this are deleted, because the robot has been used since.
 const OLD: Duration = Duration::from_secs(30 * 24 * 3600);
 
 impl Debts {
-    /// Of a link to a robot.
+    /// Journal of a link to a robot.
     pub fn of(robot: &str) -> Self {
         Self::within(state_folder().map(|folder| folder.join("toyo-changes")), robot)
     }
 
-    /// Of a link that lasts as long as what it changes.
+    /// Journal without files, for a simulator in this process and for dry runs.
     pub fn without_notes() -> Self {
         Self::default()
     }
@@ -73,17 +74,17 @@ impl Debts {
         Self { folder, owed: Owed { robot: robot.to_owned(), ..Owed::default() }, file: None }
     }
 
-    /// The host is switched ON, or OFF again.
+    /// Records that the host is switched ON, or OFF again.
     pub fn host(&mut self, is_taken: bool) {
         self.change(|owed| owed.host = is_taken);
     }
 
-    /// Something is changed that this block puts back.
+    /// Records a change that the block `back` restores.
     pub fn push(&mut self, back: &str) {
         self.change(|owed| owed.back.push(back.to_owned()));
     }
 
-    /// The last that this block puts back was put back, or never changed.
+    /// Removes the last change that the block `back` restores.
     pub fn pop(&mut self, back: &str) {
         self.change(|owed| {
             if let Some(last) = owed.back.iter().rposition(|other| other == back) {
@@ -92,13 +93,13 @@ impl Debts {
         });
     }
 
-    /// Something moves, or nothing more.
+    /// Records the start or the end of a motion.
     pub fn moving(&mut self, moving: Option<Moving>) {
         let word = |moving| if moving == Moving::Jog { "jog" } else { "program" }.to_owned();
         self.change(|owed| owed.moving = moving.map(word));
     }
 
-    /// What could not be written is an aid less, and no reason to leave an order undone.
+    /// A journal that cannot be written must not prevent the command.
     fn change(&mut self, change: impl FnOnce(&mut Owed)) {
         let before = self.owed.clone();
         change(&mut self.owed);
@@ -132,18 +133,18 @@ impl Debts {
         Ok(())
     }
 
-    /// What is changed now.
+    /// Changes of this process.
     pub fn owed(&self) -> &Owed {
         &self.owed
     }
 
-    /// What others have left behind on the same robot.
+    /// Entries of ended processes for the same robot.
     pub fn left(&self) -> Vec<Left> {
         let left = self.notes().filter_map(|path| Some(Left { owed: abandoned(&path)?, path }));
         left.filter(|left| left.owed.robot == self.owed.robot).collect()
     }
 
-    /// Whether other processes that live have changed something on the same robot.
+    /// Whether other running processes have changed settings of the same robot.
     pub fn others_owe(&self) -> bool {
         let own = self.file.as_ref().map(|(_, path)| path);
         let others = self.notes().filter(|path| Some(path) != own);
@@ -154,7 +155,7 @@ impl Debts {
         living.any(|path| owed(&path).is_some_and(|owed| owed.robot == self.owed.robot))
     }
 
-    /// The notes of all.
+    /// Paths of all entries.
     fn notes(&self) -> impl Iterator<Item = PathBuf> {
         let entries = self.folder.as_ref().and_then(|folder| fs::read_dir(folder).ok()).into_iter().flatten().flatten();
         entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|ending| ending == "json"))
@@ -162,19 +163,19 @@ impl Debts {
 }
 
 impl Left {
-    /// All of it was put back, by whomever.
+    /// Deletes the entry, because all changes are restored.
     pub fn settled(&self) {
         fs::remove_file(&self.path).unwrap_or_default();
     }
 
-    /// When it was changed.
+    /// Time of the first change as text.
     pub fn since(&self) -> String {
         let seconds = i64::try_from(self.owed.since).unwrap_or_default();
         jiff::Timestamp::from_second(seconds).map_or_else(|_| "?".to_owned(), |time| time.to_string())
     }
 }
 
-/// The note in a file, unless the process that wrote it lives.
+/// The entry in a file, unless the process that wrote it is still running.
 fn abandoned(path: &Path) -> Option<Owed> {
     let about = fs::symlink_metadata(path).ok().filter(|about| about.is_file() && about.len() <= MOST)?;
     let file = files::open(path).ok()?;
@@ -188,7 +189,7 @@ fn abandoned(path: &Path) -> Option<Owed> {
     owed(path)
 }
 
-/// The note in a file.
+/// The entry in a file.
 fn owed(path: &Path) -> Option<Owed> {
     serde_json::from_slice(&files::read(path, MOST).ok()?).ok()
 }
@@ -210,7 +211,7 @@ fn is_free(file: &File, _: &fs::Metadata) -> bool {
 #[cfg(not(unix))]
 fn lock(_: &File) {}
 
-/// Without locks, what was not touched for longer than any command takes is abandoned.
+/// Without file locks, an entry belongs to an ended process after the longest time that a command can take.
 #[cfg(not(unix))]
 fn is_free(_: &File, about: &fs::Metadata) -> bool {
     let age = about.modified().ok().and_then(|time| time.elapsed().ok());
@@ -231,7 +232,7 @@ mod tests {
         debts.push("@CTSK TASK=01");
         debts.moving(Some(Moving::Jog));
         assert_eq!(left(), 1);
-        // The process that wrote it lives.
+        // The process that wrote it is still running.
         #[cfg(unix)]
         assert!(notes().left().is_empty() && notes().others_owe() && !debts.others_owe());
         debts.moving(None);
@@ -249,7 +250,7 @@ mod tests {
         let mut debts = notes("tcp://cell");
         debts.host(true);
         debts.push("@CTSK TASK=01");
-        // Its lock goes with it, and nothing is put back.
+        // The lock ends with the process, and nothing is restored.
         drop(debts);
         fs::write(folder.path().join("odd.json"), "{").unwrap();
         assert!(notes("tcp://other").left().is_empty() && !notes("tcp://cell").others_owe());

@@ -1,4 +1,4 @@
-//! `armctl decode toyo`: lines of a conversation in words.
+//! `armctl decode toyo`: explanation of protocol lines.
 
 mod capture;
 
@@ -18,21 +18,21 @@ use crate::output::view::{Cell, Section, View};
 /// Lines of the Toyo host communication, either direction
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Who sent a line is told by its form, or by -> or <- in front of it: `armctl decode toyo -` takes what \
-                        `--trace -` writes. An answer is explained by the request before it. A damaged line is \
+    after_help = "The form of a line shows its sender, and so does -> or <- before it: `armctl decode toyo -` reads the output of \
+                        `--trace -`. The request before an answer explains it. A damaged line is \
                         explained up to the damage, and the exit code is 5.\n\nOf a capture file, the lines are \
-                        listed in the words of --trace; NUMBER and TIME are those of Wireshark. Nothing found is no \
-                        failure. A file that is damaged is told up to there, and the exit code is 1."
+                        listed as by --trace; NUMBER and TIME are those of Wireshark. A file without lines is no \
+                        failure. A damaged file is listed up to the damage, and the exit code is 1."
 )]
 pub struct Decode {
-    /// Such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', - for stdin with one a line, or FILE.pcap or FILE.pcapng
+    /// Lines such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', - for stdin, or FILE.pcap or FILE.pcapng
     #[arg(required = true, value_name = "LINE")]
     lines: Vec<String>,
     #[command(flatten)]
     selection: Selection,
 }
 
-/// How traces mark who sent a line, and where their explanation of it begins.
+/// Marks of the sender in a trace, and the beginning of its explanation.
 const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Controller)];
 const REMARK: &str = "  # ";
 
@@ -59,10 +59,10 @@ impl Decode {
     fn lines(&self) -> Result<Vec<String>, Failure> {
         let lines =
             if self.lines == ["-"] { stdin()?.lines().map(str::to_owned).collect() } else { joined(&self.lines) };
-        // A block is never empty, and the bytes in a trace are those of the line above them.
+        // A block is never empty. The bytes in a trace repeat the line above them.
         let lines: Vec<String> = lines.into_iter().filter(|line| is_line(line)).collect();
         if lines.is_empty() {
-            return Err(Failure::usage("there are no lines to explain").hint("give lines such as '@STAS SNO=0'"));
+            return Err(Failure::usage("the input has no lines").hint("type lines such as '@STAS SNO=0'"));
         }
         Ok(lines)
     }
@@ -72,7 +72,7 @@ fn is_line(line: &str) -> bool {
     !line.trim().is_empty() && !line.starts_with("   ")
 }
 
-/// Arguments that a shell took apart at blanks, put together: a line begins with its mark or with `@`.
+/// Joins arguments that a shell split at blanks. A line begins with its mark or with `@`.
 fn joined(arguments: &[String]) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for argument in arguments {
@@ -89,12 +89,12 @@ fn joined(arguments: &[String]) -> Vec<String> {
     lines
 }
 
-/// Each line in words. An answer is explained by the request before it.
+/// Explanation of each line. The request before an answer explains it.
 fn explained(lines: &[String]) -> DecodedLines {
     let mut asked: Option<Request> = None;
     let lines = lines.iter().map(|line| {
         let (marked, text) = unmarked(line);
-        // TYPE is answered in the form of its request.
+        // The answer to TYPE has the form of its request.
         let is_answer = || asked.as_ref().is_some_and(|request| request.answer(text).is_ok());
         let sender = marked.unwrap_or_else(|| if is_answer() { Sender::Controller } else { Sender::guess(text) });
         let description = describe(text, sender, asked.take().as_ref());
@@ -106,7 +106,7 @@ fn explained(lines: &[String]) -> DecodedLines {
     DecodedLines { lines: lines.collect() }
 }
 
-/// A line without what a trace adds to it.
+/// The line without additions of a trace.
 fn unmarked(line: &str) -> (Option<Sender>, &str) {
     let trimmed = line.trim_start();
     let marked =
@@ -117,25 +117,25 @@ fn unmarked(line: &str) -> (Option<Sender>, &str) {
     }
 }
 
-/// Lines in words.
+/// Explained lines.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct DecodedLines {
     lines: Vec<DecodedLine>,
 }
 
-/// A line in words.
+/// An explained line.
 #[derive(Debug, Serialize, JsonSchema)]
 struct DecodedLine {
-    /// The line itself.
+    /// Text of the line.
     text: String,
-    /// What it is.
+    /// Meaning.
     title: String,
-    /// Section of the manual, where the command is known.
+    /// Section of the manual, if the command is known.
     section: Option<String>,
     /// `host` or `controller`.
     sender: &'static str,
     fields: Vec<FieldNote>,
-    /// What is wrong with it.
+    /// Error in the line.
     problem: Option<String>,
 }
 

@@ -1,7 +1,7 @@
-//! What the controller keeps in its EEPROM, which takes about a million rewrites of each cell (TO 2-1, note 2).
+//! Cells of the EEPROM, each for about a million writes (TO 2-1, note 2).
 //!
-//! So nothing is written that is there already. What is written is read back: a worn cell says `@OK` and keeps what it
-//! had (ambiguity R29).
+//! Equal values are therefore not written. Each write is read back, because a worn cell answers `@OK` and keeps its old
+//! value (ambiguity R29).
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,38 +15,38 @@ use crate::controller::toyo::table::{Command, Op};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// One thing that is stored: how it is read and written, and what it should be.
+/// A stored value: its read request, its write request, and the new value.
 #[derive(Debug, Clone)]
 pub struct Cell {
-    /// Asks for it.
+    /// Read request.
     pub read: Request,
-    /// Stores it.
+    /// Write request.
     pub write: Request,
-    /// What it should be; fields that the answer has under the same names.
+    /// New value, with the field names of the answer.
     pub wanted: Record,
 }
 
-/// Result of cells.
+/// Number of written and unchanged cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Cells {
     /// Written and read back.
     pub cells_written: u32,
-    /// Held that value already.
+    /// The value was already equal.
     pub cells_unchanged: u32,
 }
 
-/// What is asked before something is written.
-pub const THERE: &str = "what is there";
-/// What decides whether it is.
-const DIFFERS: &str = "whether it differs from what is there";
+/// Purpose of the read before a write.
+pub const THERE: &str = "the stored value";
+/// Condition of the write.
+const DIFFERS: &str = "whether it differs from the stored value";
 
 impl Cells {
-    /// In words: `2 cells written, 1 unchanged`.
+    /// Sentence for a report: `2 cells written, 1 unchanged`.
     pub fn in_words(self) -> String {
         let Self { cells_written: written, cells_unchanged: unchanged } = self;
         let cells = if written == 1 { "cell" } else { "cells" };
         match (written, unchanged) {
-            (0, _) => "nothing written: all is stored like that already".to_owned(),
+            (0, _) => "nothing was written, because all values are equal".to_owned(),
             (_, 0) => format!("{written} EEPROM {cells} written"),
             _ => format!("{written} EEPROM {cells} written, {unchanged} unchanged"),
         }
@@ -54,11 +54,11 @@ impl Cells {
 }
 
 impl Link {
-    /// Stores one cell, unless it holds that already. A dry run notes the question and the order, and goes on.
+    /// Writes one cell unless it is equal. A dry run records the requests and continues.
     ///
     /// # Errors
-    /// As those of [`Link::ask`]; [`Kind::OutcomeUnknown`] if it cannot be read back, and [`Kind::Malformed`] if
-    /// something else is there afterwards.
+    /// Like [`Link::ask`]; [`Kind::OutcomeUnknown`] if the cell cannot be read back, and [`Kind::Malformed`] if it then
+    /// has another value.
     pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>, Failure> {
         if self.is_dry() {
             self.plan(&cell.read, THERE);
@@ -73,18 +73,18 @@ impl Link {
         Ok(Some(found))
     }
 
-    /// Notes in a dry run what [`Link::overwrite`] sends, if the cell holds something else: the block that writes it, in
-    /// which `?` stands for what is kept, and the question that reads it back.
+    /// Records in a dry run the requests of [`Link::overwrite`] for a cell that differs: the block that writes it, in
+    /// which `?` stands for kept values, and the request that reads it back.
     pub async fn plan_overwriting(&mut self, read: &Request, write: &str) -> Result<(), Failure> {
         self.plan_order(write, DIFFERS).await?;
         self.plan_if(read, DIFFERS);
         Ok(())
     }
 
-    /// Stores one cell that is known to hold something else, and reads it back.
+    /// Writes one cell that is known to differ, and reads it back.
     ///
     /// # Errors
-    /// As those of [`Link::store`].
+    /// Like [`Link::store`].
     pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
         self.ask(&cell.write).await?;
         if let Some(warning) = self.write_log.written(cell.read.text().trim_start_matches('@')) {
@@ -99,34 +99,34 @@ impl Link {
                 Kind::Malformed,
                 format!("the controller accepted {} and holds something else", cell.write.text()),
             )
-            .hint("the EEPROM may be worn out, or somebody else writes it at the same time"));
+            .hint("check for a second client that writes the same cell, and for a worn EEPROM"));
         }
         cells.cells_written += 1;
         Ok(())
     }
 
-    /// Whether a cell holds what it should.
+    /// Whether a cell has its new value.
     async fn holds(&mut self, cell: &Cell) -> Result<bool, Failure> {
         Ok(cell.is(&self.ask(&cell.read).await?))
     }
 }
 
 impl Cell {
-    /// Whether it holds nothing that somebody wrote: a NOP, or zeros in a table that is cleared to zeros. What a parameter
-    /// holds from the factory is in no manual.
+    /// Whether the cell is empty: a NOP, or zeros in a table that is cleared to zeros. The manuals do not list factory
+    /// values of parameters.
     pub fn is_blank(&self, found: &Record) -> bool {
         is_blank(&self.read, found)
     }
 
-    /// Whether what was read is what it should hold.
+    /// Whether the content equals the new value.
     pub fn is(&self, found: &Record) -> bool {
-        // A step holds an instruction, and others have fields of the same names.
+        // A step contains an instruction, and several instructions have fields of the same names.
         let is_other = self.read.command() == Command::Rstx && found.layout() != self.wanted.layout();
         !is_other && self.wanted.pairs().all(|(field, wanted)| found.value(field.name) == Some(wanted))
     }
 }
 
-/// [`Cell::is_blank`], of what was read by a request.
+/// [`Cell::is_blank`] for the answer to a read request.
 pub fn is_blank(read: &Request, found: &Record) -> bool {
     let content = read.content().ok().flatten();
     let key = content.as_ref().unwrap_or(read.record());

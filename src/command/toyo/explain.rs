@@ -1,4 +1,4 @@
-//! `armctl explain toyo`: error codes and instructions of programs in words.
+//! `armctl explain toyo`: explanation of error codes and program instructions.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -22,34 +22,36 @@ use crate::settings::target::Family;
 /// Error code of a Toyo controller, or an instruction of its programs
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// The code in hexadecimal, as in 28 or 0xA1; or an instruction, as in MOVP
+    /// Hexadecimal code, as in 28 or 0xA1; or an instruction, as in MOVP
     #[arg(value_name = "CODE|INSTRUCTION", value_parser = subject, add = ValueKind::Code(Family::Toyo))]
     subject: Subject,
 }
 
-/// What is to be explained.
+/// Subject of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Subject {
     Code(u8),
     Instruction(&'static Instruction),
 }
 
-/// Two hexadecimal digits, or the word of an instruction.
+/// Parses two hexadecimal digits or the word of an instruction.
 fn subject(text: &str) -> Result<Subject, String> {
     let instruction = || INSTRUCTIONS.iter().find(|row| row.word.eq_ignore_ascii_case(text)).map(Subject::Instruction);
     typed::code(text).map(Subject::Code).or_else(instruction).ok_or_else(|| {
         let near = nearest(text, INSTRUCTIONS.iter().map(|row| row.word));
         let near = near.map(|near| format!("; did you mean {near}?")).unwrap_or_default();
-        format!("a code is two hexadecimal digits, as in 28 (`toyo status` shows it), an instruction is a word such as MOVP{near}")
+        format!(
+            "type two hexadecimal digits, as in 28 (`toyo status` shows the code), or an instruction such as MOVP{near}"
+        )
     })
 }
 
-/// What is known of a code or an instruction.
+/// Explanation of a code or an instruction.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Explanation {
     #[serde(flatten)]
     codes: Codes<Axis>,
-    /// The instruction that was asked for; not there for a code.
+    /// The instruction; absent for a code.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     instructions: Vec<InstructionHelp>,
 }
@@ -80,7 +82,7 @@ impl face::Explain for Explain {
         let found = errors::explain(code);
         let none = Alarm { text: Some("no error".to_owned()), ..told(errors::NONE) };
         let (known, alarm, [cause, remedy]) = match code {
-            errors::NONE => (true, none, ["nothing is wrong", "nothing is to be done"]),
+            errors::NONE => (true, none, ["no error is present", "no action is necessary"]),
             code => (found.known, told(code), [found.cause, found.remedy]),
         };
         let site = alarms.find(origin, alarm.code.as_deref().unwrap_or_default())?;
@@ -96,22 +98,22 @@ impl face::Explain for Explain {
     }
 }
 
-/// The axis that a code is about.
+/// Axis of a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Axis {
-    /// Null where it is about none.
+    /// Null if the code concerns no axis.
     #[serde(rename = "axis_number")]
     axis: Option<u8>,
 }
 
 impl Besides for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
-        // The text names it.
+        // The text already names the cause.
         Vec::new()
     }
 }
 
-/// An error in this program's words.
+/// Alarm with the texts of armctl.
 pub fn told(code: u8) -> Alarm {
     let errors::Explanation { name, cause, remedy, .. } = errors::explain(code);
     Alarm {

@@ -1,4 +1,4 @@
-//! What the rest of the house may ask of `toyo`.
+//! Interface of `toyo` to the other parts of the program.
 
 use super::alarm;
 use super::backup::{back_up, restore};
@@ -47,7 +47,7 @@ impl Declaration for Toyo {
     const TITLE: &'static str = "Toyo";
     const ABOUT: &'static str = "Toyo over RS-232C host communication";
     const AFTER_HELP: &'static str =
-        "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`.";
+        "Cable, settings and first contact: `armctl help toyo-setup`. Serial ports: `armctl toyo ports`.";
     const SETUP: (&'static str, &'static str) = ("cable and settings of a Toyo controller", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = panel::PANEL;
@@ -106,7 +106,7 @@ impl Backups for Toyo {
         let current_task = context.robot.read_only.value;
         if current_task {
             context.screen.note(&format!(
-                "{}: it is read-only, and to choose another task is a change: only the current task's points and program",
+                "{}: the robot is read-only, and selecting a task is a change: only the points and program of the current task",
                 context.robot.label()
             ));
         }

@@ -1,4 +1,4 @@
-//! Errors of the client as failures of a command: what happened to which robot, and what to do about it.
+//! Conversion of client errors to failures of a command, with robot, message and hint.
 
 use std::io;
 
@@ -11,7 +11,7 @@ use crate::controller::toyo::layout::LayoutProblem;
 use crate::controller::toyo::request::{BlockError, Request};
 use crate::failure::{Failure, Kind, plain};
 
-/// An error of the client of the robot that is called `label`. Why something was refused, [`refusal::explained`] finds out.
+/// Failure for an error of the client of robot `label`. [`refusal::explained`] adds the reason of a refusal.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
     match error {
@@ -26,36 +26,35 @@ pub fn failure(label: &str, error: Error) -> Failure {
             about(Kind::OutcomeUnknown, error.to_string()).hint(verification_hint(unanswered.request.as_ref()))
         }
         Error::CutShort(cause) => {
-            let message = format!("{}; whether the order was carried out is unknown", failure(label, *cause).message);
+            let message = format!("{}; it is unknown whether the command was executed", failure(label, *cause).message);
             Failure::new(Kind::OutcomeUnknown, message)
-                .hint("look at the robot; once the line is back, `toyo status` tells")
+                .hint("check the robot; after the connection is back, use `toyo status`")
         }
         Error::NotSent(cause) => {
             let failure = failure(label, *cause);
-            Failure { message: format!("the order was not sent: {}", failure.message), ..failure }
+            Failure { message: format!("the command was not sent: {}", failure.message), ..failure }
         }
         Error::Malformed { .. } => about(Kind::Malformed, error.to_string())
-            .hint("check baud rate and parity; -vv shows what came, `armctl decode toyo` explains it"),
-        Error::Flooded { .. } => about(Kind::Malformed, error.to_string()).hint(
-            "something on this line sends without end: another client of the device server, or a wrong baud rate",
-        ),
+            .hint("check baud rate and parity; -vv shows the received bytes, `armctl decode toyo` explains them"),
+        Error::Flooded { .. } => about(Kind::Malformed, error.to_string())
+            .hint("check for another client of the device server, and check the baud rate"),
         Error::Unsendable(error) => misuse(&error),
         Error::NotPutBack { block, cause } => not_undone(label, &not_put_back(&block), cause)
-            .hint("`toyo mode` and `toyo task` set it; `toyo status` tells how the controller stands"),
+            .hint("set it with `toyo mode` or `toyo task`; `toyo status` shows the state of the controller"),
         Error::HostKept(cause) => {
-            not_undone(label, "the host was switched ON and could not be switched OFF again", cause)
-                .hint("`toyo host off` gives the start input back")
+            not_undone(label, "the host is still ON, because the command to switch it OFF failed", cause)
+                .hint("use `toyo host off` to enable the start input again")
         }
         Error::MovesOn { .. } => not_stopped(Kind::ConditionNotMet, error.to_string()),
         Error::StandUnseen(cause) => {
             let why = failure(label, *cause).message;
-            not_stopped(Kind::OutcomeUnknown, format!("nothing tells that it stands: {why}"))
+            not_stopped(Kind::OutcomeUnknown, format!("it is unknown whether the robot stopped: {why}"))
         }
         Error::NotAuthorized(error) => error.into(),
         Error::Session(busy) => session_busy(label, &busy),
         Error::Port { path, error } => not_open(label, &path, &error),
         Error::DeviceServer { host, port, error } => not_connected(label, &host, port, &error),
-        // Whatever is in the way, such as rights that a port gets a moment after it is there: it may pass.
+        // The cause can pass, such as port permissions that the system sets a moment after the port appears.
         Error::NotReopened(cause) => Failure { kind: Kind::NoAnswer, ..failure(label, *cause) },
         Error::Opener(error) => match error.downcast_ref::<Failure>() {
             Some(failure) => failure.clone(),
@@ -67,30 +66,30 @@ pub fn failure(label: &str, error: Error) -> Failure {
     }
 }
 
-/// What to look at where nothing answers.
+/// Hint after a request without an answer.
 fn silence(Unanswered { counters, unfitting, .. }: &Unanswered) -> &'static str {
     if counters.echoes > 0 {
-        "a loop-back plug, or an RS-485 adapter that hears itself and no controller"
+        "only an echo was received: check for a loop-back plug, or an RS-485 adapter without a controller"
     } else if counters.noise > 0 || unfitting.is_some() {
-        "check baud rate and parity: the controller has 9600 baud, 8 data bits, even parity, 1 stop bit"
+        "check baud rate and parity: the controller uses 9600 baud, 8 data bits, even parity, 1 stop bit"
     } else {
-        "check that the controller is on, and the cable: TXD and RXD cross over, there is no handshake"
+        "check that the controller is on, and that the cable crosses TXD and RXD without handshake"
     }
 }
 
-/// What tells whether an order was carried out.
+/// Hint for the command that shows whether a command was executed.
 fn verification_hint(request: Option<&Request>) -> &'static str {
-    request.map_or("`toyo status` tells how the controller stands", |request| {
+    request.map_or("`toyo status` shows the state of the controller", |request| {
         refusal::verification_hint(request.command())
     })
 }
 
-/// That something was not put back by a block.
+/// Message for a setting that the block `block` did not restore.
 pub fn not_put_back(block: &str) -> String {
-    format!("what was changed for a while was not put back by {block}")
+    format!("a temporary change was not restored with {block}")
 }
 
-/// What was not undone, as the controller refused or for another cause.
+/// Failure for a change that could not be undone, because the controller refused or for another cause.
 fn not_undone(label: &str, what: &str, cause: Option<Box<Error>>) -> Failure {
     let (kind, why) = match cause.map(|cause| failure(label, *cause)) {
         Some(cause) => (cause.kind, cause.message),
@@ -101,22 +100,24 @@ fn not_undone(label: &str, what: &str, cause: Option<Box<Error>>) -> Failure {
 
 fn not_stopped(kind: Kind, message: String) -> Failure {
     Failure::new(kind, message).hint(
-        "press the emergency stop if anything moves; once the controller answers again, `toyo stop` stops a program, \
-         `toyo stop --jog` an axis that was jogged",
+        "press the emergency stop if the robot moves; after the controller answers again, use `toyo stop`, \
+         or `toyo stop --jog` for a jog",
     )
 }
 
-/// The line has bad news.
+/// Failure for a lost connection.
 fn broken(label: &str, is_shared: bool, error: &io::Error) -> Failure {
     let what = match error.kind() {
-        io::ErrorKind::NotConnected if is_shared => format!("the line is gone: {error}"),
-        io::ErrorKind::NotConnected => "the line is gone: unplugged, or closed by the other side".to_owned(),
-        _ => format!("the line is broken: {}", plain(error)),
+        io::ErrorKind::NotConnected if is_shared => format!("the connection is lost: {error}"),
+        io::ErrorKind::NotConnected => {
+            "the connection is lost: the cable was unplugged, or the other side closed it".to_owned()
+        }
+        _ => format!("the connection failed: {}", plain(error)),
     };
     Failure::new(Kind::NoAnswer, format!("{label}: {what}")).hint(if is_shared {
-        "`armctl session list` tells how it stands"
+        "`armctl session list` shows its state"
     } else {
-        "`toyo ports` lists the ports there are"
+        "`toyo ports` lists the serial ports"
     })
 }
 
@@ -124,23 +125,25 @@ fn not_open(label: &str, path: &str, error: &OpenError) -> Failure {
     let (kind, what, hint) = match error {
         OpenError::Absent => (
             Kind::NoAnswer,
-            format!("there is no port {path}"),
-            "plug the adapter in; `armctl toyo ports` lists the ports there are",
+            format!("the port {path} does not exist"),
+            "plug the adapter in; `armctl toyo ports` lists the serial ports",
         ),
         OpenError::Busy => return ports::in_use(label, path),
         OpenError::Forbidden => (
             Kind::Local,
-            format!("this user may not open {path}"),
-            "add the user to the group of the port, mostly dialout (`sudo usermod -aG dialout $USER`), and log in again",
+            format!("no permission to open {path}"),
+            "add your user to the group of the port, usually dialout (`sudo usermod -aG dialout $USER`), and log in again",
         ),
         OpenError::NotSerial => {
-            (Kind::Usage, format!("{path} is not a serial port"), "`armctl toyo ports` lists the ports there are")
+            (Kind::Usage, format!("{path} is not a serial port"), "`armctl toyo ports` lists the serial ports")
         }
-        OpenError::Unsupported(why) => {
-            (Kind::Usage, format!("{path} does not take these settings: {why}"), "choose others in the target URL")
-        }
+        OpenError::Unsupported(why) => (
+            Kind::Usage,
+            format!("{path} does not support these settings: {why}"),
+            "use other settings in the target URL",
+        ),
         OpenError::Io(error) => {
-            (Kind::NoAnswer, format!("{path}: {}", plain(error)), "`armctl toyo ports` lists the ports there are")
+            (Kind::NoAnswer, format!("{path}: {}", plain(error)), "`armctl toyo ports` lists the serial ports")
         }
     };
     Failure::new(kind, format!("{label}: {what}")).hint(hint)
@@ -153,25 +156,25 @@ fn not_connected(label: &str, host: &str, port: u16, error: &ConnectError) -> Fa
         }
         ConnectError::Refused => (
             format!("nothing listens on TCP port {port}"),
-            "check the port, and that the device server passes bytes on as they are (raw TCP)",
+            "check the port, and that the device server passes bytes unchanged (raw TCP)",
         ),
         ConnectError::Unreachable => {
-            ("the host cannot be reached".to_owned(), "check the address and this machine's own network settings")
+            ("the host cannot be reached".to_owned(), "check the address and the network settings of this computer")
         }
         ConnectError::TimedOut => {
-            ("the device server does not answer".to_owned(), "check that it is on, and its address")
+            ("the device server does not answer".to_owned(), "check its address, and that it is on")
         }
         ConnectError::Io(error) => (plain(error), "check the network"),
     };
     Failure::new(Kind::NoAnswer, format!("{label}: {what}")).hint(hint)
 }
 
-/// Values that cannot be sent, as a failure of the command line.
+/// Failure for values that cannot be sent, as an error of the command line.
 pub fn wrong(error: &LayoutProblem) -> Failure {
-    Failure::usage(error.to_string()).hint("`--help` tells what may be given")
+    Failure::usage(error.to_string()).hint("`--help` shows the valid values")
 }
 
-/// A request that cannot be sent.
+/// Failure for a request that cannot be sent.
 pub fn misuse(error: &BlockError) -> Failure {
-    Failure::usage(error.to_string()).hint("`--help` tells what may be given")
+    Failure::usage(error.to_string()).hint("`--help` shows the valid values")
 }

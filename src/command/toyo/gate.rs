@@ -1,4 +1,5 @@
-//! Every command against the gate: its risk, a read-only robot, nobody to ask; and its dry run against what is sent.
+//! Tests of every command: its risk, a read-only robot, a missing confirmation, and the agreement of dry run and sent
+//! blocks.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -14,7 +15,7 @@ use crate::controller::toyo::table::commands::Row;
 use crate::failure::Kind;
 use crate::gate::{Confirmation, Gate};
 
-/// Every command, and the most that it does. `FOLDER` is a folder with what [`prepared`] puts there.
+/// Every command with its highest risk. `FOLDER` is a folder with the files of [`prepared`].
 #[rustfmt::skip]
 const LINES: &[(&str, Risk)] = &[
     ("status", Read), ("home", Motion), ("home --sync 1 --no-wait", Motion), ("position", Read), ("host on", Write),
@@ -58,13 +59,13 @@ const LINES: &[(&str, Risk)] = &[
     ("raw @MTSK", Read), ("raw @HSON", Write), ("raw @DSTX~0001", Destroy), ("raw @HOME", Motion),
 ];
 
-/// Somebody's work.
+/// Start state with programs and points of a user.
 const STATE: &str = "origin = true\nhost = false\ncard = \"empty\"\n\
     points = { 1 = { 1 = [10.0, 20.0, 0.0, 0.0] }, 2 = { 1 = [1.0, 0.0, 0.0, 0.0] } }\n\
     steps = { 1 = [\"TAG TAG=005\", \"SPD V=05\", \"SPD V=06\", \"END\"], \
     2 = [\"HOME\", \"SPD V=01\", \"SPD V=02\", \"END\", \"END\"] }\n";
 
-/// What is on it beside its start state.
+/// Commands that add to the start state.
 const BEFORE: [&str; 9] = [
     "point set 2 7 7 7 7",
     "mvm set 2 pieces1=4",
@@ -77,7 +78,7 @@ const BEFORE: [&str; 9] = [
     "mvm set 1 pieces1=3 approach-z=5",
 ];
 
-/// A controller with somebody's work, files for it in a folder, and what it hears from now on.
+/// A controller with data of a user, a folder with files, and the blocks that it receives from now on.
 fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
@@ -109,7 +110,7 @@ fn words(line: &str, folder: &tempfile::TempDir) -> Vec<String> {
     line.split(' ').map(|word| word.replace("FOLDER", folder).replace('~', " ")).collect()
 }
 
-/// The risk of a block, in which `?` may stand.
+/// Risk of a block, which can contain `?`.
 fn risk(block: &str) -> Risk {
     if block.starts_with("@JGST") {
         let moves = ["+", "-", "?"].iter().any(|way| block.contains(way));
@@ -129,7 +130,7 @@ fn every_command_is_here() {
         };
         LINES.iter().map(|(line, _)| id(line)).collect()
     };
-    // An editor has a transcript of its own.
+    // The editor has its own transcript.
     let desk = ["toyo.ports", "toyo.program.check", "toyo.program.edit", "toyo.sim.run"];
     let missing: Vec<&str> = super::commands::Commands::schemas().iter().map(|entry| entry.id).collect();
     let missing: Vec<&str> = missing.into_iter().filter(|id| !here.contains(id) && !desk.contains(id)).collect();
@@ -158,7 +159,7 @@ fn nothing_is_changed_that_was_not_confirmed() {
         let riskier: Vec<String> = heard.borrow().iter().filter(|block| risk(block) >= Destroy).cloned().collect();
         if *risk_of_it >= Destroy {
             let kind = came.as_ref().err().map(|failure| failure.kind);
-            // What would fall out at the end is refused whatever anybody says.
+            // A block beyond the end is refused in any case.
             let is_told = |message: &str| message.starts_with("not confirmed: ") || message.contains("would fall out");
             if kind != Some(Kind::Rejected) || !came.as_ref().is_err_and(|failure| is_told(&failure.message)) {
                 wrong.push(format!("{line}: {came:?}"));
@@ -192,7 +193,7 @@ fn a_dry_run_is_what_is_sent() {
         if !planned.iter().any(|frame| risk(&text(frame)) == *risk_of_it) {
             wrong.push(format!("{line}: no frame of its own risk in {planned:?}"));
         }
-        // Some end in a refusal of the simulator; what was sent up to then counts.
+        // The simulator refuses some commands; the blocks sent up to then count.
         let is_whole = bench.run(&words).is_ok_and(|(_, failure)| failure.is_none());
         bench.end();
         if let Err(why) = follows(&planned, &heard.borrow(), is_whole && report["complete"] == true) {
@@ -202,8 +203,8 @@ fn a_dry_run_is_what_is_sent() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Whether what was sent is what was planned: `?` stands for anything, what depends on an answer may be left out, and what
-/// goes on "until" something comes again.
+/// Whether the sent blocks match the plan: `?` matches any text, a block that depends on an answer can be absent, and a
+/// block with "until" can repeat.
 fn follows(planned: &[Value], sent: &[String], is_whole: bool) -> Result<(), String> {
     let is_open = |frame: &Value| frame["depends_on"].is_string();
     let is_poll = |frame: &Value| frame["about"].as_str().is_some_and(|about| about.contains("until"));
@@ -251,7 +252,7 @@ fn fits(planned: &str, sent: &str) -> bool {
     let Some(behind) = rest.strip_prefix(first) else { return false };
     rest = behind;
     for part in middle {
-        // At least one character for each.
+        // At least one character for each `?`.
         let Some(at) = rest.get(1..).and_then(|rest| if part.is_empty() { Some(rest.len()) } else { rest.find(part) })
         else {
             return false;
@@ -289,7 +290,7 @@ fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
     }
     let sent = heard.borrow().iter().filter(|block| risk(block) >= Destroy).count();
     assert_eq!(sent, 0);
-    // What is as it shall be, and what nobody wrote, is no question.
+    // Equal values and empty cells need no confirmation.
     for line in ["param set P01 ax2=1000", "point set 4 1 2 3 4", "point set 1 9 9 9 9", "easy set 5 1 2 3"] {
         let words: Vec<&str> = line.split(' ').collect();
         if let Err(failure) = bench.unasked(&words) {

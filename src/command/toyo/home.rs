@@ -1,4 +1,4 @@
-//! `toyo home`: the return to the origin.
+//! `toyo home`: return to the origin.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -19,7 +19,7 @@ use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
 use crate::output::view::{Cell, Tone, View};
 
-/// Returns all axes to their origin, and waits until they are there (TO 2-7).
+/// Return all axes to the origin, and wait for the end (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Home {
     #[command(flatten)]
@@ -79,11 +79,13 @@ impl Command for Home {
     }
 }
 
-/// With each axis and where it is now, as far as the controller tells; a busy one may refuse to.
+/// Adds the present position of each axis. A busy controller can refuse to report it.
 async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change, Failure> {
     let place = match link.place().await {
         Ok(record) => Coordinates::of(&record, letters),
-        Err(failure) if failure.kind == Kind::Refused => return Ok(change.note("Where the axes are was not told.")),
+        Err(failure) if failure.kind == Kind::Refused => {
+            return Ok(change.note("The controller did not report the position."));
+        }
         Err(failure) => return Err(failure),
     };
     let axes = place.mm().into_iter().enumerate();
@@ -101,7 +103,7 @@ pub struct HomeReport {
 
 impl Report for HomeReport {
     fn view(&self) -> View {
-        let Some(place) = &self.motion.position else { return View::fields([("origin", "on the way".into())]) };
+        let Some(place) = &self.motion.position else { return View::fields([("origin", "moving".into())]) };
         View::fields([
             ("origin", Cell::from("done").tone(Tone::Good)),
             ("at", place.line().into()),

@@ -1,4 +1,4 @@
-//! `toyo host on|off`: who commands the controller.
+//! `toyo host on|off`: host control.
 
 use clap::Args;
 
@@ -13,12 +13,12 @@ use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 
-/// Switches the host ON or OFF, and leaves it so.
+/// Switch the host ON or OFF permanently.
 ///
-/// Other commands need no `host on`: they take the host and give it back as they found it.
+/// Other commands do not need `host on`: they switch the host ON and restore its state.
 #[derive(Debug, Args)]
 pub struct Host {
-    /// on: the host commands, the start input does not; off: the other way round
+    /// on: the host has control and the start input is disabled; off: the start input has control
     #[arg(value_name = "on|off")]
     to: Switch,
 }
@@ -31,22 +31,22 @@ impl Command for Host {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (command, is_on, done) = match self.to {
-            Switch::On => (table::Command::Hson, true, "the host commands; the start input does not"),
-            Switch::Off => (table::Command::Hsof, false, "the start input commands again; the host does not"),
+            Switch::On => (table::Command::Hson, true, "the host has control; the start input is disabled"),
+            Switch::Off => (table::Command::Hsof, false, "the start input has control; the host is OFF"),
         };
         let old = Old::read(context.link.status_before(2).await?.map(Status::host_on));
         let ordered = context.link.ask(&Request::bare(command)).await;
-        // Of an answer that is lost, the status tells what came of the order.
+        // After a lost answer, the status shows the result of the command.
         ordered.map(|_| ()).or_else(
             |failure| {
                 if failure.kind == Kind::OutcomeUnknown { Ok(()) } else { Err(failure) }
             },
         )?;
         context.link.choose_host(is_on);
-        if becomes(context.link, (2, "whether it is"), |status| status.host_on() == is_on).await? {
+        if becomes(context.link, (2, "whether the host has switched"), |status| status.host_on() == is_on).await? {
             return Ok(New::of("host_on", is_on, done).replaces(old));
         }
-        Err(not_so("the host").hint("`toyo status` tells who commands"))
+        Err(not_so("the host").hint("`toyo status` shows whether the host is ON"))
     }
 }
 
@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn an_answer_that_is_lost_is_cleared_up_by_the_status() {
         let lost = |fault| move |block: &str, _| if block == "@HSON" { fault } else { Fault::None };
-        // It was carried out, and is known to be.
+        // The command was executed, and the status shows it.
         assert_eq!(Bench::with_faults("", lost(Fault::Unanswered)).0.data(&["host", "on"])["new"], true);
         let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Unanswered));
         bench.data(&["counter", "set", "1", "5"]);
@@ -77,7 +77,7 @@ mod tests {
         bench.data(&["counter", "set", "1", "5"]);
         bench.close().unwrap();
         assert_eq!(heard.borrow()[heard.borrow().len() - 2..], ["@HSOF", "@STAS SNO=2"]);
-        // It was not, and nothing else was sent.
+        // The command was not executed, and nothing else was sent.
         let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Lost));
         let failure = bench.run(&["home"]).unwrap_err();
         assert!(failure.message.starts_with("the order was not sent: "), "{failure}");

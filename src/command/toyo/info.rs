@@ -1,4 +1,4 @@
-//! `toyo info`: what kind of controller it is.
+//! `toyo info`: type and versions of the controller.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -15,12 +15,12 @@ use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
-/// Asks for robot type, versions, axes, task and override.
+/// Show robot type, versions, axes, task and override.
 #[derive(Debug, Args)]
-#[command(after_help = "A station that is not there refuses to tell its version; what was refused is named.")]
+#[command(after_help = "A missing station refuses to report its version. The report lists refused requests.")]
 pub struct Info {}
 
-/// Stations of the controller: 0 is itself.
+/// Stations of the controller; 0 is the controller itself.
 const STATIONS: [u8; 5] = [0, 1, 2, 3, 4];
 
 impl Command for Info {
@@ -36,7 +36,7 @@ impl Command for Info {
         let versions = STATIONS.map(version);
         let all: Vec<Request> = [&system].into_iter().chain(&versions).chain([&task, &speed]).cloned().collect();
         link.plan_all(&all)?;
-        // Every controller has this one; of the rest, each may be refused.
+        // Every controller answers this request; each of the others can be refused.
         let mut about = About::of(&link.ask(&system).await?);
         for request in &all[1..] {
             match link.try_ask(request).await? {
@@ -48,29 +48,29 @@ impl Command for Info {
     }
 }
 
-/// The version of the controller.
+/// Version of the controller.
 pub(super) async fn version(link: &mut Link) -> Result<String, Failure> {
     Ok(meaning(&link.ask(&Request::bare(table::Command::Sysp)).await?, "version"))
 }
 
-/// What a controller says of itself.
+/// Identity of a controller.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct About {
     /// Six digits.
     robot_type: String,
-    /// Of the controller: `3.36`.
+    /// Version of the controller: `3.36`.
     version: String,
-    /// Of the teach pendant: `Japanese` or `English`.
+    /// Language of the teach pendant: `Japanese` or `English`.
     language: String,
     /// Letters of axes 1 to 4.
     axes: Vec<&'static str>,
-    /// The end of the answer, which the manual does not explain.
+    /// End of the answer, which the manual does not explain.
     tail: String,
-    /// Versions of the stations that told theirs.
+    /// Versions of the stations that answered.
     stations: Vec<Station>,
-    /// The current task; null if the controller refused to tell.
+    /// The current task; null if the controller refused to report it.
     task: Option<u8>,
-    /// Null if the controller refused to tell.
+    /// Null if the controller refused to report it.
     speed_override_percent: Option<u8>,
     /// Requests that the controller refused (`@NG`).
     refused: Vec<String>,
@@ -110,12 +110,12 @@ impl About {
     }
 }
 
-/// A value as it stands on the line.
+/// Value in the protocol.
 fn shown(record: &Record, name: &str) -> String {
     record.pairs().find(|(field, _)| field.name == name).map(|(field, value)| field.written(value)).unwrap_or_default()
 }
 
-/// A value in words.
+/// Meaning of a value.
 fn meaning(record: &Record, name: &str) -> String {
     let found = record.pairs().find(|(field, _)| field.name == name);
     found.map(|(field, value)| field.meaning(value).into_owned()).unwrap_or_default()

@@ -22,19 +22,19 @@ use crate::gate::Confirmation;
 use crate::output::Screen;
 use crate::output::view::View;
 
-/// Clears memory. There is no way back but a backup.
+/// Clear memory. Only a backup can restore it.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Sequential programs and coordinate tables are cleared for the current task only (`toyo task get`). On a \
-                        real controller the word has to be typed once more, or --yes given. `toyo backup` saves what \
-                        there is."
+    after_help = "The command clears sequential programs and coordinate tables of the current task only (`toyo task get`). On a \
+                        real controller, you confirm by typing the word again, or with --yes. Save the memory first with \
+                        `toyo backup`."
 )]
 pub struct Init {
-    /// What to clear
+    /// Memory to clear
     what: What,
 }
 
-/// What can be cleared.
+/// Memory that can be cleared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum What {
     /// The whole memory
@@ -53,11 +53,11 @@ enum What {
 }
 
 impl What {
-    /// As typed, as on the line (TO 2-3, MINT), and in words.
+    /// Word on the command line, word in the protocol (TO 2-3, MINT), and text.
     const fn row(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Everything => {
-                ("everything", "0", "the whole memory: every program, table and, for all that is known, parameter")
+                ("everything", "0", "the whole memory: every program and table, and probably every parameter")
             }
             Self::Sequential => ("sequential", "1", "the sequential program of the current task"),
             Self::Palletizing => ("palletizing", "2", "all palletizing programs"),
@@ -78,7 +78,7 @@ impl Command for Init {
 
     fn intent(&self) -> String {
         let (_, _, words) = self.what.row();
-        format!("clear {words}, for good")
+        format!("clear {words} permanently")
     }
 
     fn confirmation(&self) -> Confirmation {
@@ -96,13 +96,13 @@ impl Command for Init {
     }
 }
 
-/// Pause between two looks.
+/// Interval between two reads of the status.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
-/// Waits until the controller is done with what it accepted (ambiguity A3).
+/// Waits until the controller has completed the accepted work (ambiguity A3).
 async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
     if link.is_dry() {
-        link.plan(&status_page(0), "every 200 ms until it is done");
+        link.plan(&status_page(0), "every 200 ms until the memory is cleared");
         return Err(unknown());
     }
     let _progress = screen.spinner("clearing");
@@ -115,25 +115,25 @@ async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
     }
 }
 
-/// A failure to see the end.
+/// Failure while waiting for the end.
 fn accepted(failure: Failure) -> Failure {
     if failure.kind == Kind::NotKnown {
         return failure;
     }
-    let message = format!("the controller accepted it, but whether it is done is unknown: {}", failure.message);
+    let message = format!("the controller accepted the command, but its result is unknown: {}", failure.message);
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }
 }
 
-/// What was cleared.
+/// Result of a clear.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Cleared {
-    /// As typed: `points`.
+    /// Word as typed: `points`.
     cleared: &'static str,
-    /// In words.
+    /// Text for the word.
     about: &'static str,
     /// The current task.
     task: Option<u8>,
-    /// Nothing is executed until the power was off.
+    /// Whether the controller executes nothing before a restart.
     needs_power_cycle: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Instructions of sequential programs in words: for `explain`, and as a topic of `help`.
+//! Descriptions of the instructions of sequential programs, for `explain` and as a topic of `help`.
 
 use std::fmt::Write as _;
 
@@ -13,43 +13,43 @@ use crate::output::view::{Cell, Section, Table};
 /// An instruction of sequential programs.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct InstructionHelp {
-    /// Its first word.
+    /// First word.
     instruction: &'static str,
-    /// What it does.
+    /// Effect.
     about: &'static str,
-    /// How it is written.
+    /// Form in a program.
     form: String,
-    /// A line of a program.
+    /// Example line of a program.
     example: &'static str,
-    /// The section of the manual.
+    /// Section of the manual.
     section: &'static str,
     /// Controllers that have it; empty for all.
     only_on: Vec<&'static str>,
-    /// In their order.
+    /// Operands in order.
     operands: Vec<Operand>,
 }
 
 /// An operand of an instruction.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Operand {
-    /// As the form names it.
+    /// Name in the form.
     name: &'static str,
-    /// What it is.
+    /// Meaning.
     about: &'static str,
-    /// Least number; null where it is no number.
+    /// Minimum; null if the operand is not a number.
     least: Option<f64>,
-    /// Greatest number; null where it is no number.
+    /// Maximum; null if the operand is not a number.
     most: Option<f64>,
-    /// Unit of the number; null where it has none.
+    /// Unit of the number; null if there is none.
     unit: Option<&'static str>,
-    /// The words that it may be; empty where it is no word.
+    /// Valid words; empty if the operand is not a word.
     words: Vec<OperandWord>,
-    /// What it may be, in words.
+    /// Valid values as text.
     #[serde(skip)]
     values: String,
 }
 
-/// A word that an operand may be.
+/// A valid word of an operand.
 #[derive(Debug, Serialize, JsonSchema)]
 struct OperandWord {
     word: &'static str,
@@ -57,7 +57,7 @@ struct OperandWord {
 }
 
 impl InstructionHelp {
-    /// Of a row of the table.
+    /// Instruction of a row of the table.
     pub fn new(row: &'static Instruction) -> Self {
         Self {
             instruction: row.word,
@@ -70,7 +70,7 @@ impl InstructionHelp {
         }
     }
 
-    /// For people.
+    /// Sections for a terminal.
     pub fn sections(&self) -> Vec<Section> {
         let Self { instruction, about, form, example, section, only_on, operands } = self;
         let mut fields: Vec<(&'static str, Cell)> = vec![
@@ -118,12 +118,12 @@ impl Operand {
     }
 }
 
-/// The topic of `help` that has them all.
+/// The `help` topic with all instructions.
 pub fn topic() -> (&'static str, &'static str, String) {
     let mut text = HEAD.to_owned();
     for row in &INSTRUCTIONS {
         let only = if row.only_on.is_empty() { "" } else { " (KCA-25)" };
-        // Nothing fails when text is written to a string.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{:<5} {}{only}", row.word, row.about);
         if !row.layout.fields.is_empty() {
             let _ = writeln!(text, "      {}\n      {}", row.form(), row.example);

@@ -1,4 +1,4 @@
-//! Several questions in one command: each item has its own outcome, and one refusal hides nothing.
+//! Batch reads: each item has its own result, and one refusal does not hide the other answers.
 
 use std::collections::BTreeMap;
 
@@ -14,37 +14,37 @@ use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// Result of one question of several.
+/// Result of one item.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Item<T> {
-    /// It was answered.
+    /// Answered.
     Answered {
         #[serde(flatten)]
         value: T,
         /// True.
         ok: bool,
     },
-    /// It was not answered.
+    /// Not answered.
     Failed {
-        /// Which it is.
+        /// Key of the item.
         #[serde(flatten)]
         key: Key,
         /// False.
         ok: bool,
-        /// Why, with the block that was refused.
+        /// Reason, with the refused block.
         error: Failure,
     },
 }
 
-/// What tells an item from the others: `counter` 5.
+/// Key of an item: `counter` 5.
 pub type Key = BTreeMap<&'static str, i32>;
 
-/// What was answered to each question.
+/// Answer to each request.
 pub type Answers = Vec<Result<Record, Failure>>;
 
 impl<T> Item<T> {
-    /// From an answer whose value says itself whether the manual lists it.
+    /// Item for an answer whose value shows itself whether the manual lists it.
     pub fn kept(name: &'static str, number: i32, answer: Result<T, Failure>) -> Self {
         match answer {
             Ok(value) => Self::Answered { ok: true, value },
@@ -52,13 +52,13 @@ impl<T> Item<T> {
         }
     }
 
-    /// Why there is none.
+    /// Reason for a missing value.
     pub fn error(&self) -> Option<&Failure> {
         if let Self::Failed { error, .. } = self { Some(error) } else { None }
     }
 }
 
-/// A failure where there is room for a word.
+/// Failure as one word for a table cell.
 pub fn in_a_word(kind: Kind) -> &'static str {
     match kind {
         Kind::Refused => "refused",
@@ -67,7 +67,7 @@ pub fn in_a_word(kind: Kind) -> &'static str {
     }
 }
 
-/// Why a report is no success: all that failed, with the first of them in words.
+/// Failure of a report: the number of failed items, with the message of the first.
 pub fn failure<'f>(all: usize, errors: impl Iterator<Item = Option<&'f Failure>>) -> Option<Failure> {
     let failed: Vec<&Failure> = errors.flatten().collect();
     let first = *failed.first()?;
@@ -78,19 +78,19 @@ pub fn failure<'f>(all: usize, errors: impl Iterator<Item = Option<&'f Failure>>
     Some(Failure { kind: Kind::Mixed, message, ..first.clone() })
 }
 
-/// Asks for what is stored, one after the other; each answer counts for itself. When the line falls silent, the rest is not
-/// asked. A dry run notes all questions and ends.
+/// Reads items in order, each with its own result. After a lost connection the remaining items are not read. A dry run
+/// records all requests and ends.
 ///
 /// # Errors
-/// The first failure, if nothing was answered at all.
+/// The first failure, if no item was answered.
 pub async fn read_each(link: &mut Link, screen: &Screen, what: &str, requests: &[Request]) -> Result<Answers, Failure> {
     read(link, screen, what, requests, 1, |_| false).await
 }
 
-/// As [`read_each`], up to the first answer for which `is_last` holds.
+/// Like [`read_each`], up to the first answer for which `is_last` holds.
 ///
 /// # Errors
-/// As those of [`read_each`].
+/// Like [`read_each`].
 pub async fn read_until(
     link: &mut Link,
     screen: &Screen,
@@ -101,10 +101,10 @@ pub async fn read_until(
     read(link, screen, what, requests, 1, is_last).await
 }
 
-/// As [`read_each`]; what is refused is asked for once more, as a controller that is busy refuses, too.
+/// Like [`read_each`], with a second attempt after a refusal, because a busy controller also refuses.
 ///
 /// # Errors
-/// As those of [`read_each`].
+/// Like [`read_each`].
 pub async fn read_each_twice(
     link: &mut Link,
     screen: &Screen,
@@ -161,15 +161,15 @@ async fn read(
     }
 }
 
-/// Notes in a dry run a question that is asked once more if it is refused: by a controller that does not have it.
+/// Records in a dry run a request with a second attempt after a refusal by a controller without the item.
 pub fn plan_twice(link: &mut Link, request: &Request) {
     link.plan(request, THERE);
     if request.parameter().is_some_and(|parameter| !parameter.only_on.is_empty()) {
-        link.plan_if(request, "whether it is refused, as a busy controller does, too");
+        link.plan_if(request, "if it is refused, because a busy controller also refuses");
     }
 }
 
-/// The answer to one question, or why there is none. What ends all the work is a failure.
+/// Answer to one request, or the reason for a missing answer. A failure ends all the work.
 async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result<Record, Failure>, Failure> {
     for _ in 1..times {
         match link.try_ask(request).await {
@@ -185,13 +185,13 @@ async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result
     }
 }
 
-/// Whether a failure is of one question only.
+/// Whether a failure concerns only one request.
 fn of_one(failure: Failure) -> Result<Result<Record, Failure>, Failure> {
     if matches!(failure.kind, Kind::NoAnswer | Kind::Malformed) { Ok(Err(failure)) } else { Err(failure) }
 }
 
 fn not_asked(request: &Request, silence: &Failure) -> Failure {
-    let message = format!("{} was not asked, as the line fell silent before: {}", request.text(), silence.message);
+    let message = format!("{} was not sent after a lost answer: {}", request.text(), silence.message);
     Failure { message, ..silence.clone() }
 }
 
@@ -230,7 +230,7 @@ mod tests {
             let failure = failure.unwrap();
             assert_eq!(failure.kind, Kind::Mixed);
             let expected =
-                format!("1 of 3 failed: {name}: the controller refused {block} (@NG): the status does not tell why");
+                format!("1 of 3 failed: {name}: the controller refused {block} (@NG): the status shows no reason");
             assert_eq!(failure.message, expected);
         }
     }
@@ -267,11 +267,11 @@ mod tests {
             assert_eq!(odd[0]["raw"], raw, "{entry}");
             let others = data["items"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
             assert!(others.count() > 50);
-            // Nothing of it is written back by leaving it as it is.
+            // A kept value is not written back.
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
                 assert!(failure.message.contains("'ax2=+0000.5', which is not in the manual"), "{failure}");
-                assert_eq!(failure.hint.unwrap(), "nothing was written; give all values");
+                assert_eq!(failure.hint.unwrap(), "nothing was written; type all values");
             }
             let dumped = bench.data(&["param", "dump"]);
             assert_eq!((&dumped["unfit"][0]["key"], &dumped["unfit"][0]["in_manual"]), (&id.into(), &false.into()));

@@ -1,4 +1,4 @@
-//! `toyo jog`: one axis, for a time or by small steps. Whatever happens, the stop goes out in the end.
+//! `toyo jog`: motion of one axis for a time or by inching steps. The stop is always sent at the end.
 
 use std::convert::Infallible;
 use std::fmt;
@@ -29,39 +29,39 @@ use crate::output::Screen;
 use crate::output::view::{Cell, View};
 use crate::settings::duration;
 
-/// Moves one axis, and stops it (TO 2-7, 3-2).
+/// Jog one axis, and stop it (TO 2-7, 3-2).
 ///
-/// The controller has no dead man's switch. This command stops the axis after its time, after an error, after an answer
-/// that is lost, and at Ctrl-C, Ctrl-\ and Ctrl-Z; its guardian does when it is killed or frozen. Nothing does when the
-/// computer dies or sleeps, or when the cable is pulled: keep the emergency stop at hand. After such an end: `toyo stop
-/// --jog`.
+/// The controller has no dead man's switch. This command stops the axis after its time, after an error or a lost
+/// answer, and at Ctrl-C, Ctrl-\ and Ctrl-Z. If it is killed or frozen, its guardian stops the axis. If the computer
+/// fails or sleeps, or the cable is unplugged, the axis continues: keep the emergency stop at hand. Afterwards use
+/// `toyo stop --jog`.
 #[derive(Debug, Args)]
 pub struct Jog {
-    /// The axis, by its letter on the teach pendant, or by its number
+    /// Axis, by its letter on the teach pendant or its number
     #[arg(value_name = "X|Y|Z|R|1-4", value_parser = axis)]
     axis: Axis,
-    /// Which way
+    /// Direction
     direction: Direction,
-    /// How: fast, slowly, or by the small step of parameter P12
+    /// Speed: high, low, or inching steps (parameter P12)
     speed: Speed,
-    /// How long it moves, 100ms to 60s (low and high)
+    /// Duration, 100ms to 60s (high and low)
     #[arg(long = "for", value_name = "TIME", value_parser = hold, required_if_eq_any([("speed", "low"), ("speed", "high")]))]
     within: Option<Duration>,
-    /// How many small steps, one after the other (inch)
+    /// Number of inching steps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100), conflicts_with = "within")]
     steps: Option<u8>,
 }
 
-/// An axis as it was typed.
+/// An axis as typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Axis {
-    /// By its place, 0 to 3, whatever letter the pendant shows for it.
+    /// By its index, 0 to 3, regardless of its letter.
     Place(usize),
-    /// By the letter that the pendant shows for it, which is the machine's (E01).
+    /// By its letter on the teach pendant (E01).
     Letter(String),
 }
 
-/// The letters there can be (TO 2-4, E01).
+/// Possible letters (TO 2-4, E01).
 const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
 
 fn axis(text: &str) -> Result<Axis, String> {
@@ -73,13 +73,13 @@ fn axis(text: &str) -> Result<Axis, String> {
 }
 
 impl Axis {
-    /// Its place, 0 to 3, on a machine with these letters.
+    /// Index of the axis, 0 to 3, on a machine with these letters.
     fn place(&self, letters: Letters) -> Result<usize, Failure> {
         match self {
             Self::Place(place) => Ok(*place),
             Self::Letter(letter) => letters.axis(letter).ok_or_else(|| {
-                Failure::usage(format!("which axis {letter} is, is not known: {}", machine(&letters)))
-                    .hint("name the axis by its number, 1 to 4; `toyo param get axis-letters` shows the letters")
+                Failure::usage(format!("the axis of {letter} is unknown: {}", machine(&letters)))
+                    .hint("type the number of the axis, 1 to 4; `toyo param get axis-letters` shows the letters")
             }),
         }
     }
@@ -97,13 +97,13 @@ impl fmt::Display for Axis {
 /// An axis of this machine.
 #[derive(Debug, Clone)]
 struct Known {
-    /// 0 to 3.
+    /// Index, 0 to 3.
     index: usize,
     letters: Letters,
 }
 
 impl Known {
-    /// `2 (Z)`; without a letter where the controller tells none.
+    /// `2 (Z)`; the number alone if the controller reports no letter.
     fn in_words(&self) -> String {
         match self.letters.of(self.index) {
             "" => (self.index + 1).to_string(),
@@ -116,7 +116,7 @@ impl Known {
     }
 }
 
-/// Which way.
+/// Direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Direction {
     /// Plus
@@ -127,18 +127,18 @@ pub enum Direction {
     Minus,
 }
 
-/// How an axis is jogged.
+/// Speed of a jog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Speed {
     /// At the high speed of parameters P08 to P11
     High,
     /// At the low speed of parameters P08 to P11
     Low,
-    /// By small steps (parameter P12)
+    /// By inching steps (parameter P12)
     Inch,
 }
 
-/// A jog is at least as long as an answer takes, and no longer than somebody keeps an eye on it.
+/// A jog takes at least the time of an answer, and at most the time that a person can watch it.
 const SHORTEST: Duration = Duration::from_millis(100);
 const LONGEST: Duration = Duration::from_secs(60);
 
@@ -150,23 +150,23 @@ fn hold(text: &str) -> Result<Duration, String> {
     Err(format!("a jog takes {} to {}", duration::display(SHORTEST), duration::display(LONGEST)))
 }
 
-/// How long a step may take to begin.
+/// Time limit for the begin of a step.
 const BEGIN_WITHIN: Duration = Duration::from_secs(1);
-/// An axis that moves, however slowly, is elsewhere after this.
+/// Time after which an axis at the lowest speed has moved.
 const AT_REST: Duration = Duration::from_millis(500);
-/// From one look at a step to the next.
+/// Interval between two reads during a step.
 const STEP_LOOK_EVERY: Duration = Duration::from_millis(20);
-/// Looks that a busy controller may refuse in a row while an axis moves.
+/// Limit of refused reads in a row while an axis moves.
 const MOST_REFUSED: u32 = 3;
 
-/// What ends a motion before its time.
+/// Early end of a motion.
 #[derive(Debug)]
 enum Cut {
-    /// The order was refused.
+    /// The command was refused.
     Refused,
-    /// An error came up.
+    /// An error occurred.
     Error,
-    /// Anything else.
+    /// Another failure.
     Failed(Failure),
 }
 
@@ -177,7 +177,7 @@ impl From<Failure> for Cut {
 }
 
 impl Jog {
-    /// What the axis does, as on the line.
+    /// Word of the protocol for this motion.
     const fn word(&self) -> &'static str {
         match (self.direction, self.speed) {
             (Direction::Plus, Speed::High) => "+H",
@@ -193,29 +193,28 @@ impl Jog {
         jog(self.word(), Some(axis.index))
     }
 
-    /// Notes all of it, from the order on. An axis that was named by its letter is known when the controller has told the
-    /// letters.
+    /// Records all requests from the jog command on. The number of an axis is known after the letters were read.
     fn plan(&self, link: &mut Link) {
-        link.plan(&position(), "where it stands");
+        link.plan(&position(), "position before the jog");
         let steps = self.steps.unwrap_or(1);
         let about = match self.within {
             Some(time) => format!("then {} pass", duration::display(time)),
-            None if steps > 1 => format!("{steps} times, when the axis stands again"),
+            None if steps > 1 => format!("{steps} times, each after the axis stands still"),
             None => "once".to_owned(),
         };
         match &self.axis {
             Axis::Place(place) => link.plan(&jog(self.word(), Some(*place)), &about),
             Axis::Letter(letter) => {
                 let about = format!("{} for axis {letter}, SP for the others; {about}", self.word());
-                let reason = Reason::about(&about).depending_on("which axis has that letter");
+                let reason = Reason::about(&about).depending_on("letters of the axes");
                 link.plan_depending("@JGST X=? Y=? Z=? R=?", reason);
             }
         }
-        link.plan(&status_page(0), "until it is stopped: whether there is an error");
-        link.plan(&position(), "until it is stopped: where it is");
+        link.plan(&status_page(0), "until the stop: whether there is an error");
+        link.plan(&position(), "until the stop: position");
     }
 
-    /// Completes "This will …", about this axis.
+    /// Text after "This will …".
     fn in_words(&self, axis: &str) -> String {
         let way = if self.direction == Direction::Plus { "plus" } else { "minus" };
         match (self.speed, self.within) {
@@ -224,13 +223,13 @@ impl Jog {
             }
             (_, Some(time)) => format!("move axis {axis} slowly in {way} direction for {}", duration::display(time)),
             (_, None) => match self.steps {
-                None | Some(1) => format!("move axis {axis} by a small step in {way} direction"),
-                Some(steps) => format!("move axis {axis} by {steps} small steps in {way} direction"),
+                None | Some(1) => format!("move axis {axis} by an inching step in {way} direction"),
+                Some(steps) => format!("move axis {axis} by {steps} inching steps in {way} direction"),
             },
         }
     }
 
-    /// Moves until the time is over, or by all steps. Returns how many steps were done.
+    /// Moves for the time or by all steps. Returns the number of completed steps.
     async fn go(&self, link: &mut Link, live: &Live, axis: &Known, start: Coordinates) -> Result<u8, Cut> {
         let Some(time) = self.within else { return self.inch(link, live, axis, start).await };
         link.use_short_timeouts();
@@ -239,11 +238,11 @@ impl Jog {
         match timeout_at(until, self.hold(link, live, axis, (start, until), &mut is_accepted)).await {
             Ok(Err(cut)) => Err(cut),
             Err(_) if is_accepted => Ok(0),
-            Err(_) => Err(Cut::Failed(Failure::new(Kind::OutcomeUnknown, "the order was not answered in its time"))),
+            Err(_) => Err(Cut::Failed(Failure::new(Kind::OutcomeUnknown, "the jog command was not answered in time"))),
         }
     }
 
-    /// Moves for ever, and keeps an eye on it.
+    /// Moves without an end and watches the axis.
     async fn hold(
         &self,
         link: &mut Link,
@@ -255,18 +254,18 @@ impl Jog {
         let began = Instant::now();
         link.try_ask(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
         *is_accepted = true;
-        // A look is two questions.
+        // One read of the state is two requests.
         let mut longest = 2 * began.elapsed();
         let mut watch = Watch { start, last: start, was_busy: false, since: Instant::now() };
         loop {
             let began = Instant::now();
             if began + longest > until {
-                // The stop shall find the line at peace.
+                // No request must be pending when the stop is sent.
                 return std::future::pending().await;
             }
             let (is_busy, place) = look(link, axis).await?;
             if watch.has_come_to_rest(is_busy, place) {
-                let message = "the axis came to rest before its time: somebody else stopped it";
+                let message = "the axis stopped early: another client stopped it";
                 return Err(Cut::Failed(Failure::new(Kind::ConditionNotMet, message)));
             }
             live.say(format!("jogging {}", place.in_a_line()));
@@ -275,7 +274,7 @@ impl Jog {
         }
     }
 
-    /// Moves by small steps, each when the axis stands again.
+    /// Moves by inching steps, each after the axis stands still.
     async fn inch(&self, link: &mut Link, live: &Live, axis: &Known, start: Coordinates) -> Result<u8, Cut> {
         let steps = self.steps.unwrap_or(1);
         let mut last = start;
@@ -291,7 +290,7 @@ impl Jog {
         Ok(steps)
     }
 
-    /// Moves by one small step; where the axis then stands.
+    /// Moves by one inching step, and returns the position afterwards.
     async fn step(&self, link: &mut Link, axis: &Known, start: Coordinates) -> Result<Coordinates, Cut> {
         link.try_ask(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
         let (mut last, began) = (start, Instant::now());
@@ -303,10 +302,10 @@ impl Jog {
                 return Ok(here);
             }
             if stands && began.elapsed() >= BEGIN_WITHIN {
-                let message = "it was accepted, but the axis has not moved";
+                let message = "the step was accepted, but the axis did not move";
                 return Err(Cut::Failed(
                     Failure::new(Kind::ConditionNotMet, message)
-                        .hint("`toyo param get P12` shows how far a step goes, `toyo status` what is in the way"),
+                        .hint("`toyo param get P12` shows the size of a step, `toyo status` shows the reason"),
                 ));
             }
             sleep(STEP_LOOK_EVERY).await;
@@ -314,17 +313,17 @@ impl Jog {
     }
 }
 
-/// Whether an axis that moves for a time has come to rest.
+/// Detector for an axis that has come to rest early.
 struct Watch {
     start: Coordinates,
     last: Coordinates,
     was_busy: bool,
-    /// When it was seen to move last.
+    /// Time of the last observed motion.
     since: Instant,
 }
 
 impl Watch {
-    /// It does if nothing is executed any more, or if it stands for some looks, behind a part of its way.
+    /// Whether the axis has come to rest: no execution, or the same position in several reads after some motion.
     fn has_come_to_rest(&mut self, is_busy: bool, place: Coordinates) -> bool {
         if place != self.last {
             self.since = Instant::now();
@@ -337,7 +336,7 @@ impl Watch {
     }
 }
 
-/// Whether something is executed, and where the axes are. A busy controller is asked again.
+/// Reads whether the controller executes, and the position. Refusals of a busy controller are repeated.
 async fn look(link: &mut Link, axis: &Known) -> Result<(bool, Coordinates), Cut> {
     let mut refused = 0;
     loop {
@@ -371,13 +370,14 @@ impl Command for Jog {
         true
     }
 
-    /// The controller tells which axis has which letter.
+    /// The controller reports the letters of the axes.
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Jogged, Failure> {
         if self.within.is_some() && self.speed == Speed::Inch {
-            return Err(Failure::usage("an inching step takes no time").hint("leave --for out; --steps makes several"));
+            return Err(Failure::usage("an inching step has no duration")
+                .hint("remove --for, or use --steps for several steps"));
         }
         if self.steps.is_some() && self.speed != Speed::Inch {
-            return Err(Failure::usage("only inching goes by steps").hint("give the time with --for"));
+            return Err(Failure::usage("only inching uses --steps").hint("set the duration with --for"));
         }
         let Context { link, screen, authority, .. } = context;
         let letters = link.letters().await?;
@@ -394,12 +394,12 @@ impl Command for Jog {
         let began = Instant::now();
         let gone = self.go(link, &live, &axis, start).await;
         if let Err(Cut::Refused) = gone {
-            // Nothing moves by this order: what is executed is somebody else's, and no reason to wait for a stop.
+            // This command caused no motion. Other motion belongs to another client and needs no wait for a stop.
             link.give_up(Moving::Jog).await;
             live.end();
             return Err(refusal::explained(link, &self.order(&axis)).await);
         }
-        // Whatever has happened.
+        // The stop is sent in any case.
         let elapsed = began.elapsed();
         let end = Coordinates::of(
             &link.stop(Moving::Jog).await.map_err(|failure| still_moving(gone.as_ref().err(), failure))?,
@@ -413,9 +413,9 @@ impl Command for Jog {
     }
 }
 
-/// Why the motion was cut short, now that the axis stands.
+/// Reason of the early end, after the axis has stopped.
 async fn cut_short(link: &mut Link, cut: Cut, place: &Coordinates) -> Failure {
-    let stopped = format!("the axis was stopped and stands at {}", place.in_a_line());
+    let stopped = format!("the axis was stopped at {}", place.in_a_line());
     match cut {
         Cut::Refused => refusal::explained(link, &jog("RS", None)).await,
         Cut::Error => {
@@ -426,17 +426,17 @@ async fn cut_short(link: &mut Link, cut: Cut, place: &Coordinates) -> Failure {
     }
 }
 
-/// The stop was not confirmed.
+/// Failure because the stop was not confirmed.
 fn still_moving(cut: Option<&Cut>, failure: Failure) -> Failure {
     let why = match cut {
         Some(Cut::Failed(cut)) => format!("{}; ", cut.message),
         _ => String::new(),
     };
-    Failure { message: format!("{why}the axis may still move: {}", failure.message), ..failure }
-        .hint("press the emergency stop; once the controller answers again, `toyo stop --jog` before anything else")
+    Failure { message: format!("{why}the axis can still move: {}", failure.message), ..failure }
+        .hint("press the emergency stop; after the controller answers again, use `toyo stop --jog` first")
 }
 
-/// Shows where the axis is, from a thread of its own: a terminal that is held must not hold the stop.
+/// Live display of the position in its own thread, because a blocked terminal must not delay the stop.
 struct Live {
     texts: Sender<String>,
     thread: std::thread::JoinHandle<()>,
@@ -456,11 +456,11 @@ impl Live {
     }
 
     fn say(&self, text: String) {
-        // A thread that has ended shows nothing any more, which is all there is to lose.
+        // If the thread has ended, only the display is lost.
         self.texts.send(text).unwrap_or_default();
     }
 
-    /// Clears what it shows, once nothing moves any more.
+    /// Clears the display after the motion.
     fn end(self) {
         drop(self.texts);
         self.thread.join().unwrap_or_default();
@@ -470,15 +470,15 @@ impl Live {
 /// Result of a jog.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Jogged {
-    /// Its letter: `X`, `Y`, `Z` or `R`; empty where the controller does not tell.
+    /// Letter of the axis: `X`, `Y`, `Z` or `R`; empty if the controller does not report it.
     axis: &'static str,
-    /// Its number, 1 to 4.
+    /// Number of the axis, 1 to 4.
     axis_number: usize,
-    /// As on the line: `+L`.
+    /// Word of the protocol: `+L`.
     word: &'static str,
-    /// Inching steps that were done; null for low and high.
+    /// Completed inching steps; null for low and high.
     steps: Option<u8>,
-    /// How far the axis moved; negative in minus direction.
+    /// Distance; negative in minus direction.
     moved_mm: f64,
     #[serde(flatten)]
     motion: Motion,

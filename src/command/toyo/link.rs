@@ -1,5 +1,5 @@
-//! The connection to a controller as commands use it: the client, with its errors in words, its traffic on record, and its
-//! changes written down.
+//! Connection to a controller for commands: the client, with errors in plain text, a trace of the traffic, and a
+//! journal of temporary changes.
 
 mod left;
 mod onlooker;
@@ -40,7 +40,7 @@ use onlooker::{Onlooker, Told, Watching};
 #[derive(Debug)]
 pub struct Toyo;
 
-/// A connection to one controller. What cannot fail is the client's own.
+/// A connection to one controller. It dereferences to the client for operations that cannot fail.
 #[derive(Debug, Deref, DerefMut)]
 pub struct Link {
     #[deref]
@@ -49,11 +49,11 @@ pub struct Link {
     onlooker: Arc<Mutex<Onlooker>>,
     screen: Screen,
     label: String,
-    /// What others have left behind, as long as it is not told.
+    /// Changes that ended processes left on the controller and that were not reported yet.
     left: Vec<Left>,
     /// Writes to the EEPROM.
     pub(super) write_log: WriteLog,
-    /// Texts of the programs that were put.
+    /// Source texts of the programs that were written.
     pub(super) sources: Sources,
 }
 
@@ -68,20 +68,20 @@ impl Family for Toyo {
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
         let Some(moving) = link.moving() else { return Ok("nothing was sent that moves the robot".to_owned()) };
-        // Before anything is written: a terminal that is held must not hold the stop.
+        // Stop first and print then, because a blocked terminal must not delay the stop.
         link.send_urgent(moving).await;
         let stop = moving.stop().text();
         link.screen.note(&format!("stopping the robot: {stop}"));
         let place = link.stop(moving).await?;
         let place = link.coordinates(&place).await;
-        Ok(format!("the robot was stopped ({stop}); it stands at {}", place.in_a_line()))
+        Ok(format!("the robot was stopped ({stop}); it is at {}", place.in_a_line()))
     }
 
     fn must_halt(link: &Link) -> bool {
         link.moving() == Some(Moving::Jog)
     }
 
-    /// A serial port has one line, and so has a device server.
+    /// A serial port and a device server each have one line.
     fn takes_one_client(robot: &Robot) -> bool {
         matches!(robot.target.value.place, target::Place::Serial(_) | target::Place::Tcp(_))
     }
@@ -99,7 +99,7 @@ impl Family for Toyo {
         link.tell_what_is_left().await;
         let Link { client, onlooker, label, mut write_log, .. } = link;
         let (totals, closed) = client.close().await;
-        // What goes on now was told.
+        // Motion that continues on purpose was already reported.
         locked(&onlooker).debts.moving(None);
         let Counters { sent, received, .. } = totals.counters;
         screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", totals.waited));
@@ -107,13 +107,13 @@ impl Family for Toyo {
             screen.detail(1, &format!("on the line: {odd}"));
         }
         if let Err(error) = write_log.keep() {
-            screen.detail(1, &format!("what was written to the EEPROM was not noted: {error}"));
+            screen.detail(1, &format!("the EEPROM write log could not be saved: {error}"));
         }
         closed.map_err(|error| failure(&label, error)).and(locked(&onlooker).trace.finish())
     }
 }
 
-/// What went otherwise than it should.
+/// Counters of disturbances, with their names.
 fn odd(counters: &Counters) -> [(u64, &'static str); 5] {
     let Counters { sent: _, received: _, noise, garbled, foreign, echoes, repeats } = *counters;
     [
@@ -126,14 +126,14 @@ fn odd(counters: &Counters) -> [(u64, &'static str); 5] {
 }
 
 impl Link {
-    /// What was counted on the line so far.
+    /// Traffic counters of the connection.
     pub(super) fn traffic(&self) -> Traffic {
         let Counters { sent, received, .. } = self.client.totals().counters;
         let disturbances = odd(&self.client.totals().counters).iter().map(|(count, _)| count).sum();
         Traffic { sent: sent.into(), received: received.into(), disturbances }
     }
 
-    /// Of a client.
+    /// Wraps a client.
     pub(super) fn of(mut client: Client, robot: &Robot, access: &Access, screen: &Screen) -> Result<Self, Failure> {
         let (target, label) = (robot.target.value.to_string(), robot.label());
         let is_kept = !robot.target.value.is_simulated();
@@ -153,12 +153,12 @@ impl Link {
         Ok(Self { client, onlooker, screen, label, left, write_log, sources })
     }
 
-    /// The line, for somebody else to use; `None` in a dry run.
+    /// Returns the line for a session; `None` in a dry run.
     pub(super) fn into_line(self) -> Option<Line> {
         self.client.into_line()
     }
 
-    /// Asks one question or gives one order; a refusal is a failure.
+    /// Sends a request; a refusal is a failure.
     pub async fn ask(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_ask(request).await? {
             Ok(record) => Ok(record),
@@ -166,14 +166,14 @@ impl Link {
         }
     }
 
-    /// Asks one question or gives one order; a refusal is an answer.
+    /// Sends a request; a refusal is a valid result.
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
         self.tell_what_is_left().await;
         self.before_steps_change(request);
         self.client.try_ask(request).await.map_err(|error| self.failure(error))
     }
 
-    /// What changes steps otherwise than a whole `put` leaves it open what is behind a program.
+    /// Marks the stored source text as uncertain before a command that changes steps in another way than `program put`.
     fn before_steps_change(&mut self, request: &Request) {
         let changes =
             [Command::Wstx, Command::Istx, Command::Dstx, Command::Dstl, Command::Cpss, Command::Mint, Command::Rmca];
@@ -182,7 +182,7 @@ impl Link {
         }
     }
 
-    /// Sends a request as it is, and returns the whole answer, good or bad.
+    /// Sends a request unchanged, and returns the whole answer, good or bad.
     pub async fn raw(&mut self, request: &Request) -> Result<Answer, Failure> {
         if !is_stop(request) {
             self.tell_what_is_left().await;
@@ -191,15 +191,15 @@ impl Link {
         self.client.raw(request).await.map_err(|error| self.failure(error))
     }
 
-    /// Sends a block that is in no table, and returns what came back.
+    /// Sends a block that no table contains, and returns the answer.
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Failure> {
         self.tell_what_is_left().await;
         self.sources.doubt();
         self.client.raw_text(block).await.map_err(|error| self.failure(error))
     }
 
-    /// Reads what a write replaces; nothing where the controller refuses to tell, and in a dry run, which notes the
-    /// question. A line that is lost is a failure: nothing was written.
+    /// Reads the value that a write replaces; `None` if the controller refuses to report it. A dry run records the
+    /// request and returns `None`. A lost line is a failure, and nothing was written.
     pub async fn before(&mut self, question: &Request) -> Result<Option<Record>, Failure> {
         if self.is_dry() {
             self.plan(question, BEFORE);
@@ -208,42 +208,43 @@ impl Link {
         Ok(self.try_ask(question).await.map_err(unwritten)?.ok())
     }
 
-    /// The same of a page of the status; the others are 0.
+    /// Reads one page of the status before a write; the other pages are 0.
     pub async fn status_before(&mut self, page: u8) -> Result<Option<Status>, Failure> {
         let record = self.before(&status_page(page)).await?;
         Ok(record.and_then(|record| record.byte("st1")).map(|byte| Status::default().with(page, byte)))
     }
 
-    /// All five pages of the status.
+    /// Reads all five pages of the status.
     pub async fn status(&mut self) -> Result<Status, Failure> {
         self.status_of(&[0, 1, 2, 3, 4]).await
     }
 
-    /// Some pages of the status; the others are 0.
+    /// Reads some pages of the status; the other pages are 0.
     pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Failure> {
         self.tell_what_is_left().await;
         self.client.status_of(pages).await.map_err(|error| self.failure(error))
     }
 
-    /// Where the axes are. A refusal is not explained: that takes time, and the controller is busy for a moment.
+    /// Reads the position of the axes. A refusal is not explained, because the explanation takes time and the
+    /// controller is busy for a moment.
     pub async fn place(&mut self) -> Result<Record, Failure> {
         self.tell_what_is_left().await;
         self.client.place().await.map_err(|error| self.failure(error))
     }
 
-    /// The letters of the axes, as the controller tells them.
+    /// Reads the letters of the axes from the controller.
     pub async fn letters(&mut self) -> Result<Letters, Failure> {
         self.tell_what_is_left().await;
         self.client.letters().await.map_err(|error| self.failure(error))
     }
 
-    /// Where the axes are by a record, for a report. What has happened is told in any case: where the letters cannot be
-    /// asked, with the numbers of the axes.
+    /// Converts a position record for a report. If the letters of the axes cannot be read, the report has the numbers
+    /// of the axes.
     pub async fn coordinates(&mut self, record: &Record) -> Coordinates {
         Coordinates::of(record, self.letters().await.unwrap_or(Letters::UNKNOWN))
     }
 
-    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends.
+    /// Changes a setting temporarily. [`Link::put_back`] or the end of the link restores it with `back`.
     pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
         self.tell_what_is_left().await;
         match self.client.borrow(change, back).await {
@@ -252,14 +253,14 @@ impl Link {
         }
     }
 
-    /// Makes everything as it was before [`Link::borrow`]. All of it is tried; the first failure counts.
+    /// Restores all settings of [`Link::borrow`]. After a failure it continues, and returns the first failure.
     pub async fn put_back(&mut self) -> Result<(), Failure> {
         self.client.put_back().await.map_err(|error| self.failure(error))
     }
 
-    /// Stops what moves, and returns where it has come to stand.
+    /// Stops the motion, and returns the position of rest.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
-        // What others have left is told when it stands.
+        // Stale changes are reported after the stop.
         let told = std::mem::replace(&mut locked(&self.onlooker).told, Told::ALL);
         let stopped = self.client.stop(moving).await;
         let mut onlooker = locked(&self.onlooker);
@@ -268,45 +269,46 @@ impl Link {
         stopped.map_err(|error| self.failure(error))
     }
 
-    /// What moves was refused before it moved. The stop goes out nevertheless, once.
+    /// Stops a motion that the controller refused before it began. The stop is sent once.
     pub async fn give_up(&mut self, moving: Moving) {
         self.client.give_up(moving).await;
         locked(&self.onlooker).trace.release();
     }
 
-    /// Notices a silence at once, and keeps text about the traffic until [`Link::stop`]: neither patience nor a terminal that
-    /// is held must be in the way of that.
+    /// Detects a lost connection early, and buffers trace text until [`Link::stop`]. Neither long timeouts nor a
+    /// blocked terminal must delay the stop.
     pub fn use_short_timeouts(&mut self) {
         self.client.use_short_timeouts();
         locked(&self.onlooker).trace.hold();
     }
 
-    /// Somebody wants the host as it is now.
+    /// Records that the user chose the present state of the host.
     pub fn choose_host(&mut self, is_on: bool) {
         locked(&self.onlooker).choose_host(is_on);
     }
 
-    /// Somebody wants this task to be the current one.
+    /// Records that the user chose this task as the current one.
     pub fn choose_task(&mut self, task: u8) {
         locked(&self.onlooker).choose_task(task);
     }
 
-    /// In a dry run, notes all the questions, whose answers are not known then.
+    /// Records requests in a dry run. Their answers are not known.
     pub fn plan_all(&mut self, requests: &[Request]) -> Result<(), Failure> {
         self.client.plan_all(requests).map_err(|error| self.failure(error))
     }
 
-    /// Notes in a dry run an order that an answer before it decides about, behind what goes before every order.
+    /// Records a command in a dry run, after the requests that precede every command. The earlier answer `on` decides
+    /// whether it is sent.
     pub async fn plan_order(&mut self, text: &str, on: &str) -> Result<(), Failure> {
         self.client.plan_order(text, on).await.map_err(|error| self.failure(error))
     }
 
-    /// Notes in a dry run that something is changed for a while; `back` is what puts it back, with `?` for what was found.
+    /// Records a temporary change in a dry run. `back` restores the setting; `?` in it is the value that was read.
     pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Failure> {
         self.client.plan_to_borrow(change, back, on).await.map_err(|error| self.failure(error))
     }
 
-    /// An answer that makes no sense.
+    /// Failure for an answer that makes no sense.
     pub fn malformed(&self, block: &str, why: &str) -> Failure {
         self.failure(Error::Malformed { block: block.to_owned(), why: why.to_owned() })
     }

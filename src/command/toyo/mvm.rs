@@ -1,4 +1,4 @@
-//! `toyo mvm`: groups of the MVM table, which is five sheets: corners, pieces, counters, approach, destination.
+//! `toyo mvm`: groups of the MVM table. A group has five sheets: corners, pieces, counters, approach, destination.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -23,7 +23,7 @@ use crate::output::Screen;
 use crate::output::view::Cell;
 
 table_commands! {
-    /// What can be done with groups of the MVM table.
+    /// Commands for groups of the MVM table.
     Mvm of Groups {}
 }
 
@@ -31,7 +31,7 @@ table_commands! {
 #[derive(Debug)]
 pub struct Groups;
 
-/// The sheets, and the values of each: column of a file, heading.
+/// Sheets with their values: column of a file, heading.
 const SHEETS: [(&str, &[Field]); 5] = [
     (
         "T4.S1",
@@ -73,12 +73,12 @@ fn sheet(index: usize) -> &'static Parameter {
     Parameter::named(SHEETS[index].0).expect("every sheet is in the table of parameters")
 }
 
-/// The number of a group, 1 to 32.
+/// Field of the group number, 1 to 32.
 fn field() -> field::Field {
     sheet(0).key.fields[0].named("group")
 }
 
-/// What reads the sheets of a group.
+/// Requests that read the sheets of a group.
 fn reads(group: i32) -> Result<Vec<Request>, Failure> {
     let read = |index| Request::read_parameter(sheet(index), Some(group));
     (0..SHEETS.len()).map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
@@ -97,7 +97,7 @@ pub struct Group {
     p3_point: i32,
     /// Pieces towards P1, P2 and P3.
     pieces: [i32; 3],
-    /// Counters that count them.
+    /// Counters of the pieces.
     counters: [i32; 3],
     /// `absolute` or `incremental`.
     approach: String,
@@ -134,7 +134,7 @@ impl Group {
 impl Store for Groups {
     type Family = Toyo;
     type Key = i32;
-    /// The sheets, in their order.
+    /// Sheets in order.
     type Wire = Vec<Record>;
     type Value = Group;
     type More = Listed;
@@ -203,7 +203,7 @@ impl Store for Groups {
     async fn read(&self, link: &mut Link, screen: &Screen, groups: &[i32]) -> Result<Answers<Vec<Record>>, Failure> {
         let requests = groups.iter().copied().map(reads).collect::<Result<Vec<Vec<Request>>, Failure>>()?.concat();
         let sheets = read_each(link, screen, "reading sheets", &requests).await?;
-        // The first that was refused tells of the whole.
+        // The first refusal fails the whole group.
         let whole =
             |sheets: &[Result<Record, Failure>]| sheets.iter().cloned().collect::<Result<Vec<Record>, Failure>>();
         Ok(Answers::of(sheets.chunks(SHEETS.len()).map(whole).collect()))
@@ -211,7 +211,7 @@ impl Store for Groups {
 }
 
 impl Writable for Groups {
-    /// Of each sheet.
+    /// Changes of each sheet.
     type Draft = Vec<Changes>;
 
     const RISK: Risk = Risk::Destroy;
@@ -235,8 +235,8 @@ impl Writable for Groups {
                 (None, Some(old)) if changes.values().iter().all(Option::is_none) => return Ok(old[index].clone()),
                 (None, Some(old)) => changes.over(&old[index])?,
                 (None, None) => {
-                    let message = format!("group {group} was not read: there are no values to keep");
-                    return Err(Failure::usage(message).hint("nothing was written; give all values"));
+                    let message = format!("group {group} was not read, so missing values are unknown");
+                    return Err(Failure::usage(message).hint("nothing was written; type all values"));
                 }
             };
             let values = std::iter::once(Value::Number(group)).chain(values).collect();
@@ -248,7 +248,7 @@ impl Writable for Groups {
     async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
         for (group, draft) in rows {
             let reads = reads(*group)?;
-            // A copy knows no values before.
+            // A copy has no previous values.
             let is_copy = draft.iter().all(|changes| changes.values().iter().all(Option::is_none));
             for (index, changes) in draft.iter().enumerate() {
                 if is_copy || changes.values().iter().any(Option::is_some) {
@@ -272,7 +272,7 @@ impl Writable for Groups {
     }
 }
 
-/// A field of the protocol by the name of its column.
+/// Field of the protocol with the name of its column.
 fn named(field: &field::Field, column: &Field) -> field::Field {
     match &column.name {
         std::borrow::Cow::Borrowed(name) => field.named(name),

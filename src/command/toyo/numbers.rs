@@ -1,4 +1,4 @@
-//! Numbers on a command line, in the ranges of the protocol's fields; several questions in a row.
+//! Numbers on a command line within the ranges of protocol fields, and reads of several values.
 
 use super::link::Link;
 use super::refusal;
@@ -12,17 +12,17 @@ use crate::controller::typed;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// A number, or a range of them: `5`, `1-5`, `1..5`.
+/// A number or a range: `5`, `1-5`, `1..5`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Numbers(Vec<i32>);
 
 impl Numbers {
-    /// Reads a number or a range; each must be in the range of the field.
+    /// Parses a number or a range within the range of the field.
     pub fn parse(field: &Field, text: &str) -> Result<Self, String> {
         Ok(Self(typed::range(text, |end| number(field, end))?.collect()))
     }
 
-    /// All numbers that were given, each once and in that order; without any, all that the field takes.
+    /// All given numbers without repetition, in order; all numbers of the field if none is given.
     pub fn of(given: &[Self], field: &Field) -> Vec<i32> {
         if given.is_empty() {
             return match field.form {
@@ -34,7 +34,7 @@ impl Numbers {
     }
 }
 
-/// Reads a number, which must be in the range of the field; of one with decimals, in units of the last.
+/// Parses a number within the range of the field; a decimal number in units of its last digit.
 pub fn number(field: &Field, text: &str) -> Result<i32, String> {
     match field.read(text) {
         Ok(Value::Number(number)) => Ok(number),
@@ -43,7 +43,7 @@ pub fn number(field: &Field, text: &str) -> Result<i32, String> {
     }
 }
 
-/// Reads an argument that is a number, an address such as `TN1`, or a name of such a thing.
+/// Parses a number, an address such as `TN1`, or a name.
 pub fn named<T>(kind: NameKind, text: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, String> {
     let any = names_of::address_of(kind, 1).unwrap_or_default();
     names::read(&[kind], &any, text, |text| {
@@ -53,12 +53,12 @@ pub fn named<T>(kind: NameKind, text: &str, parse: impl Fn(&str) -> Result<T, St
     })
 }
 
-/// A number that came in an answer as small as its field says; what is beyond that reads as the greatest.
+/// A number of an answer as a byte; the maximum if it is larger.
 pub fn small(record: &Record, name: &str) -> u8 {
     u8::try_from(record.number(name).unwrap_or(0)).unwrap_or(u8::MAX)
 }
 
-/// Asks several questions, one after the other; the first refusal or failure ends it. A dry run notes them all.
+/// Reads several values in order; the first refusal or failure ends the work. A dry run records all requests.
 pub async fn ask_all(
     link: &mut Link,
     screen: &Screen,
@@ -77,7 +77,7 @@ pub async fn ask_all(
     Ok(answers)
 }
 
-/// Reads back what was ordered. In a dry run the question is noted.
+/// Reads a value back after a command. A dry run records the request.
 pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record, Failure> {
     link.ask(read).await.map_err(|failure| {
         let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
@@ -85,7 +85,7 @@ pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Resu
     })
 }
 
-/// What was read back is something else.
+/// Failure because the value that was read back differs.
 pub fn not_held(order: &Request, found: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("the controller accepted {}, but {found}", order.text()))
 }

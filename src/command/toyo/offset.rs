@@ -1,4 +1,4 @@
-//! `toyo offset`: how far coordinates are shifted at present.
+//! `toyo offset`: current offset of coordinates.
 
 use clap::Args;
 
@@ -9,7 +9,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
 
-/// Asks for the offset that the program has set.
+/// Show the offset that the program has set.
 #[derive(Debug, Args)]
 pub struct Offset {}
 

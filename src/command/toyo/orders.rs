@@ -1,4 +1,4 @@
-//! Orders of one block: servo, mode, reset; and the stop.
+//! Commands of one block: servo, mode, reset, stop.
 
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
@@ -20,10 +20,10 @@ use crate::failure::{Failure, Kind};
 use crate::gate::Confirmation;
 use crate::output::view::View;
 
-/// Switches servo power of all axes (TO 2-7), and waits until the status shows it.
+/// Switch servo power of all axes (TO 2-7), and wait until the status shows it.
 #[derive(Debug, Args)]
 pub struct Servo {
-    /// On or off
+    /// Servo power on or off
     #[arg(value_name = "on|off")]
     to: Switch,
 }
@@ -52,28 +52,28 @@ impl Command for Servo {
         let old = Old::read(old.map(Status::servo_on));
         authority.confirm(&new.question(self.intent(), &old)).await?;
         link.ask(&Request::bare(command)).await?;
-        let done = becomes(link, (3, "whether it is"), |status| status.servo_on() == is_on).await?;
+        let done = becomes(link, (3, "whether servo power has switched"), |status| status.servo_on() == is_on).await?;
         link.has_ended();
         if done {
             return Ok(new.replaces(old));
         }
-        Err(not_so("servo power").hint("`toyo alarm list` and `toyo status` tell what is in the way"))
+        Err(not_so("servo power").hint("`toyo alarm list` and `toyo status` show the reason"))
     }
 }
 
 /// A mode of the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ModeName {
-    /// Programs are edited
+    /// Edit programs
     Program,
-    /// Programs run a step at a start
+    /// Run one step at each start
     Step,
-    /// Programs run from step to step
+    /// Run programs from step to step
     #[value(alias = "automatic")]
     Auto,
-    /// Sequential programs run
+    /// Run sequential programs
     Sequential,
-    /// Palletizing programs run
+    /// Run palletizing programs
     Palletizing,
 }
 
@@ -98,7 +98,7 @@ impl ModeName {
         }
     }
 
-    /// What is in force in its place, as `status` gives it.
+    /// The mode that is active instead, as in `status`.
     fn instead_of(self, status: Status) -> Option<&'static str> {
         match self {
             Self::Program | Self::Step | Self::Auto => status.run_mode().map(RunMode::name),
@@ -106,7 +106,7 @@ impl ModeName {
         }
     }
 
-    /// Name and value, as `status` gives them.
+    /// Name and value, as in `status`.
     const fn data(self) -> (&'static str, &'static str) {
         match self {
             Self::Program => ("run_mode", "program"),
@@ -119,21 +119,21 @@ impl ModeName {
 
     const fn in_force(self) -> &'static str {
         match self {
-            Self::Program => "programs are edited (program mode)",
-            Self::Step => "programs run a step at a start (step mode)",
-            Self::Auto => "programs run from step to step (automatic mode)",
-            Self::Sequential => "sequential programs run (sequential mode)",
-            Self::Palletizing => "palletizing programs run (palletizing mode)",
+            Self::Program => "the controller is in program mode",
+            Self::Step => "the controller is in step mode",
+            Self::Auto => "the controller is in automatic mode",
+            Self::Sequential => "the controller is in sequential mode",
+            Self::Palletizing => "the controller is in palletizing mode",
         }
     }
 }
 
-/// Chooses how programs run, or which kind of them (TO 2-2).
+/// Select the run mode or the program type (TO 2-2).
 #[derive(Debug, Args)]
-#[command(after_help = "Easy and external point mode are chosen by a parameter: \
+#[command(after_help = "A parameter selects easy and external point mode: \
     `toyo param set M10 …`. `toyo status` shows the modes.")]
 pub struct Mode {
-    /// How: program, step or auto; which: sequential or palletizing
+    /// Run mode program, step or auto; program type sequential or palletizing
     mode: ModeName,
 }
 
@@ -147,20 +147,21 @@ impl Command for Mode {
         let (link, mode) = (context.link, self.mode);
         let old = Old::read(link.status_before(2).await?.and_then(|status| mode.instead_of(status)));
         link.ask(&Request::bare(mode.command())).await?;
-        if becomes(link, (2, "whether it is in force"), |status| mode.is_in_force(status)).await? {
+        if becomes(link, (2, "whether the mode is active"), |status| mode.is_in_force(status)).await? {
             let (set, new) = mode.data();
             return Ok(New::of(set, new, mode.in_force()).replaces(old));
         }
-        Err(not_so("the mode").hint("parameter M10 may have chosen easy or external point mode: `toyo param get M10`"))
+        Err(not_so("the mode")
+            .hint("check parameter M10, which selects easy or external point mode: `toyo param get M10`"))
     }
 }
 
-/// Accepted, and yet not so.
+/// Failure for a command that was accepted without effect.
 pub(super) fn not_so(what: &str) -> Failure {
-    Failure::new(Kind::ConditionNotMet, format!("the order was accepted, but {what} has not changed within 1s"))
+    Failure::new(Kind::ConditionNotMet, format!("the command was accepted, but {what} did not change within 1s"))
 }
 
-/// Puts programs back to their beginning (TO 2-7).
+/// Reset programs to the first step (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Reset {}
 
@@ -172,23 +173,23 @@ impl Command for Reset {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         context.link.ask(&Request::bare(table::Command::Rest)).await?;
-        let words = "the controller was reset; errors are cancelled by `toyo alarm reset`";
+        let words = "the controller was reset; `toyo alarm reset` cancels errors";
         Ok(New::of("programs", "reset", words).replaces(Old::UNREAD))
     }
 }
 
-/// Stops what runs, and waits until the axes stand. The order is repeated until then.
+/// Stop the motion, and wait until the axes stand still. The command is repeated until then.
 ///
-/// Without --jog: a program, a return to origin; and an axis that moves although nothing is executed.
+/// Without --jog: a program, a return to origin, or an axis that moves without execution.
 #[derive(Debug, Args)]
 pub struct Stop {
-    /// Stop a JOG, as after an armctl that was killed while an axis was jogged
+    /// Stop a jog, for example after an armctl that was killed during a jog
     #[arg(long)]
     jog: bool,
 }
 
 impl Stop {
-    /// Stops a program, or whatever moves.
+    /// Stop of a program or of any motion.
     pub const fn everything() -> Self {
         Self { jog: false }
     }
@@ -211,18 +212,18 @@ impl Command for Stop {
             context.link.letters().await?;
         }
         let position = context.link.coordinates(&place?).await;
-        let words = format!("the axes stand at {}", position.in_a_line());
+        let words = format!("the axes have stopped at {}", position.in_a_line());
         let position = position.position().of_group(UNIT);
         Ok(Stopped { done: New::of("running", false, words).replaces(Old::UNREAD), position })
     }
 }
 
-/// What was stopped stands.
+/// Report of a stop.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stopped {
     #[serde(flatten)]
     done: Done,
-    /// Where the axes stand.
+    /// Final position of the axes.
     position: Position,
 }
 
@@ -270,7 +271,7 @@ mod tests {
 
     #[test]
     fn a_stop_waits_for_nothing() {
-        // Only if a controller refuses to stop a jog without it.
+        // Only if a controller refuses to stop a jog without the host.
         let host = ["@STAS SNO=2", "@HSON", "@JGST X=SP Y=SP Z=SP R=SP", "@SYSP", "@RPAR E01", "@HSOF"];
         assert_eq!(
             all_blocks(&["stop"]).unwrap(),
@@ -327,7 +328,7 @@ mod tests {
         bench.wait(std::time::Duration::from_secs(2));
         assert!(bench.data(&["stop"])["position"]["x_mm"].as_f64().unwrap() < -10.0);
         assert_eq!(bench.data(&["status"])["running"], false);
-        // Something is executed, so a jog is stopped in the same round.
+        // The status shows execution, so a jog is stopped in the same round.
         let heard = heard.borrow();
         let stop = heard.iter().position(|block| block == "@STOP").unwrap();
         assert_eq!(heard[stop + 1..stop + 3], ["@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP"]);
@@ -341,7 +342,7 @@ mod tests {
         assert_eq!(bench.data(&["status"])["running"], false);
         assert!(!heard.borrow().iter().any(|block| block == "@HSON"));
 
-        // Somebody else's jog, on a controller whose JOG wants the host and does not stop without it.
+        // A jog of another client, on a controller whose JOG needs the host and does not stop without it.
         let (mut bench, heard) = Bench::with_faults("", |block, count| {
             if block.starts_with("@JGST") && count == 1 { Fault::Answered("@NG") } else { Fault::None }
         });
@@ -362,7 +363,7 @@ mod tests {
     fn a_jog_that_was_left_is_stopped_in_the_first_round_also_with_the_host_off() {
         let jog = "@JGST X=SP Y=SP Z=SP R=SP";
         for refuses in [false, true] {
-            // STOP does not stop it; with the host OFF, the first stop of the JOG is refused.
+            // STOP does not stop the jog. With the host OFF, the first stop of the jog is refused.
             let (mut bench, heard) = Bench::with_faults("host = true\n", move |block, count| match block {
                 "@STOP" => Fault::Answered("@OK"),
                 "@STAS SNO=2" if refuses && count == 1 => Fault::Answered("@STAS SNO=2 ST1=00 ST2=00"),

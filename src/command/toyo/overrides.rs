@@ -1,4 +1,4 @@
-//! `toyo override`: the share of their speeds that programs run at.
+//! `toyo override`: speed override of programs.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::output::view::View;
 
 commands! {
-    /// What can be done with the override.
+    /// Commands for the override.
     pub enum Override {
         /// Read the override
         Get(Get),
@@ -27,23 +27,21 @@ commands! {
     }
 }
 
-/// Reads the override.
+/// Show the override.
 #[derive(Debug, Args)]
 pub struct Get {}
 
-/// Writes the override, unless it is that already.
+/// Write the override if it differs.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "The value is in the EEPROM, which takes about a million writes: set it now and then, not in a loop. A \
-                        program that runs keeps the override that it was started with."
-)]
+#[command(after_help = "The EEPROM stores the value and takes about a million writes: do not set it in a loop. A \
+                        running program keeps its override.")]
 pub struct Set {
     /// 1 to 100
     #[arg(value_name = "PERCENT", value_parser = percent)]
     percent: i32,
 }
 
-/// The field of WOVR OV=001.
+/// Field of WOVR OV=001.
 fn field() -> &'static Field {
     &table::Command::Wovr.row().requests[0].fields[0]
 }
@@ -91,7 +89,7 @@ pub struct Percent {
     speed_override_percent: u8,
 }
 
-/// The override as it was written.
+/// Result of a write.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Written {
     #[serde(flatten)]

@@ -1,4 +1,4 @@
-//! A robot of the family in the line that `armctl status` prints.
+//! State of a controller for `armctl status`.
 
 use super::link::Link;
 use super::position::Coordinates;
@@ -10,7 +10,7 @@ use crate::controller::toyo::status::{RunMode, Status};
 use crate::controller::toyo::table::Command;
 use crate::failure::Failure;
 
-/// Asks for status and position.
+/// Reads status and position.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let status = link.status_of(&[0, 1, 2, 3]).await?;
     let letters = link.letters().await?;
@@ -18,9 +18,9 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     Ok(report(status, Some(place)))
 }
 
-/// What the answers say.
+/// Report of the answers.
 pub(super) fn report(status: Status, place: Option<Coordinates>) -> OverviewReport {
-    // Where the axes are X, Y and Z by the letters of the pendant.
+    // The teach pendant gives the axes the letters X, Y and Z.
     let position = place.and_then(|place| {
         let of = |letter| place.of_letter(letter);
         Some(PositionMm { x_mm: of("X")?, y_mm: of("Y")?, z_mm: of("Z")? })
@@ -29,7 +29,7 @@ pub(super) fn report(status: Status, place: Option<Coordinates>) -> OverviewRepo
     OverviewReport { state, left_over: left_over(status), ..OverviewReport::default() }
 }
 
-/// The state that the pages tell.
+/// State from the pages of the status.
 pub(super) fn state(status: Status) -> State {
     let mode = status.run_mode();
     State {
@@ -45,17 +45,13 @@ pub(super) fn state(status: Status) -> State {
     }
 }
 
-/// What a client that is gone left behind, as far as the status tells it.
+/// Settings that an ended client left, as far as the status shows them.
 pub(super) fn left_over(status: Status) -> Vec<LeftOver> {
     let is_program = status.run_mode() == Some(RunMode::Program);
     [
-        LeftOver::new(status.host_on(), "the host is ON", "`toyo host off` gives the start input back"),
-        LeftOver::new(is_program, "the controller is in program mode", "`toyo mode auto` or `toyo mode step`"),
-        LeftOver::new(
-            status.paused(),
-            "a program stands in its midst",
-            "`toyo reset` puts programs to their beginning",
-        ),
+        LeftOver::new(status.host_on(), "the host is ON", "`toyo host off` releases the host"),
+        LeftOver::new(is_program, "the controller is in program mode", "use use `toyo mode auto` or `toyo mode step`"),
+        LeftOver::new(status.paused(), "a program is paused", "`toyo reset` resets programs to the first step"),
     ]
     .into_iter()
     .flatten()

@@ -1,4 +1,4 @@
-//! The keys of `armctl teach` as command lines of `toyo`.
+//! Keys of `armctl teach` as command lines of `toyo`.
 
 use serde_json::Value;
 
@@ -6,7 +6,7 @@ use crate::command::face::panel::{Panel, SmallStep, System, words};
 
 const AXES: [(&str, &str); 4] = [("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("R", "mm")];
 
-/// See [`Panel`]. The controller moves by its own small step, parameter P12, once for each order.
+/// See [`Panel`]. The controller moves by its own inching step (parameter P12), once per command.
 pub const PANEL: Panel = Panel {
     systems: &[System {
         name: "axes",

@@ -1,4 +1,4 @@
-//! `toyo ports`: the serial ports of this machine.
+//! `toyo ports`: serial ports of this computer.
 
 use anyhow::Context as _;
 use clap::Args;
@@ -11,27 +11,24 @@ use crate::output::Screen;
 use crate::output::view::{Cell, Table, View};
 use crate::transport::ports::{self, PortInfo, PortKind, PortUser};
 
-/// Another program has the port. An armctl that is told to end stops first what it moves.
+/// Failure because another program uses the port. An armctl that receives a termination signal first stops its motion.
 pub fn in_use(label: &str, path: &str) -> Failure {
     let failure = |by: &str| Failure::new(Kind::NoAnswer, format!("{label}: {by} uses {path}"));
     match ports::user(path) {
-        Some(PortUser { pid, name }) if ["armctl", "toyo"].contains(&&name[..]) => {
-            failure(&format!("another armctl, process {pid},")).hint(format!(
-                "`kill {pid}` ends it; what it moves, it stops first. `armctl session open` lets commands share a line"
-            ))
-        }
+        Some(PortUser { pid, name }) if ["armctl", "toyo"].contains(&&name[..]) => failure(&format!(
+            "another armctl, process {pid},"
+        ))
+        .hint(format!("use `kill {pid}`: it stops its motion and ends; or share the line with `armctl session open`")),
         Some(PortUser { pid, name }) => failure(&format!("{}, process {pid},", name.escape_debug()))
-            .hint("close it: a line can have one host at a time"),
-        None => failure("another program").hint("close it: a line can have one host at a time"),
+            .hint("close the other program: a line can have one host at a time"),
+        None => failure("another program").hint("close the other program: a line can have one host at a time"),
     }
 }
 
-/// Lists the serial ports of this machine, without opening any.
+/// List the serial ports of this computer without opening them.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "What stands under target is for -t, or for `armctl robots add`. `armctl help toyo-setup` tells \
-                        about cable and settings."
-)]
+#[command(after_help = "Use the target with -t or `armctl robots add`. `armctl help toyo-setup` describes \
+                        cable and settings.")]
 pub struct Ports {}
 
 impl OfflineCommand for Ports {
@@ -43,13 +40,13 @@ impl OfflineCommand for Ports {
     }
 }
 
-/// The serial ports of this machine, as they are told.
+/// Serial ports of this computer.
 pub fn all() -> Result<Vec<Port>, Failure> {
     let found = ports::ports().context("the list of serial ports")?;
     Ok(found.into_iter().map(Port::from).collect())
 }
 
-/// The serial ports there are.
+/// Serial ports.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct List {
     ports: Vec<Port>,
@@ -60,17 +57,17 @@ pub struct List {
 pub struct Port {
     /// `/dev/ttyUSB0`, `COM3`.
     name: String,
-    /// A name that stays the same whatever else is plugged in (Linux).
+    /// Name that does not depend on other devices (Linux).
     stable_name: Option<String>,
-    /// The URL for `-t`, by the name that stays.
+    /// URL for `-t`, with the stable name.
     target: String,
     /// `usb`, `pci`, `bluetooth` or `other`.
     kind: &'static str,
-    /// As the USB device tells it.
+    /// Manufacturer from the USB device.
     maker: Option<String>,
-    /// As the USB device tells it.
+    /// Product from the USB device.
     product: Option<String>,
-    /// As the USB device tells it.
+    /// Serial number from the USB device.
     serial_number: Option<String>,
     /// Vendor and product of USB, hexadecimal: `0403:6001`.
     usb_id: Option<String>,
@@ -111,7 +108,7 @@ impl Port {
         &self.target
     }
 
-    /// What it is, in words: `FTDI FT232R USB UART (usb 0403:6001)`.
+    /// Description: `FTDI FT232R USB UART (usb 0403:6001)`.
     pub fn device(&self) -> String {
         let names: Vec<&str> = [&self.maker, &self.product].into_iter().flatten().map(String::as_str).collect();
         let kind = self.usb_id.as_ref().map_or_else(|| self.kind.to_owned(), |id| format!("{} {id}", self.kind));
@@ -123,7 +120,7 @@ impl Report for List {
     fn view(&self) -> View {
         let mut table = Table::new(
             &["port", "device", "target"],
-            "no serial port found; plug the adapter in, or pass it on to this container or virtual machine",
+            "no serial port found; plug the adapter in, or connect it to this container or virtual machine",
         );
         for port in &self.ports {
             table.row([Cell::from(port.name.as_str()).whole(), port.device().into(), port.target.as_str().into()]);

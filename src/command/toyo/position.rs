@@ -1,4 +1,4 @@
-//! `toyo position`: where the axes are.
+//! `toyo position`: current position of the axes.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -15,7 +15,7 @@ use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
-/// Asks for the present position.
+/// Show the current position.
 #[derive(Debug, Args)]
 pub struct Position {
     /// Show a small chart of each axis over the rounds of --watch
@@ -39,10 +39,10 @@ impl Command for Position {
     }
 }
 
-/// What has the axes: a controller has one robot.
+/// Group of the axes; a controller has one robot.
 pub const UNIT: &str = "unit 1";
 
-/// What stands before or above the coordinates of an axis, 0 to 3.
+/// Heading of the coordinates of an axis, 0 to 3.
 pub fn heading(index: usize, letter: &str) -> &'static str {
     const HEADINGS: [[&str; 5]; 4] = [
         ["X (mm)", "axis 1: Y (mm)", "axis 1: Z (mm)", "axis 1: R (mm)", "axis 1 (mm)"],
@@ -54,7 +54,7 @@ pub fn heading(index: usize, letter: &str) -> &'static str {
     HEADINGS[index.min(3)][column]
 }
 
-/// How an axis (0 to 3) is called: by its letter, and by its number where others have it in another place.
+/// Title of an axis (0 to 3): its letter, and its number if the letter is at an unusual place.
 pub fn titled(index: usize, letter: &str) -> String {
     match letter {
         _ if ["X", "Y", "Z", "R"].get(index) == Some(&letter) => letter.to_owned(),
@@ -63,28 +63,28 @@ pub fn titled(index: usize, letter: &str) -> String {
     }
 }
 
-/// Coordinates of the four axes, each with the letter that the teach pendant shows for it. On the line they are X, Y, Z
-/// and R for axes 1 to 4 whatever their letters are (the manual gives no unit; ambiguity R13).
+/// Coordinates of the four axes with the letters of the teach pendant. The protocol calls axes 1 to 4 X, Y, Z and R,
+/// regardless of their letters. The manual gives no unit (ambiguity R13).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinates {
-    /// Of axes 1 to 4.
+    /// Coordinates of axes 1 to 4.
     mm: [f64; 4],
     letters: Letters,
 }
 
-/// Coordinates by the letters that the teach pendant shows (E01). A machine that does not tell its letters, or has one of
-/// them twice, has `ax1_mm` to `ax4_mm` in place of those that no letter means alone.
+/// Coordinates by the letters of the teach pendant (E01). If the machine does not report a letter, or repeats it, the
+/// keys are `ax1_mm` to `ax4_mm`.
 #[derive(JsonSchema)]
 #[schemars(rename = "Coordinates")]
 #[expect(dead_code, reason = "the shape of what is written below")]
 struct Shape {
-    /// Of the axis that is X.
+    /// Coordinate of axis X.
     x_mm: Option<f64>,
-    /// Of the axis that is Y.
+    /// Coordinate of axis Y.
     y_mm: Option<f64>,
-    /// Of the axis that is Z.
+    /// Coordinate of axis Z.
     z_mm: Option<f64>,
-    /// Of the axis that is R, in the same unit as the others.
+    /// Coordinate of axis R, in the same unit.
     r_mm: Option<f64>,
 }
 
@@ -109,19 +109,19 @@ impl Serialize for Coordinates {
 }
 
 impl Coordinates {
-    /// The fields `x`, `y`, `z` and `r` of a record, of axes with these letters; 0 for those it does not have.
+    /// Fields `x`, `y`, `z` and `r` of a record for axes with these letters; 0 for missing fields.
     pub fn of(record: &Record, letters: Letters) -> Self {
         let mm = |name| f64::from(record.number(name).unwrap_or(0)) / 100.0;
         Self { mm: ["x", "y", "z", "r"].map(mm), letters }
     }
 
-    /// Coordinates of the four axes in mm, to the hundredth as a controller tells them, of a machine with the usual letters.
+    /// Coordinates in mm of a machine with the usual letters, with the two decimals of a controller.
     pub fn at(mm: [f64; 4]) -> Self {
-        // A tiny negative one is 0.
+        // Adding 0 turns -0 into 0.
         Self { mm: mm.map(|mm| (mm * 100.0).round() / 100.0 + 0.0), letters: Letters::USUAL }
     }
 
-    /// As reports have them: X, Y and Z by the letters of the axes.
+    /// Position for a report, with X, Y and Z by the letters of the axes.
     pub fn position(&self) -> robot::Position {
         let name = |axis: usize| match self.letters.of(axis) {
             "" => (axis + 1).to_string(),
@@ -133,17 +133,17 @@ impl Coordinates {
         robot::Position { x_mm, y_mm, z_mm, text: Some(text.collect::<Vec<_>>().join(" ")), ..position }
     }
 
-    /// Of axes 1 to 4 in mm.
+    /// Coordinates of axes 1 to 4 in mm.
     pub fn mm(&self) -> [f64; 4] {
         self.mm
     }
 
-    /// Of the axis that has this letter alone.
+    /// Coordinate of the only axis with this letter.
     pub fn of_letter(&self, letter: &str) -> Option<f64> {
         self.letters.axis(letter).map(|axis| self.mm[axis])
     }
 
-    /// With names, in a line.
+    /// Coordinates with names in one line.
     pub fn in_a_line(&self) -> String {
         let axes = self.mm.iter().enumerate().map(|(axis, mm)| match self.letters.name(axis) {
             numbered if numbered.starts_with("ax") => format!("{} {mm:.2}", titled(axis, self.letters.of(axis))),

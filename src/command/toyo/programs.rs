@@ -1,4 +1,4 @@
-//! `copy` and `select` of `toyo easy` and `toyo palletizing`: programs that have a number.
+//! `copy` and `select` of `toyo easy` and `toyo palletizing`, whose programs have numbers.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -18,28 +18,28 @@ use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 
-/// Programs of one kind.
+/// A type of numbered programs.
 pub trait Kind: Debug + 'static {
     /// `easy program`.
     const WHAT: &'static str;
     /// `toyo.easy.copy`, `toyo.easy.select`.
     const IDS: [&'static str; 2];
-    /// What a copy does, behind "This will …".
+    /// Text after "This will …" for a copy.
     const INTENT: &'static str;
-    /// Help for the program that is copied, the one that is replaced, and the one that is chosen.
+    /// Help for the source, the target, and the selected program.
     const HELP: [&'static str; 3];
-    /// What runs the one that is chosen.
+    /// Command that starts the selected program.
     const RUN: &'static str;
-    /// What copies, what chooses, and what tells which one is chosen.
+    /// Protocol commands that copy, select, and report the selected program.
     const COMMANDS: [table::Command; 3];
 
-    /// The number of a program.
+    /// Field of the program number.
     fn field() -> &'static Field;
-    /// What reads all of a program.
+    /// Requests that read a whole program.
     fn reads(program: i32) -> Result<Vec<Request>, Failure>;
 }
 
-/// Copies a program over another one, unless they are the same already.
+/// Copy a program to another number if they differ.
 #[derive(Debug, Args)]
 pub struct Copy<K: Kind> {
     #[arg(value_name = "FROM", help = K::HELP[0], value_parser = |text: &str| number(K::field(), text))]
@@ -50,7 +50,7 @@ pub struct Copy<K: Kind> {
     of: PhantomData<K>,
 }
 
-/// Chooses the program that `toyo run` starts.
+/// Select the program that `toyo run` starts.
 #[derive(Debug, Args)]
 pub struct Select<K: Kind> {
     #[arg(value_name = "PROGRAM", help = K::HELP[2], value_parser = |text: &str| number(K::field(), text))]
@@ -90,10 +90,10 @@ impl<K: Kind> Command for Select<K> {
         let found = read_back(link, &order, &chosen).await?.number("program");
         if let Some(found) = found.filter(|found| *found != self.program) {
             return Err(
-                not_held(&order, &format!("program {found} is chosen")).hint("a program that runs stays chosen")
+                not_held(&order, &format!("program {found} is selected")).hint("a running program stays selected")
             );
         }
-        let words = format!("{} {} is chosen; `{}` starts it", K::WHAT, self.program, K::RUN);
+        let words = format!("{} {} is selected; `{}` starts it", K::WHAT, self.program, K::RUN);
         Ok(New::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
     }
 }

@@ -1,4 +1,4 @@
-//! `toyo raw`: any block, and what the answer says.
+//! `toyo raw`: sends any block and explains the answer.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -16,21 +16,19 @@ use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 use crate::output::view::View;
 
-/// Sends a block as it is: no host ON, no comparison, no waiting for what it does.
+/// Send a block unchanged, without host ON, comparison or wait.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "A block that is not as the manual prints it goes out all the same, and counts as a motion, as nobody \
-                        knows what it does. Before what is not known to only read or to stop, a page of the status is \
-                        asked for, so that no older answer is taken for its own. If the controller refuses (@NG), the exit code is 3. `armctl decode toyo` \
-                        explains a block without sending it."
-)]
+#[command(after_help = "A block that is not in the manual is also sent. It counts as a motion, because its effect \
+                        is unknown. Before a block that can change something, armctl reads a page of the status, \
+                        so that a late answer is recognized. If the controller refuses (@NG), the exit code is 3. `armctl decode toyo` \
+                        explains a block without sending it.")]
 pub struct Raw {
-    /// The block without its line end, such as '@STAS SNO=0'
+    /// Block without its line end, such as '@STAS SNO=0'
     #[arg(value_name = "BLOCK", value_parser = block)]
     block: Block,
 }
 
-/// A block, as the manual prints it or not.
+/// A block, with its request if the manual has it.
 #[derive(Debug, Clone)]
 enum Block {
     Known(Box<Request>),
@@ -43,7 +41,7 @@ fn block(text: &str) -> Result<Block, String> {
         Err(error @ (BlockError::Start | BlockError::Long { .. } | BlockError::Character { .. })) => {
             Err(error.to_string())
         }
-        _ if text.ends_with(['\r', '\n']) => Err("leave the line end away: it is added".to_owned()),
+        _ if text.ends_with(['\r', '\n']) => Err("remove the line end, because armctl adds it".to_owned()),
         _ => Ok(Block::Unknown(text.to_owned())),
     }
 }
@@ -74,7 +72,7 @@ impl Command for Raw {
     }
 
     fn intent(&self) -> String {
-        let about = self.block.request().map_or("which is not as the manual prints it", |request| request.row().about);
+        let about = self.block.request().map_or("which is not in the manual", |request| request.row().about);
         format!("send {} ({about})", self.block.text())
     }
 
@@ -94,7 +92,7 @@ impl Command for Raw {
     }
 }
 
-/// What was done so was wanted, and is nothing that somebody else has left.
+/// The user chose these settings, so they need no notice.
 fn chosen(link: &mut Link, request: &Request) {
     match request.command() {
         table::Command::Hson => link.choose_host(true),
@@ -109,13 +107,13 @@ fn chosen(link: &mut Link, request: &Request) {
 pub struct Exchange {
     request: String,
     answer: String,
-    /// The answer in words.
+    /// Meaning of the answer.
     title: String,
-    /// The answer field by field.
+    /// Fields of the answer.
     fields: Vec<FieldNote>,
-    /// What is wrong with the answer.
+    /// Error in the answer.
     problem: Option<String>,
-    /// Whether it is `@NG`.
+    /// Whether the answer is `@NG`.
     refused: bool,
 }
 
@@ -144,7 +142,7 @@ impl Report for Exchange {
         let refused = || {
             Failure::new(Kind::Refused, format!("the controller refused {} (@NG)", self.request))
                 .code("NG")
-                .hint("`toyo status` may tell why; most orders need the host ON (`toyo host on`)")
+                .hint("`toyo status` can show the reason; most commands need the host ON (`toyo host on`)")
         };
         self.refused.then(refused)
     }
@@ -210,7 +208,7 @@ mod tests {
         for text in ["@WOVR OV=101", "@WOVR OV=1", "@XXXX", "@STAS SNO=0 "] {
             assert_eq!(risk(text), Risk::Motion, "{text}");
         }
-        assert_eq!(intent(&["raw", "@XXXX"]), "send @XXXX (which is not as the manual prints it)");
+        assert_eq!(intent(&["raw", "@XXXX"]), "send @XXXX (which is not in the manual)");
     }
 
     #[test]

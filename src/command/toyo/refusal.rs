@@ -1,4 +1,4 @@
-//! A controller's `@NG` in words: it has no code, so the status must tell why.
+//! Explanation of a refusal. `@NG` has no code, so the status must show the reason.
 
 use super::link::Link;
 use crate::controller::Risk;
@@ -8,7 +8,7 @@ use crate::controller::toyo::status::{ProgramKind, RunMode, Status};
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::failure::{Failure, Kind};
 
-/// What may be behind a refusal, as far as the status tells.
+/// Failure with the reason of a refusal, as far as the status shows it.
 pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     let row = request.row();
     if row.risk == Risk::Read {
@@ -16,46 +16,50 @@ pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     }
     let status = match link.status().await {
         Ok(status) => status,
-        // It was answered with yes as well.
+        // The controller also answered OK to the same command.
         Err(failure) if failure.kind == Kind::OutcomeUnknown => return failure,
-        // That it was refused is known, whatever becomes of the question why.
+        // The refusal is certain, even if the reason cannot be read.
         Err(_) => {
-            return refused(request, "the status, which may tell why, could not be read", "`toyo status` may tell why");
+            return refused(
+                request,
+                "the reason is unknown, because the status could not be read",
+                "`toyo status` can show the reason",
+            );
         }
     };
     match reason(status, row) {
         Some((why, hint)) => refused(request, &why, &hint),
-        None => refused(request, "the status does not tell why", &unexplained(row)),
+        None => refused(request, "the status shows no reason", &unexplained(row)),
     }
 }
 
-/// A question was refused, of which nothing in the status tells why.
+/// Failure for a refused read whose reason the status does not show.
 pub fn of_question(request: &Request) -> Failure {
-    refused(request, "the status does not tell why", &unexplained(request.row()))
+    refused(request, "the status shows no reason", &unexplained(request.row()))
 }
 
-/// The teach pendant has the controller.
+/// Failure because the teach pendant has control.
 pub fn pendant() -> Failure {
     Failure::new(Kind::Refused, "the controller refused: the teach pendant is ON, and the host cannot take over")
         .hint("switch the teach pendant OFF, then repeat the command")
         .code("NG")
 }
 
-/// Not even the status is told.
+/// Failure because the controller refuses to report its status.
 pub fn mute() -> Failure {
-    Failure::new(Kind::Refused, "the controller refuses even to tell its status (@NG)")
-        .hint("it is busy, or no such controller: try again, then look at the teach pendant")
+    Failure::new(Kind::Refused, "the controller refused to report its status (@NG)")
+        .hint("try again, then check the teach pendant: the controller is busy or is another model")
         .code("NG")
 }
 
-/// Names the whole block: which point, counter or step it was about.
+/// Failure with the whole block, which contains the number of the point, counter or step.
 fn refused(request: &Request, why: &str, hint: &str) -> Failure {
     let text = request.text();
     let block = text.trim_start_matches('@');
     Failure::new(Kind::Refused, format!("the controller refused {block} (@NG): {why}")).hint(hint).code("NG")
 }
 
-/// The weightiest thing in the status that keeps a command from being done, with what to do.
+/// The most important reason in the status that prevents a command, with its remedy.
 fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     let told = |why: &str, hint: &str| Some((why.to_owned(), hint.to_owned()));
     let moves = row.risk == Risk::Motion;
@@ -64,7 +68,7 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
     if status.needs_power_cycle() {
         return told(
-            "parameter 2 was changed: only communication works until the power was off",
+            "parameter 2 was changed, and the controller needs a restart",
             "switch the controller's power off and on",
         );
     }
@@ -78,15 +82,15 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
     if status.card_reading() || status.card_writing() {
         return told(
-            "the memory card is being used",
-            "wait until it is done: `toyo status --until '.data.card | (.reading or .writing) | not'`",
+            "the memory card is in use",
+            "wait for the end: `toyo status --until '.data.card | (.reading or .writing) | not'`",
         );
     }
     if status.homing() {
-        return told("the axes are returning to the origin", "wait for the end, or `toyo stop`");
+        return told("the axes are returning to the origin", "wait for the end, or use `toyo stop`");
     }
     if status.executing() {
-        return told("a program or command is being executed", "wait for the end, or `toyo stop`");
+        return told("the controller executes a program or command", "wait for the end, or use `toyo stop`");
     }
     if moves && !status.servo_on() && !matches!(row.command, Command::Svon | Command::Svof | Command::Mrss) {
         return told("servo power is off", "`toyo servo on`");
@@ -105,16 +109,16 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
     match row.command {
         Command::Wmca | Command::Rmca if !status.card_inserted() => told("there is no memory card", "insert one"),
-        Command::Rmca => told("the status does not tell why", "there may be nothing on the card that can be read"),
-        Command::Mrss => told("the status does not tell why", "coordinates sent before may still wait for their RSMV"),
+        Command::Rmca => told("the status shows no reason", "check that the card contains data of this controller"),
+        Command::Mrss => told("the status shows no reason", "earlier coordinates can still wait for their RSMV step"),
         _ if row.writes_eeprom && status.run_mode() != Some(RunMode::Program) => {
-            told("the controller is not in program mode", "`toyo mode program`, if the controller asks for it")
+            told("the controller is not in program mode", "use `toyo mode program` if the controller requires it")
         }
         _ => None,
     }
 }
 
-/// What to do about an error, in the order in which a controller takes it: nothing moves before the error is cancelled.
+/// Remedy for an error, in the order that the controller requires: nothing moves before the error is cancelled.
 pub fn cure(remedy: &str) -> String {
     match remedy.strip_suffix(" first") {
         Some(motion) => format!("`toyo alarm reset`, then {motion}"),
@@ -122,56 +126,54 @@ pub fn cure(remedy: &str) -> String {
     }
 }
 
-/// What a start runs, and how that mode is chosen.
+/// Program kind that a command starts, and the hint to select that kind.
 fn kind_of(start: Command) -> Option<(ProgramKind, &'static str)> {
     Some(match start {
         Command::Spst => (
             ProgramKind::Sequential,
-            "`toyo mode sequential`; easy and external point mode end with `toyo param set M10 I`",
+            "use `toyo mode sequential`; `toyo param set M10 I` ends easy and external point mode",
         ),
         Command::Ppst => (
             ProgramKind::Palletizing,
-            "`toyo mode palletizing`; easy and external point mode end with `toyo param set M10 I`",
+            "use `toyo mode palletizing`; `toyo param set M10 I` ends easy and external point mode",
         ),
-        Command::Sesy => (ProgramKind::Easy, "`toyo param set M10 E` chooses easy mode"),
-        Command::Extp => (ProgramKind::ExternalPoint, "`toyo param set M10 P` chooses external point mode"),
+        Command::Sesy => (ProgramKind::Easy, "use `toyo param set M10 E` to select easy mode"),
+        Command::Extp => (ProgramKind::ExternalPoint, "use `toyo param set M10 P` to select external point mode"),
         _ => return None,
     })
 }
 
 fn unexplained(row: &Row) -> String {
     if row.command == Command::Dout {
-        "there may be no such output, or parameter M12 (direct-outputs) have no bit for F1 to F4".to_owned()
+        "check that the output exists, and that parameter M12 (direct-outputs) has its bit for F1 to F4".to_owned()
     } else if row.only_on.is_empty() {
-        "the value may be out of what this controller has, or the controller be busy: try again".to_owned()
+        "try again, and check that this controller has the item".to_owned()
     } else {
-        format!("only some controllers have it: {}", row.only_on.join(", "))
+        format!("only some controllers support it: {}", row.only_on.join(", "))
     }
 }
 
-/// What tells whether an order was carried out whose answer was lost.
+/// Hint for the command that shows whether an unanswered command was executed.
 pub fn verification_hint(command: Command) -> &'static str {
     match command {
-        Command::Home | Command::Sorg => {
-            "keep clear; `toyo status` tells whether it moves, and whether the origin is done"
-        }
+        Command::Home | Command::Sorg => "keep clear; `toyo status` shows motion and origin",
         Command::Spst | Command::Ppst | Command::Sesy | Command::Extp | Command::Mrss => {
-            "keep clear; `toyo status` and `toyo position` tell whether it moves, and where it is"
+            "keep clear; `toyo status` and `toyo position` show motion and position"
         }
-        Command::Jgst => "keep clear; `toyo stop --jog` stops it, `toyo position` tells where it is",
-        Command::Svon | Command::Svof => "`toyo status` tells whether servo power is on",
-        Command::Wpar => "`toyo param get` tells what is stored",
+        Command::Jgst => "keep clear; `toyo stop --jog` stops the axis, `toyo position` shows where it is",
+        Command::Svon | Command::Svof => "`toyo status` shows whether servo power is on",
+        Command::Wpar => "`toyo param get` shows the stored value",
         Command::Wstx | Command::Istx | Command::Dstx | Command::Dstl | Command::Cpss => {
-            "`toyo program get` tells what is stored"
+            "`toyo program get` shows the stored steps"
         }
-        Command::Wplt | Command::Cppl => "`toyo palletizing get` tells what is stored",
-        Command::Wesy | Command::Cesy => "`toyo easy get` tells what is stored",
-        Command::Dout => "`toyo io list --out` reads them",
-        Command::Wovr => "`toyo override get` tells",
-        Command::Mcst => "`toyo counter get` tells",
-        Command::Ctsk => "`toyo task get` tells",
-        Command::Wmca | Command::Rmca => "`toyo status` tells whether the card is being used",
-        _ => "`toyo status` tells how the controller stands",
+        Command::Wplt | Command::Cppl => "`toyo palletizing get` shows the stored program",
+        Command::Wesy | Command::Cesy => "`toyo easy get` shows the stored program",
+        Command::Dout => "`toyo io list --out` shows the outputs",
+        Command::Wovr => "`toyo override get` shows the override",
+        Command::Mcst => "`toyo counter get` shows the counter",
+        Command::Ctsk => "`toyo task get` shows the current task",
+        Command::Wmca | Command::Rmca => "`toyo status` shows whether the card is in use",
+        _ => "`toyo status` shows the state of the controller",
     }
 }
 
@@ -187,12 +189,12 @@ mod tests {
         assert_eq!(why(fine, Command::Home), None);
         assert_eq!(why(fine.with(2, 0x40), Command::Home).unwrap(), "the teach pendant is ON");
         assert_eq!(why(fine.with(2, 0), Command::Home).unwrap(), "the host is OFF");
-        assert_eq!(why(fine.with(0, 0x32), Command::Spst).unwrap(), "a program or command is being executed");
+        assert_eq!(why(fine.with(0, 0x32), Command::Spst).unwrap(), "the controller executes a program or command");
         assert_eq!(why(fine.with(3, 0x10), Command::Spst).unwrap(), "servo power is off");
         assert_eq!(why(fine.with(0, 0x20), Command::Spst).unwrap(), "the axes have not returned to the origin");
         assert!(why(fine.with(0, 0x31).with(1, 0x28), Command::Spst).unwrap().starts_with("error 28: axis 1"));
         let question = of_question(&Request::of(Command::Mcnt, [Value::Number(5)]));
-        assert_eq!(question.message, "the controller refused MCNT CN=05 (@NG): the status does not tell why");
+        assert_eq!(question.message, "the controller refused MCNT CN=05 (@NG): the status shows no reason");
         assert!(why(fine.with(0, 0xB0), Command::Cerr).unwrap().starts_with("parameter 2 was changed"));
         assert_eq!(why(fine.with(2, 0x83), Command::Spst).unwrap(), "the controller is in easy mode");
         assert_eq!(why(fine.with(2, 0x80), Command::Extp).unwrap(), "the controller is in sequential mode");

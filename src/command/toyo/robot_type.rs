@@ -1,4 +1,4 @@
-//! `toyo robot-type`: what machine an axis belongs to.
+//! `toyo robot-type`: robot type of an axis.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -16,13 +16,11 @@ use crate::failure::{Failure, Kind};
 use crate::gate::Confirmation;
 use crate::output::view::View;
 
-/// Sets the robot type of an axis, which its parameters follow from.
+/// Set the robot type of an axis, which determines its parameters.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "A wrong type can make the axis run wrong: use the one on its name plate. A number that the controller \
-                        does not know changes nothing (exit code 3). On a real controller the word 'type' has to be \
-                        typed, or --yes given. `toyo info` shows the type of the robot."
-)]
+#[command(after_help = "A wrong type can cause wrong motion: use the type on the name plate. An unknown number \
+                        changes nothing (exit code 3). On a real controller, you confirm by typing the word 'type', \
+                        or with --yes. `toyo info` shows the type of the robot.")]
 pub struct RobotType {
     /// 1 to 4
     #[arg(value_name = "AXIS", value_parser = |text: &str| number(&fields()[0], text))]
@@ -32,7 +30,7 @@ pub struct RobotType {
     robot_type: i32,
 }
 
-/// The fields of TYPE AX1 RTYP=000000.
+/// Fields of TYPE AX1 RTYP=000000.
 fn fields() -> &'static [Field] {
     table::Command::Type.row().requests[0].fields
 }
@@ -44,7 +42,7 @@ impl Command for RobotType {
     const RISK: Risk = Risk::Destroy;
 
     fn intent(&self) -> String {
-        format!("make axis {} of robot type {:06}; its parameters may change with it", self.axis, self.robot_type)
+        format!("set axis {} to robot type {:06}; its parameters can change", self.axis, self.robot_type)
     }
 
     fn confirmation(&self) -> Confirmation {
@@ -55,14 +53,14 @@ impl Command for RobotType {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
         let Some(answer) = context.link.ask(&order).await.known()? else {
-            // Notes what follows, and ends.
+            // Records the later requests of a dry run, which ends here.
             context.link.status_of(&[0]).await?;
             return Err(unknown());
         };
         let shown = |number: i32| fields()[1].written(&Value::Number(number));
         let in_force = shown(answer.number("in_force").unwrap_or(0));
         let status = context.link.status_of(&[0]).await.map_err(|failure| {
-            let message = format!("robot type {in_force} is in force now, but then: {}", failure.message);
+            let message = format!("robot type {in_force} is active now, but then: {}", failure.message);
             Failure { message, ..failure }
         })?;
         Ok(InForce {
@@ -74,30 +72,30 @@ impl Command for RobotType {
     }
 }
 
-/// The robot type of an axis.
+/// Robot type of an axis.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct InForce {
     #[serde(rename = "axis_number")]
     axis: u8,
-    /// The one in force: six digits.
+    /// Active type: six digits.
     robot_type: String,
-    /// The one that was asked for.
+    /// Requested type.
     wanted: String,
-    /// Nothing is executed until the power was off.
+    /// Whether the controller executes nothing before a restart.
     needs_power_cycle: bool,
 }
 
 impl Report for InForce {
     fn view(&self) -> View {
         let then = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
-        View::text(format!("axis {} is of robot type {}{then}", self.axis, self.robot_type))
+        View::text(format!("axis {} has robot type {}{then}", self.axis, self.robot_type))
     }
 
     fn failure(&self) -> Option<Failure> {
         let Self { axis, robot_type, wanted, .. } = self;
-        let message = format!("the controller does not take robot type {wanted}: axis {axis} stays at {robot_type}");
-        (robot_type != wanted)
-            .then(|| Failure::new(Kind::Refused, message).hint("check the number; that of the name plate counts"))
+        let message =
+            format!("the controller does not accept robot type {wanted}: axis {axis} still has type {robot_type}");
+        (robot_type != wanted).then(|| Failure::new(Kind::Refused, message).hint("check the number on the name plate"))
     }
 }
 

@@ -1,5 +1,5 @@
-//! Tables in the controller's EEPROM: speeds, acceleration times, torque limits, easy programs. Each is a declaration
-//! ([`Kind`]); how rows are read and written stands here, once.
+//! Tables in the EEPROM of the controller: speeds, acceleration times, torque limits, easy programs. Each table is a
+//! declaration ([`Kind`]) on a common implementation of read and write.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -41,62 +41,61 @@ table_commands! {
     TorqueTable of Rows<Torque> {}
 }
 
-/// What a table is, and what of it is reported.
+/// Declaration of a table.
 pub trait Kind: Debug + Send + Sync + 'static {
-    /// What one row holds, for reports.
+    /// Values of one row in a report.
     type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Its words.
+    /// Terms for help and messages.
     const WORDS: Words;
-    /// Names of its reports.
+    /// Ids of its reports.
     const IDS: Ids;
-    /// What a row holds, by name, in the order of the protocol.
+    /// Fields of a row, in the order of the protocol.
     const FIELDS: &'static [Field];
 
-    /// The number of a row.
+    /// Field of the row number.
     fn key() -> &'static field::Field;
 
-    /// The fields of a row, behind its number.
+    /// Fields of a row after its number.
     fn body() -> Layout;
 
-    /// What reads a row.
+    /// Request that reads a row.
     fn read(row: i32) -> Result<Request, Failure>;
 
-    /// A row with its values.
+    /// EEPROM cell of a row with these values.
     fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure>;
 
-    /// The block that writes a row; `?` stands for values that are kept.
+    /// Block that writes a row; `?` stands for kept values.
     fn sketch(row: i32, values: &[Option<Value>]) -> String;
 
     /// The values of a row.
     fn value(record: &Record) -> Self::Value;
 
-    /// Whether zeros mean that nobody wrote the row.
+    /// Whether a row of zeros counts as empty.
     const ZERO_IS_BLANK: bool = false;
 }
 
 /// Help of commands that write to the EEPROM.
-pub const WRITING: &str =
-    "What the controller holds already is not written: its EEPROM takes about a million rewrites.";
+pub const WRITING: &str = "Equal values are not written, because the EEPROM takes about a million rewrites.";
 
 const fn words(nouns: [&'static str; 2], placeholder: &'static str, range: &'static str) -> Words {
     Words { nouns, placeholder, range, reading: None, writing: Some(WRITING) }
 }
 
-/// A table of `kind` as a store.
+/// A table as a store.
 #[derive(Debug)]
 pub struct Rows<K>(PhantomData<K>);
 
-/// What a toyo item has besides.
+/// Additional keys of a toyo item.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Listed {
-    /// Whether the manual lists what the controller holds; null where that was not read.
+    /// Whether the manual lists the value; null if it was not read.
     pub in_manual: Option<bool>,
-    /// As the controller holds it, where the manual does not list that: it is not written back.
+    /// Stored text that the manual does not list; it is not written back.
     pub raw: Option<String>,
 }
 
 impl Listed {
-    /// Of what was read.
+    /// Describes what was read.
     pub fn of(record: Option<&Record>) -> Self {
         let is_listed = record.map(Record::is_listed);
         Self { in_manual: is_listed, raw: record.filter(|record| !record.is_listed()).map(Record::written) }
@@ -175,34 +174,34 @@ impl<K: Kind> EepromRow for Rows<K> {
     }
 }
 
-/// A table of which each row is one record in the EEPROM.
+/// A table whose rows are records in the EEPROM.
 pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
-    /// Whether rows have different fields: a file has one column for all of them, `ax1=100 ax2=0`.
+    /// Whether rows have different fields. A file then has one column for all fields: `ax1=100 ax2=0`.
     const IS_MIXED: bool = false;
 
-    /// Letters of the axes, where rows are coordinates.
+    /// Letters of the axes, if rows have coordinates.
     fn letters(&self) -> Letters {
         Letters::USUAL
     }
 
-    /// Words of a command line that stand for others, such as a file of them.
+    /// Expands words of a command line, such as the name of a file with values.
     fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
         Ok(words.to_vec())
     }
 
-    /// The fields of a row, behind what tells it from the others.
+    /// Fields of a row after its key.
     fn body(&self, key: Self::Key) -> Layout;
 
-    /// What reads a row.
+    /// Request that reads a row.
     fn request(&self, key: Self::Key) -> Result<Request, Failure>;
 
-    /// A row with its values.
+    /// EEPROM cell of a row with these values.
     fn cell(&self, key: Self::Key, values: Vec<Value>) -> Result<Cell, Failure>;
 
-    /// The block that writes a row; `?` stands for values that are kept.
+    /// Block that writes a row; `?` stands for kept values.
     fn sketch(&self, key: Self::Key, values: &[Option<Value>]) -> String;
 
-    /// Whether values go together.
+    /// Checks that the values fit together.
     fn check(&self, _key: Self::Key, _values: &[Value]) -> Result<(), Failure> {
         Ok(())
     }
@@ -249,8 +248,8 @@ impl<T: EepromRow> Writable for T {
             (None, Some(old)) => changes.over(old)?,
             (None, None) => {
                 let message =
-                    format!("{} was not read: there are no values to keep", asked(T::WORDS.nouns[0], &T::name(key)));
-                return Err(Failure::usage(message).hint("nothing was written; give all values"));
+                    format!("{} was not read, so missing values are unknown", asked(T::WORDS.nouns[0], &T::name(key)));
+                return Err(Failure::usage(message).hint("nothing was written; type all values"));
             }
         };
         self.check(key, &values)?;
@@ -282,7 +281,7 @@ impl<T: EepromRow> Writable for T {
     }
 }
 
-/// What a record holds, each value as it is typed; as it came, where the manual does not list it.
+/// Values of a record as typed; unchanged protocol text if the manual does not list it.
 pub fn texts(record: &Record, fields: usize) -> Vec<String> {
     if record.layout() == UNLISTED {
         return vec![format!("{} ({NOT_IN_MANUAL})", record.written())];
@@ -291,13 +290,13 @@ pub fn texts(record: &Record, fields: usize) -> Vec<String> {
     record.pairs().skip(keys).map(|(field, value)| plain(field, value)).collect()
 }
 
-/// Whether all values of a record behind its keys are zero.
+/// Whether all values after the keys of a record are zero.
 pub fn is_zero(record: &Record, fields: usize) -> bool {
     let keys = record.values().len().saturating_sub(fields);
     record.is_listed() && record.pairs().skip(keys).all(|(_, value)| *value == Value::Number(0))
 }
 
-/// A value as it is typed.
+/// A value as typed.
 fn plain(field: &field::Field, value: &Value) -> String {
     match (field.form, value) {
         (Form::Number(number), Value::Number(units)) => number.plain(*units),
@@ -309,7 +308,7 @@ fn plain(field: &field::Field, value: &Value) -> String {
 pub trait TableOf: Debug + Send + Sync + 'static {
     /// See [`Kind::Value`].
     type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Its id.
+    /// Parameter id.
     const TABLE: &'static str;
     /// See [`Kind::WORDS`].
     const WORDS: Words;
@@ -374,7 +373,7 @@ pub struct Torque;
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct TorqueRow {
     limit: f64,
-    /// Torque from which on the load output is on.
+    /// Torque at which the load output switches on.
     load: f64,
 }
 
@@ -417,7 +416,7 @@ impl TableOf for Torque {
     }
 }
 
-/// A number in its unit; 0 if the record does not have it.
+/// A number in its unit; 0 if the record has no such field.
 fn decimal(record: &Record, name: &str) -> f64 {
     let mut pairs = record.pairs();
     let found = pairs.find_map(|(field, value)| match (field.form, value) {

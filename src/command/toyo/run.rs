@@ -1,4 +1,4 @@
-//! `toyo run`: programs, and moves to a point.
+//! `toyo run`: start of programs, and moves to a point.
 
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ use crate::output::view::{Section, View};
 use crate::settings::duration;
 
 commands! {
-    /// Programs, and moves to a point.
+    /// Commands that start programs and moves.
     pub enum Run {
         /// Start the sequential program
         Sequential(Sequential),
@@ -48,13 +48,13 @@ commands! {
     }
 }
 
-/// Starts the sequential program (TO 2-7).
+/// Start the sequential program (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Without STEP the program goes on at the current step: where a stop left it, \
-    or at its beginning after `toyo reset`. `toyo status` shows whether mode, servo and origin are as a program needs \
-    them; nothing of that is changed here.")]
+#[command(after_help = "Without STEP the program continues at the current step: the step of the last stop, \
+    or the first step after `toyo reset`. `toyo status` shows mode, servo and origin, which the command does \
+    not change.")]
 pub struct Sequential {
-    /// The step to start at; without it, the current one
+    /// First step; default: the current step
     #[arg(value_name = "STEP", value_parser = clap::value_parser!(i32).range(1..=5000))]
     step: Option<i32>,
     #[command(flatten)]
@@ -72,15 +72,15 @@ impl Command for Sequential {
 
     fn intent(&self) -> String {
         match self.step {
-            Some(step) => format!("run the sequential program from step {step} on{}", self.repeat.in_words()),
-            None => "run the sequential program from its current step on".to_owned(),
+            Some(step) => format!("run the sequential program from step {step}{}", self.repeat.in_words()),
+            None => "run the sequential program from its current step".to_owned(),
         }
     }
 
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
         if self.repeat.repeat.is_some() && self.step.is_none() {
-            return Err(Failure::usage("--repeat wants the step at which each run begins")
-                .hint("`toyo run sequential 1 --repeat 20` begins at step 1 each time; nothing was started"));
+            return Err(Failure::usage("--repeat needs the first step of each run")
+                .hint("type the step, as in `toyo run sequential 1 --repeat 20`; nothing was started"));
         }
         ask_first(&mut context, Change::new(self.intent()), Program::Sequential(self.step)).await?;
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
@@ -88,13 +88,13 @@ impl Command for Sequential {
     }
 }
 
-/// Starts palletizing, or lets it go on after a stop (TO 2-7).
+/// Start palletizing, or continue it after a stop (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Palletizing {
-    /// Choose this program first; without it, the one chosen before
+    /// Program to select first; default: the current program
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=16))]
     number: Option<i32>,
-    /// The same as a flag
+    /// Program number as a flag
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=16))]
     program: Option<i32>,
     #[command(flatten)]
@@ -123,14 +123,14 @@ impl Command for Palletizing {
     }
 }
 
-/// Starts the easy program, or lets it go on after a stop (TO 2-7).
+/// Start the easy program, or continue it after a stop (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Parameter M10 chooses easy mode: `toyo param set M10 E`.")]
+#[command(after_help = "Parameter M10 selects easy mode: `toyo param set M10 E`.")]
 pub struct Easy {
-    /// Choose this program first; without it, the one chosen before
+    /// Program to select first; default: the current program
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=8))]
     number: Option<i32>,
-    /// The same as a flag
+    /// Program number as a flag
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=8))]
     program: Option<i32>,
     #[command(flatten)]
@@ -159,9 +159,9 @@ impl Command for Easy {
     }
 }
 
-/// Moves to a row of the coordinate table, and waits until the axes are there (TO 2-7).
+/// Move to a row of the coordinate table, and wait for the end of the move (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Parameter M10 chooses external point mode: `toyo param set M10 P`.")]
+#[command(after_help = "Parameter M10 selects external point mode: `toyo param set M10 P`.")]
 pub struct Point {
     /// Row of the coordinate table, 1 to 999, or a name
     #[arg(value_name = "N", value_parser = parse_point, add = complete::POINT)]
@@ -191,7 +191,7 @@ impl Command for Point {
             let change = self.change(link, here, there).await?;
             authority.confirm(&change).await?;
             if self.place(link).await? != there {
-                let message = format!("point {} was changed since the question; nothing was moved", self.point);
+                let message = format!("point {} changed after the confirmation; the robot did not move", self.point);
                 return Err(outdated(message));
             }
             (from, to) = (Some(here.position()), there.map(|there| there.position()));
@@ -208,7 +208,7 @@ impl Command for Point {
     }
 }
 
-/// Result of a move to a point. From and to are null where no question was asked.
+/// Result of a move to a point. From and to are null if no confirmation was necessary.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Moved(Motion);
@@ -229,7 +229,7 @@ impl Report for Moved {
 }
 
 impl Point {
-    /// Where the point is; nothing where the controller refuses to tell.
+    /// Position of the point; `None` if the controller refuses to report it.
     async fn place(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
         let request =
             Request::read_parameter(points::table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
@@ -237,7 +237,7 @@ impl Point {
         Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }
 
-    /// What the question says: each axis with where it is and where it goes.
+    /// Change to confirm: present position and target of each axis.
     async fn change(&self, link: &mut Link, here: Coordinates, there: Option<Coordinates>) -> Result<Change, Failure> {
         let letters = link.letters().await?;
         let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
@@ -252,13 +252,13 @@ impl Point {
         }
         change = match there {
             Some(_) => change.note(format!("The point is {way:.2} mm away.")),
-            None => change.note(format!("Where point {} is could not be read.", self.point)),
+            None => change.note(format!("The position of point {} could not be read.", self.point)),
         };
         Ok(change.note(format!("The speed override is {percent} %.")))
     }
 }
 
-/// What is started: a step or a number, or what the controller is at.
+/// Program to start: a step, a number, or the current one.
 enum Program {
     Sequential(Option<i32>),
     Palletizing(Option<i32>),
@@ -266,7 +266,7 @@ enum Program {
 }
 
 impl Program {
-    /// Which one it is, with its step.
+    /// Sentence about the program and its step.
     async fn note(&self, link: &mut Link) -> Result<String, Failure> {
         match self {
             Self::Sequential(step) => {
@@ -278,7 +278,7 @@ impl Program {
                             (record.number("step").unwrap_or(0), record.text("text").unwrap_or_default());
                         format!("It is the program of task {task}; it begins at step {step}: {text}.")
                     }
-                    Err(_) => format!("It is the program of task {task}; the step was not told."),
+                    Err(_) => format!("It is the program of task {task}; the controller did not report the step."),
                 })
             }
             Self::Palletizing(wanted) => progress(link, table::Command::Rpld, ("palletizing", *wanted)).await,
@@ -287,7 +287,7 @@ impl Program {
     }
 }
 
-/// Which program starts, and its step: the one that the controller is at, or `wanted`.
+/// Program and step that will start: `wanted`, or those of the controller.
 async fn progress(
     link: &mut Link,
     question: table::Command,
@@ -306,7 +306,7 @@ async fn progress(
     })
 }
 
-/// Asks before a program runs, with its number and step, each axis, and the speed.
+/// Asks for confirmation with number and step of the program, position and speed.
 async fn ask_first(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
     let Context { link, authority, .. } = context;
     let mut change = change;
@@ -324,7 +324,7 @@ async fn ask_first(context: &mut Context<'_, Toyo>, change: Change, program: Pro
 fn chosen(kind: &str, program: Option<i32>) -> String {
     match program {
         Some(number) => format!("{kind} program {number}"),
-        None => format!("the {kind} program that was chosen last"),
+        None => format!("the last selected {kind} program"),
     }
 }
 
@@ -335,7 +335,7 @@ async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) 
     }
 }
 
-/// Starts, and waits for the end where that is wanted, at most a time. Another run begins only after an end that was seen.
+/// Starts, and waits for the end up to a time limit if requested. A repetition begins only after a confirmed end.
 #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
 async fn go(
     context: Context<'_, Toyo>,
@@ -345,7 +345,7 @@ async fn go(
 ) -> Result<Ran, Failure> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
-    // Not after the start: a look at it must not wait for that.
+    // The wait begins with the start.
     let limit = limit.or(repeat.repeat.map(|_| None));
     let letters = if limit.is_none() { Letters::UNKNOWN } else { link.letters().await? };
     loop {
@@ -359,9 +359,8 @@ async fn go(
             return Ok(ran);
         }
         if ran.program.state == Some(ProgramState::Held) {
-            let failure =
-                Failure::new(Kind::ConditionNotMet, "it stands at a stop, or after a step, and has not ended")
-                    .hint("start it without a step or program to go on there");
+            let failure = Failure::new(Kind::ConditionNotMet, "the program is paused at a stop or after a step")
+                .hint("to continue, start it without a step or program");
             return Err(runs.early(failure));
         }
         runs.ended(ran.program.elapsed_ms.unwrap_or(0));
@@ -371,12 +370,12 @@ async fn go(
     }
 }
 
-/// Waits for the end at most so long; what runs goes on.
+/// Waits for the end up to a time limit. The program continues afterwards.
 async fn within(limit: Option<Duration>, end: impl Future<Output = Result<Ran, Failure>>) -> Result<Ran, Failure> {
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
-        let message = format!("{DONE}, and it still runs after {}", duration::display(limit));
-        Err(Failure::new(Kind::ConditionNotMet, message).hint("it goes on; `toyo status` shows whether it runs"))
+        let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
+        Err(Failure::new(Kind::ConditionNotMet, message).hint("the program continues; `toyo status` shows its state"))
     })
 }
 
@@ -400,13 +399,13 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: 
     Ok(Ran::new(robot::Program { step, state, elapsed_ms, more, ..robot::Program::default() }))
 }
 
-/// Notes in a dry run what is asked at the end.
+/// Records in a dry run the requests at the end.
 fn plan_end(link: &mut Link, order: table::Command) -> Failure {
     let step = |step| Request::of(table::Command::Rstx, [Value::Number(step)]);
     if order != table::Command::Extp {
-        link.plan(&step(0), "at which step it ended");
+        link.plan(&step(0), "the last step");
     }
-    let stands = Reason::about("whether it was to stop there").depending_on("whether it is paused");
+    let stands = Reason::about("whether the program contains a stop").depending_on("whether it is paused");
     link.plan_depending("@STAS SNO=2", stands);
     link.plan_depending("@RSTX ?", stands);
     unknown()
@@ -414,7 +413,7 @@ fn plan_end(link: &mut Link, order: table::Command) -> Failure {
 
 const DONE: &str = "the start was accepted";
 
-/// Whether a program that stands was to stop there: a STOP is before its step, or steps are done one by one.
+/// Whether a paused program was meant to stop: after a STOP step, or in step mode.
 async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool, Failure> {
     if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
         return Ok(true);
@@ -427,32 +426,32 @@ async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<b
 
 fn stopped(last: Option<&(i32, String)>, place: Option<Coordinates>) -> Failure {
     let step = last.map(|(step, text)| format!(" at step {step} ({text})")).unwrap_or_default();
-    let place = place.map(|place| format!("; it stands at {}", place.in_a_line())).unwrap_or_default();
-    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but somebody stopped it{step}{place}"))
-        .hint("once it is clear why: start it without a step or program to go on there, `toyo reset` to begin anew")
+    let place = place.map(|place| format!("; the axes are at {}", place.in_a_line())).unwrap_or_default();
+    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{place}"))
+        .hint("find the reason; then start it without a step or program to continue, or use `toyo reset`")
 }
 
-/// It has ended, and only that is known.
+/// Failure after a run whose result is unknown.
 fn after(failure: &Failure) -> Failure {
-    let message = format!("the run has ended, but not how: {}", failure.message);
-    Failure { message, ..failure.clone() }.hint("`toyo status` and `toyo position` tell how it stands")
+    let message = format!("the run has ended, but its result is unknown: {}", failure.message);
+    Failure { message, ..failure.clone() }.hint("`toyo status` and `toyo position` show the state")
 }
 
 /// Result of a start. A program at a STOP, or after a step in step mode, is held.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Ran {
-    /// The controller took the order.
+    /// Whether the controller accepted the command.
     accepted: bool,
     #[serde(flatten)]
     program: robot::Program<Place>,
 }
 
-/// Where a program stands; null if nobody waited.
+/// Step of the program; null without a wait.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 struct Place {
-    /// The instruction of the step.
+    /// Instruction of the step.
     instruction: Option<String>,
-    /// Where the axes stand.
+    /// Position of the axes.
     position: Option<Position>,
 }
 
@@ -461,7 +460,7 @@ impl Ran {
         Self { accepted: true, program }
     }
 
-    /// With the name of the program: `easy 3`.
+    /// Adds the name of the program: `easy 3`.
     fn of(mut self, kind: &str, number: Option<i32>) -> Self {
         let name = number.map_or_else(|| kind.to_owned(), |number| format!("{kind} {number}"));
         self.program.program = Some(name);
@@ -537,7 +536,7 @@ mod tests {
         let failure =
             Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert!(failure.message.contains("it was not seen to run"), "{}", failure.message);
+        assert!(failure.message.contains("the status did not show it"), "{}", failure.message);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! `armctl sim toyo`: a TCP port, like a serial device server, or a pseudo-terminal, like a serial port.
+//! `armctl sim toyo`: simulated controller on a TCP port, like a device server, or on a pseudo-terminal.
 
 use std::io;
 use std::net::SocketAddr;
@@ -15,9 +15,9 @@ use crate::transport::fault::LineFaultSpec;
 use crate::transport::line::Pace;
 use crate::transport::stream_server::StreamServer;
 
-/// A Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal
+/// Simulate a Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal
 #[derive(Debug, Args)]
-#[command(after_help = "A line has one host: while a client is connected, others on the TCP port are let go at once.")]
+#[command(after_help = "A line has one host: while a client is connected, other TCP clients are disconnected at once.")]
 pub struct Serve {
     /// Address to listen on, with the TCP port; port 0 lets the system choose
     #[arg(
@@ -28,30 +28,30 @@ pub struct Serve {
         value_parser = |text: &str| address(text, PORT)
     )]
     bind: SocketAddr,
-    /// Serve on a pseudo-terminal instead, whose path is printed (not on Windows)
+    /// Use a pseudo-terminal and print its path (not on Windows)
     #[arg(long, conflicts_with = "bind")]
     pty: bool,
-    /// Name the pseudo-terminal by a symbolic link, which is removed at the end
+    /// Create a symbolic link to the pseudo-terminal and remove it at the end
     #[arg(long, value_name = "PATH", requires = "pty")]
     link: Option<PathBuf>,
-    /// Axes of the robot
+    /// Number of axes
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     axes: Option<u8>,
-    /// Let characters take as long as on a line of N bits a second, such as 9600; at once unless given
+    /// Simulate the transmission time of a line with this baud rate, such as 9600 [default: no delay]
     #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(50..=4_000_000))]
     baud: Option<u32>,
     /// Start state (TOML): modes, memory, inputs, errors, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Faults on the line, such as noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
+    /// Faults, such as noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
     #[arg(long, value_name = "FAULTS")]
     fault: Option<LineFaultSpec>,
-    /// Take lines on stdin; `help` lists them
+    /// Read console lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
 }
 
-/// What device servers listen on, mostly.
+/// Usual port of device servers.
 const PORT: u16 = 4001;
 
 /// Bits of a character with 8 data bits, parity and one stop bit (TO 1-2).
@@ -67,7 +67,7 @@ impl serve::Serve for Serve {
         let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
         let speed = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
-        // From here on there may be a link to remove.
+        // From here on, Ctrl-C must remove the symbolic link.
         catch_interrupts();
         let (server, endpoint, address, link) = if self.pty {
             let made = StreamServer::pseudo_terminal(speed, self.fault);
@@ -91,12 +91,12 @@ impl serve::Serve for Serve {
     }
 }
 
-/// A simulated controller on its line.
+/// A simulated controller with its server.
 #[derive(Debug)]
 pub struct Toyo {
     server: StreamServer,
     simulated: Simulated,
-    /// Removed with it.
+    /// Removed with the server.
     _link: Option<TerminalLink>,
 }
 
@@ -108,9 +108,16 @@ impl serve::Server for Toyo {
     fn console(&mut self, line: &str) -> Result<String, String> {
         self.simulated.0.console(self.server.now(), line)
     }
+
+    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String> {
+        let faults: Option<LineFaultSpec> = faults.map(str::parse).transpose().map_err(|error| format!("{error}"))?;
+        self.simulated.0.set_busy(faults.as_ref().map_or(0.0, |faults| faults.busy.fraction()));
+        self.server.set_faults(faults);
+        Ok(())
+    }
 }
 
 fn no_terminal(error: &io::Error) -> Failure {
-    let failure = Failure::local(format!("cannot make a pseudo-terminal: {}", plain(error)));
-    failure.hint("leave --pty away, and reach the simulator over TCP")
+    let failure = Failure::local(format!("cannot create a pseudo-terminal: {}", plain(error)));
+    failure.hint("remove --pty, and use TCP")
 }

@@ -1,4 +1,4 @@
-//! How a simulated controller starts.
+//! Start of a simulated controller.
 
 use std::path::Path;
 
@@ -10,18 +10,19 @@ use crate::failure::Failure;
 use crate::files;
 use crate::transport::fault::LineFaultSpec;
 
-/// The start state: a file's, or the built-in one with so many axes; busy as often as the faults say.
+/// Start state: from a file, or the built-in one with this number of axes, and the busy rate of the faults.
 pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpec>) -> Result<Start, Failure> {
     let start = match (file, axes) {
         (None, None) => Start::default(),
         (None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
         (Some(file), None) => load(file)?,
         (Some(_), Some(_)) => {
-            return Err(Failure::usage("the number of axes is given twice").hint("write it into the state file alone"));
+            return Err(Failure::usage("--axes and --state exclude each other")
+                .hint("write the number of axes into the state file"));
         }
     };
     Ok(match faults {
-        Some(faults) => start.with_busy(f64::from(faults.busy.per_10_000()) / 10_000.0),
+        Some(faults) => start.with_busy(faults.busy.fraction()),
         None => start,
     })
 }

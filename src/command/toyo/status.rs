@@ -12,7 +12,7 @@ use crate::controller::toyo::status::{self, ProgramKind};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Tone, View};
 
-/// Asks for all five pages of the status.
+/// Show all five pages of the status.
 #[derive(Debug, Args)]
 pub struct Status {}
 
@@ -26,7 +26,7 @@ impl Command for Status {
     }
 }
 
-/// What a controller says of itself.
+/// State of a controller.
 #[derive(Debug, Serialize, JsonSchema)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a bit of the status")]
 pub struct StatusReport {
@@ -40,7 +40,7 @@ pub struct StatusReport {
     in_position: bool,
     single_movement: bool,
     waits_for_input: bool,
-    /// Parameter 2 was changed: nothing is executed until the power was off.
+    /// Whether parameter 2 changed, so that the controller executes nothing before a restart.
     needs_power_cycle: bool,
     slave_not_ready: bool,
     escape_input: bool,
@@ -48,7 +48,7 @@ pub struct StatusReport {
     pause_input: bool,
     ready_output: bool,
     card: Card,
-    /// The pages as they came, hexadecimal, page 0 first.
+    /// Pages as received, hexadecimal, page 0 first.
     pages: [String; 5],
 }
 
@@ -93,7 +93,7 @@ impl Report for StatusReport {
         let state = &self.state;
         let is = |told: Option<bool>| told == Some(true);
         let origin = match (self.homing, is(state.homed)) {
-            (true, _) => Cell::from("on the way").tone(Tone::Warning),
+            (true, _) => Cell::from("moving").tone(Tone::Warning),
             (_, true) => Cell::from("done").tone(Tone::Good),
             _ => Cell::from("not done").tone(Tone::Warning),
         };
@@ -131,7 +131,7 @@ impl Report for StatusReport {
             ("single movement", yes(self.single_movement, Tone::Plain)),
             ("memory card", card.into()),
             ("slave not ready", yes(self.slave_not_ready, Tone::Bad)),
-            ("power cycle due", yes(self.needs_power_cycle, Tone::Bad)),
+            ("power cycle needed", yes(self.needs_power_cycle, Tone::Bad)),
         ];
         View { sections: vec![crate::output::view::Section::Fields(fields)] }
     }

@@ -1,4 +1,4 @@
-//! Many cells of the EEPROM in a row, with an exact account of what was done when one of them fails.
+//! Writes of many EEPROM cells, with an exact account of the cells after a failure.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -18,42 +18,42 @@ use crate::failure::{Failure, Kind};
 use crate::gate::Change;
 use crate::output::Screen;
 
-/// Work on many cells, in words.
+/// Terms for a write of many cells.
 #[derive(Debug, Clone, Copy)]
 pub struct StoreTask {
-    /// As progress tells it: `storing points`.
+    /// Progress text: `storing points`.
     pub doing: &'static str,
-    /// What stands before a key in messages, for several with an s: `point`; nothing where a key says enough.
+    /// Noun before a key in messages, with an s for several keys: `point`; empty if the key is clear.
     pub noun: &'static str,
-    /// One of them, with its article, and several.
+    /// Singular with its article, and plural.
     pub things: [&'static str; 2],
 }
 
-/// A cell in a row of them.
+/// A cell among others.
 #[derive(Debug, Clone)]
 pub struct Store {
-    /// What tells it from the others: `P01`, `17`.
+    /// Key among the others: `P01`, `17`.
     pub key: String,
-    /// What it shall hold.
+    /// Cell with its new value.
     pub cell: Cell,
-    /// Only some controllers have it: that another one refuses it stops nothing.
+    /// Whether only some controllers have the cell. Their refusal does not stop the work.
     pub is_optional: bool,
-    /// What it holds.
+    /// Present content.
     pub found: CellState,
-    /// By which its coordinates are told.
+    /// Letters of the axes for coordinates in messages.
     pub letters: Letters,
 }
 
-/// What a cell holds.
+/// Present content of a cell.
 #[derive(Debug, Clone)]
 pub enum CellState {
-    /// It was not asked.
+    /// Not read yet.
     NotAsked,
-    /// It was asked in a dry run.
+    /// Unknown in a dry run.
     NotKnown,
-    /// The controller does not have it.
+    /// The controller does not have the cell.
     NotThere,
-    /// This, a moment ago.
+    /// The content that was just read.
     This(Record),
 }
 
@@ -63,27 +63,27 @@ impl From<Option<Record>> for CellState {
     }
 }
 
-/// Something that is replaced: what it is, what it holds, and what it shall hold.
+/// A replaced value: name, old value, new value.
 pub type Replaced = [String; 3];
 
 impl Store {
-    /// Something that every controller has.
+    /// A cell that every controller has.
     pub fn new(key: impl Into<String>, cell: Cell) -> Self {
         Self { key: key.into(), cell, is_optional: false, found: CellState::NotAsked, letters: Letters::USUAL }
     }
 
-    /// With the letters of the axes, by which its coordinates are told.
+    /// Sets the letters of the axes for coordinates in messages.
     #[must_use]
     pub fn by(self, letters: Letters) -> Self {
         Self { letters, ..self }
     }
 
-    /// Whether it is known to hold something else.
+    /// Whether the present content is known and different.
     pub fn differs(&self) -> bool {
         matches!(&self.found, CellState::This(found) if !self.cell.is(found))
     }
 
-    /// What is replaced, if it holds something else that somebody wrote.
+    /// The replaced value, if the cell has other content that is not empty.
     fn replaced(&self, work: StoreTask) -> Option<Replaced> {
         let Self { key, cell, found: CellState::This(found), letters, .. } = self else { return None };
         if cell.is(found) || cell.is_blank(found) {
@@ -99,7 +99,7 @@ impl Store {
     }
 }
 
-/// What differs in a cell from what it shall hold, in words.
+/// Old and new values that differ, as text.
 fn difference(cell: &Cell, found: &Record, letters: &Letters) -> [String; 2] {
     if cell.read.command() == table::Command::Rstx {
         return [found.written(), cell.wanted.written()];
@@ -107,12 +107,12 @@ fn difference(cell: &Cell, found: &Record, letters: &Letters) -> [String; 2] {
     values::difference(found, &cell.wanted, letters)
 }
 
-/// What is replaced that somebody wrote.
+/// Replaced values that are not empty.
 pub fn replaced(work: StoreTask, stores: &[Store]) -> Vec<Replaced> {
     stores.iter().filter_map(|store| store.replaced(work)).collect()
 }
 
-/// What is replaced, for a person to confirm; `of` says where: ` of task 1`.
+/// Change to confirm; `of` names the place: ` of task 1`.
 pub fn overwriting([one, several]: [&str; 2], replaced: &[Replaced], of: &str) -> Change {
     let change = match replaced.len() {
         0 => return Change::nothing(),
@@ -122,10 +122,10 @@ pub fn overwriting([one, several]: [&str; 2], replaced: &[Replaced], of: &str) -
     replaced.iter().fold(change, |change, [what, old, new]| change.replaces(what, old, new))
 }
 
-/// Reads what cells hold that were not asked yet. Nothing is written meanwhile, and a failure says so.
+/// Reads cells that were not read yet. A failure states that nothing was written.
 pub async fn look(link: &mut Link, screen: &Screen, stores: &mut [Store]) -> Result<(), Failure> {
     let count = stores.iter().filter(|store| matches!(store.found, CellState::NotAsked)).count();
-    let mut progress = (count > 1).then(|| screen.items_progress("reading what is there", count as u64));
+    let mut progress = (count > 1).then(|| screen.items_progress("reading the stored values", count as u64));
     let looked = interruptible(async {
         for store in stores.iter_mut().filter(|store| matches!(store.found, CellState::NotAsked)) {
             store.found = found(link, store).await?;
@@ -149,7 +149,7 @@ async fn found(link: &mut Link, store: &Store) -> Result<CellState, Failure> {
     Ok(CellState::This(link.ask(&store.cell.read).await?))
 }
 
-/// The block that writes a parameter, or a row of a table; `?` stands for values that are kept.
+/// Block that writes a parameter or a row of a table; `?` stands for kept values.
 pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Option<Value>]) -> String {
     let values: Vec<_> = row.map(|row| Some(Value::Number(row))).into_iter().chain(values.iter().cloned()).collect();
     format!("@WPAR {}", parameter.layout.sketch(&values).unwrap_or_default())
@@ -161,13 +161,13 @@ pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Optio
 pub enum StoreResult {
     /// Written and read back.
     Written,
-    /// Held that value already.
+    /// The value was already equal.
     Unchanged,
-    /// Refused by a controller that does not have it.
+    /// Refused by a controller without this cell.
     NotThere,
 }
 
-/// The cell of a parameter, or of a row of a table, with all fields of its layout.
+/// Cell of a parameter or of a row of a table, with all fields of its layout.
 pub fn parameter_cell(parameter: &'static Parameter, values: Vec<Value>) -> Result<Cell, LayoutProblem> {
     let row = parameter
         .row()
@@ -181,8 +181,8 @@ pub fn parameter_cell(parameter: &'static Parameter, values: Vec<Value>) -> Resu
 }
 
 impl Link {
-    /// Reads the content of something that not every controller has; `None` if it is refused, and so again: one that
-    /// is busy refuses, too.
+    /// Reads something that only some controllers have; `None` if it is refused twice, because a busy controller also
+    /// refuses.
     pub async fn read_if_there(&mut self, request: &Request) -> Result<Option<Record>, Failure> {
         for _ in 0..2 {
             if let Ok(content) = self.try_ask(request).await? {
@@ -193,7 +193,8 @@ impl Link {
     }
 }
 
-/// Stores one after the other, each unless it holds that already. The first failure ends it, and tells what was stored, what may have been, and what was not; so does Ctrl-C. In a dry run all is noted.
+/// Writes cells in order and skips equal ones. The first failure or Ctrl-C ends the work, with an account of the cells.
+/// A dry run records all requests.
 pub async fn store_all(
     link: &mut Link,
     screen: &Screen,
@@ -208,7 +209,7 @@ pub async fn store_all(
         return Ok(fates);
     }
     let mut progress = screen.items_progress(work.doing, stores.len() as u64);
-    // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+    // The caller also waits for Ctrl-C, but polls this work first. It therefore ends here, with the account.
     let outcome = interruptible(async {
         for store in stores {
             fates.push(one(link, screen, store).await?);
@@ -224,7 +225,7 @@ pub async fn store_all(
     }
 }
 
-/// What fates come to.
+/// Counts the results.
 pub fn sum(fates: &[StoreResult]) -> Cells {
     let count = |fate| u32::try_from(fates.iter().filter(|other| **other == fate).count()).unwrap_or(u32::MAX);
     Cells { cells_written: count(StoreResult::Written), cells_unchanged: count(StoreResult::Unchanged) }
@@ -247,10 +248,10 @@ async fn one(link: &mut Link, screen: &Screen, store: &Store) -> Result<StoreRes
     })
 }
 
-/// The failure, and what became of each cell; it came up at the one behind the last fate.
+/// Failure with the result of each cell; it occurred at the cell after the last result.
 fn account(failure: Failure, work: StoreTask, stores: &[Store], fates: &[StoreResult]) -> Failure {
     let (done, rest) = stores.split_at(fates.len().min(stores.len()));
-    // Only these are known to have changed nothing.
+    // Only these failures prove that nothing changed.
     let is_known = matches!(failure.kind, Kind::Refused | Kind::NoAnswer | Kind::Usage);
     let (unknown, rest) = rest.split_at(if is_known { 0 } else { 1.min(rest.len()) });
     let mut parts = vec![failure.message.trim_end_matches('.').to_owned()];
@@ -261,18 +262,18 @@ fn account(failure: Failure, work: StoreTask, stores: &[Store], fates: &[StoreRe
     } else if is_known {
         parts.push("nothing was written".to_owned());
     }
-    for (words, stores) in [("written or not", unknown), ("not written", rest)] {
-        // One sentence says it of all of them.
+    for (words, stores) in [("unknown", unknown), ("not written", rest)] {
+        // One sentence describes all cells.
         if !(stores.is_empty() || is_known && done.is_empty()) {
             parts.push(format!("{words}: {}", span(work, stores)));
         }
     }
-    let again = "the same command goes on: what is stored already is not written again".to_owned();
+    let again = "repeat the command: it continues and skips stored values".to_owned();
     let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
     Failure { message: parts.join("; "), ..failure }.hint(hint)
 }
 
-/// The first and the last of some.
+/// First and last key of some cells.
 fn span(work: StoreTask, stores: &[Store]) -> String {
     let named = |plural: &str, keys: String| match work.noun {
         "" => keys,
@@ -309,16 +310,16 @@ mod tests {
         assert_eq!(
             told(Kind::Refused, &[StoreResult::Written, StoreResult::Unchanged]),
             "no; done: points 1 to 2 (1 written, 1 unchanged); not written: points 3 to 5 | \
-             the same command goes on: what is stored already is not written again"
+             repeat the command: it continues and skips stored values"
         );
         assert_eq!(
             told(Kind::OutcomeUnknown, &[StoreResult::Written]),
-            "no; done: point 1 (1 written, 0 unchanged); written or not: point 2; not written: points 3 to 5 | \
-             the same command goes on: what is stored already is not written again"
+            "no; done: point 1 (1 written, 0 unchanged); unknown: point 2; not written: points 3 to 5 | \
+             repeat the command: it continues and skips stored values"
         );
         assert_eq!(
             told(Kind::NoAnswer, &[]),
-            "no; nothing was written | the same command goes on: what is stored already is not written again"
+            "no; nothing was written | repeat the command: it continues and skips stored values"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! `toyo task`: the task that programs, tables and positions are those of.
+//! `toyo task`: current task, to which programs, tables and positions belong.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::output::view::View;
 
 commands! {
-    /// What can be done with the current task.
+    /// Commands for the current task.
     pub enum Task {
         /// Show the current task
         Get(Get),
@@ -27,11 +27,11 @@ commands! {
     }
 }
 
-/// Asks which task is the current one.
+/// Show the current task.
 #[derive(Debug, Args)]
 pub struct Get {}
 
-/// Makes a task the current one. It stays so for everybody, until somebody chooses another.
+/// Select the current task for all clients, until a client selects another one.
 #[derive(Debug, Args)]
 pub struct Set {
     /// 1 to 4
@@ -39,7 +39,7 @@ pub struct Set {
     task: i32,
 }
 
-/// The field of CTSK TASK=01; 00, which the manual prints in places, is never sent (ambiguity C2).
+/// Field of CTSK TASK=01. The manual also prints 00, which is never sent (ambiguity C2).
 fn field() -> &'static Field {
     &table::Command::Ctsk.row().requests[0].fields[0]
 }
@@ -77,8 +77,8 @@ impl Command for Set {
         let found = task(&read_back(link, &order, &read).await?);
         if found != Some(self.task) {
             let found = found.unwrap_or_default();
-            return Err(not_held(&order, &format!("task {found} is the current one"))
-                .hint("somebody else may choose tasks at the same time; `toyo task get` tells"));
+            return Err(not_held(&order, &format!("the current task is {found}"))
+                .hint("check for a second client that selects tasks; `toyo task get` shows the current task"));
         }
         let words = current_in_words(chosen);
         Ok(New::of("task", chosen, words).with("task", chosen).replaces(old))
@@ -86,7 +86,7 @@ impl Command for Set {
 }
 
 fn current_in_words(task: u8) -> String {
-    format!("task {task} is the current one")
+    format!("the current task is {task}")
 }
 
 /// The current task.

@@ -1,4 +1,4 @@
-//! The task that commands are about, which may be another one for a while.
+//! Temporary selection of a task for a command.
 
 use super::link::Link;
 use crate::controller::toyo::field::Value;
@@ -6,19 +6,19 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Command;
 use crate::failure::{Failure, Kind};
 
-/// Asks which task is the current one, and makes another one that for a while; says which is the current one then.
+/// Reads the current task, selects `wanted` temporarily if it differs, and returns the task that is then current.
 pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> {
     if link.is_dry() {
-        link.plan(&Request::bare(Command::Mtsk), "which task is the current one");
+        link.plan(&Request::bare(Command::Mtsk), "the current task");
         if let Some(task) = wanted {
             let back = format!("@{} TASK=?", Command::Ctsk.row().word);
-            link.plan_to_borrow(&choice(task), &back, "whether it is another one").await?;
+            link.plan_to_borrow(&choice(task), &back, "whether it differs from the current task").await?;
         }
         return Ok(wanted.unwrap_or(1));
     }
     let answer = link.ask(&Request::bare(Command::Mtsk)).await?;
     let found = answer.number("task").and_then(|task| u8::try_from(task).ok()).filter(|task| (1..=4).contains(task));
-    let found = found.ok_or_else(|| link.malformed(&answer.written(), "there are tasks 1 to 4"))?;
+    let found = found.ok_or_else(|| link.malformed(&answer.written(), "the task must be 1 to 4"))?;
     match wanted.filter(|wanted| *wanted != found) {
         Some(wanted) => {
             link.borrow(&choice(wanted), choice(found)).await?;
@@ -28,14 +28,15 @@ pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> 
     }
 }
 
-/// Puts back what was changed for a while, whatever became of the work. After Ctrl-C that is left to the end of the link.
+/// Restores temporary changes after success or failure. After Ctrl-C, the end of the link restores them.
 pub async fn done<T>(link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
     if outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted) {
         return outcome;
     }
     let put_back = link.put_back().await;
     let value = outcome?;
-    put_back.map_err(|failure| Failure { message: format!("it was done, but {}", failure.message), ..failure })?;
+    put_back
+        .map_err(|failure| Failure { message: format!("the command succeeded, but {}", failure.message), ..failure })?;
     Ok(value)
 }
 

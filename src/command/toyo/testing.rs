@@ -1,4 +1,4 @@
-//! For tests: what a command line would send, and what becomes of it on a simulator in virtual time.
+//! Test bench: the blocks of a command line, and their effect on a simulator in virtual time.
 
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
@@ -29,24 +29,24 @@ use crate::transport::line::{InProcessLine, Pace};
 use crate::transport::sim::Peer;
 use crate::transport::stream::Stream;
 
-/// What the parser of the command line objects to.
+/// Error message of the command line parser.
 pub(super) fn objection(words: &[&str]) -> String {
     parsed("sim:", words).expect_err("the parser objects").to_string()
 }
 
-/// What the gate is told of a command line.
+/// Input of the gate for a command line.
 pub(super) fn gated(words: &[&str]) -> (Robot, Intent, &'static str) {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words).expect("a command line");
     let intent = command.intent(Some(&robot));
     (robot, intent, command.id())
 }
 
-/// The question before the command, without "This will".
+/// Text of the confirmation without "This will".
 pub(super) fn intent(words: &[&str]) -> String {
     resolved("sim:", words).unwrap().1.intent(None).text
 }
 
-/// The blocks that `armctl toyo WORDS…` would send, those apart that go before and behind any order.
+/// Blocks of `armctl toyo WORDS…` without the requests that precede and follow every command.
 pub(super) fn blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
     let mut frames = frames(&plan(words)?);
     frames.retain(|frame| frame["about"] != FENCE && !asks_letters(frame));
@@ -54,51 +54,51 @@ pub(super) fn blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
     Ok(blocks.filter(|block| !matches!(&block[..], "@STAS SNO=2" | "@HSON" | "@HSOF")).collect())
 }
 
-/// Whether a frame asks for the letters of the axes.
+/// Whether a frame reads the letters of the axes.
 fn asks_letters(frame: &Value) -> bool {
     let is_system = frame["about"].as_str().is_some_and(|about| about.starts_with("the letters of the axes"));
     is_system || (text(frame) == "@RPAR E01" && !frame["depends_on"].is_null())
 }
 
-/// All blocks that `armctl toyo WORDS…` would send.
+/// All blocks of `armctl toyo WORDS…`.
 pub(super) fn all_blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
     Ok(frames(&plan(words)?).iter().map(text).collect())
 }
 
-/// The report of a dry run.
+/// Report of a dry run.
 pub(super) fn plan(words: &[&str]) -> Result<Value, Failure> {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
     planned::<Toyo>(&robot, &*command, |_| ())
 }
 
-/// The block of a frame of it.
+/// Block of a frame.
 pub(super) fn text(frame: &Value) -> String {
     frame["text"].as_str().expect("blocks are text").to_owned()
 }
 
-/// A simulated controller and a link to it that last for several command lines, in virtual time.
+/// A simulated controller with a link for several command lines, in virtual time.
 pub(super) struct Bench {
     runtime: tokio::runtime::Runtime,
     robot: Robot,
     link: Link,
 }
 
-/// What happens to a block and its answer on the line.
+/// Fault of a block or its answer on the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fault {
-    /// Both arrive.
+    /// No fault.
     None,
-    /// The block never arrives.
+    /// The block is lost.
     Lost,
-    /// The block arrives, its answer does not.
+    /// The answer is lost.
     Unanswered,
-    /// The answer comes later.
+    /// The answer is late.
     Late(Duration),
-    /// This is answered, and nothing done.
+    /// The controller sends this answer and executes nothing.
     Answered(&'static str),
 }
 
-/// Blocks that arrived at the end of the line, or were lost before it, in their order.
+/// Blocks that were sent, in order, including lost ones.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ReceivedBlocks(Arc<RwLock<Vec<String>>>);
 
@@ -112,14 +112,14 @@ impl ReceivedBlocks {
     }
 }
 
-/// A simulated controller behind a line that loses what a test wants to be lost.
+/// A simulated controller behind a line with faults.
 struct FaultyLine<F> {
     controller: Simulated,
     coming: Vec<u8>,
     answers: VecDeque<(Duration, Vec<u8>)>,
     heard: ReceivedBlocks,
     counts: HashMap<String, usize>,
-    /// The fault for a block, by its text and how often it came, from 1.
+    /// Fault of a block, by its text and its count from 1.
     fault: F,
 }
 
@@ -168,7 +168,7 @@ impl<F: FnMut(&str, usize) -> Fault + Send> Peer for FaultyLine<F> {
 }
 
 impl Bench {
-    /// A simulator in a start state (TOML), behind a line with faults; and the blocks that it receives.
+    /// A simulator in a start state (TOML) behind a line with faults, and the blocks that it receives.
     pub(super) fn with_faults(
         state: &str,
         fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
@@ -192,13 +192,13 @@ impl Bench {
         (Self { runtime, robot, link }, heard)
     }
 
-    /// Runs `armctl toyo WORDS…` until Ctrl-C comes after a while; what is said then.
+    /// Runs `armctl toyo WORDS…` until Ctrl-C after a time. Returns the message of the stop.
     pub(super) fn interrupted(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
         self.left(words, after);
         self.runtime.block_on(Toyo::halt(&mut self.link))
     }
 
-    /// Runs `armctl toyo WORDS…` for a while and leaves it there; whether that must not be.
+    /// Runs `armctl toyo WORDS…` for a time and abandons it. Returns whether a stop is mandatory.
     pub(super) fn left(&mut self, words: &[&str], after: Duration) -> bool {
         let (_, command) = resolved("sim:", words).expect("a command");
         let Self { runtime, robot, link } = self;
@@ -216,7 +216,7 @@ impl Bench {
         self.runtime.block_on(async { tokio::time::sleep(time).await });
     }
 
-    /// Puts back what the link has changed, as its end does; it may be used on.
+    /// Restores the changes of the link, as at its end. The link stays usable.
     pub(super) fn end(&mut self) {
         let Self { runtime, link, .. } = self;
         runtime.block_on(async {
@@ -230,7 +230,7 @@ impl Bench {
         self.runtime.block_on(Toyo::close(self.link, &quiet()))
     }
 
-    /// A simulator by its URL.
+    /// A simulator with this URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime = runtime();
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
@@ -238,7 +238,7 @@ impl Bench {
         Self { runtime, robot, link }
     }
 
-    /// Runs `armctl toyo WORDS…`: the data of the report, and why it is not a success although there is one.
+    /// Runs `armctl toyo WORDS…`. Returns the data of the report, and its failure.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
@@ -246,7 +246,7 @@ impl Bench {
         Ok((report.data()?, report.failure()))
     }
 
-    /// Runs `armctl toyo WORDS…` on what counts as a real robot, where nobody can be asked.
+    /// Runs `armctl toyo WORDS…` on a robot that counts as real, without a possibility to confirm.
     pub(super) fn unasked(&mut self, words: &[&str]) -> Result<Value, Failure> {
         let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
         let intent = command.intent(Some(&robot));
@@ -260,7 +260,7 @@ impl Bench {
         came
     }
 
-    /// The data of a command line that must succeed.
+    /// Data of a command line that must succeed.
     #[track_caller]
     pub(super) fn data(&mut self, words: &[&str]) -> Value {
         match self.run(words) {
@@ -289,7 +289,7 @@ fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)
     }
 }
 
-/// Where tests write: nowhere.
+/// A screen without output.
 fn quiet() -> Screen {
     Screen::new(Format::Json, ColorChoice::Never, true, 0)
 }

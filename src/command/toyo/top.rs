@@ -1,5 +1,5 @@
-//! A robot of the family in a live view: status and position in a line; axes with their soft limits, the error and the
-//! first ports on a screen. The protocol has no torque.
+//! Live view of a controller: status and position in one line, or axes with soft limits, alarm and first ports on a
+//! screen. The protocol has no torque.
 
 use super::explain::told;
 use super::io::{INPUTS, OUTPUTS, PortBank, ports_of};
@@ -19,15 +19,15 @@ use crate::output::Screen;
 use crate::output::view::Tone;
 use crate::settings::Robot;
 
-/// An poller on one controller.
+/// Poller of one controller.
 #[derive(Debug)]
 pub struct Poller {
     link: Link,
-    /// Once they were asked for.
+    /// Soft limits after the first read.
     limits: Option<Limits>,
 }
 
-/// The soft limits of axes 1 to 4, where the controller tells them.
+/// Soft limits of axes 1 to 4; `None` if the controller does not report them.
 type Limits = [Option<(f64, f64)>; 4];
 
 impl declared::Poller for Poller {
@@ -82,7 +82,7 @@ impl Poller {
         Ok(Whole { indicators: indicators(status), axes, torque_unit: None, banks, not_asked: None })
     }
 
-    /// The first screen of ports of the controller itself.
+    /// First screen of ports of the controller.
     async fn bank(&mut self, name: &'static str, ports: PortBank) -> Result<Bank, Failure> {
         let groups = match self.link.try_ask(&ports.request(0, 1)).await? {
             Ok(record) => {
@@ -94,7 +94,7 @@ impl Poller {
     }
 }
 
-/// Asks for the soft limits.
+/// Reads the soft limits.
 async fn limits(link: &mut Link) -> Result<Limits, Failure> {
     let (least, most) = (parameter(link, "P02").await?, parameter(link, "P01").await?);
     let (Some(least), Some(most)) = (least, most) else { return Ok(Limits::default()) };
@@ -105,11 +105,11 @@ async fn limits(link: &mut Link) -> Result<Limits, Failure> {
 
 async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure> {
     let request = Parameter::named(id).and_then(|parameter| Request::read_parameter(parameter, None).ok());
-    let request = request.ok_or_else(|| Failure::local(format!("there is no parameter {id}")))?;
+    let request = request.ok_or_else(|| Failure::local(format!("unknown parameter {id}")))?;
     Ok(link.try_ask(&request).await?.ok())
 }
 
-/// The error that is present, as one of a list.
+/// The present alarms as a list.
 pub(super) fn alarms(status: Status) -> Vec<Alarm> {
     status.has_error().then(|| told(status.error)).into_iter().collect()
 }

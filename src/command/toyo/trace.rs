@@ -1,4 +1,4 @@
-//! Blocks in the record of the traffic.
+//! Trace of the traffic in blocks.
 
 use std::net::SocketAddr;
 
@@ -10,23 +10,23 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::transport::tap::Direction;
 
-/// The record of one link.
+/// Trace of one link.
 #[derive(Debug)]
 pub struct Trace {
     record: trace::Trace,
-    /// Own address and that of the device server, where there is one.
+    /// Own address and address of the device server, if there is one.
     ends: Option<(SocketAddr, SocketAddr)>,
     /// Characters of the controller since its last line end.
     pending: Vec<u8>,
-    /// The last request: `@OK` and `@NG` do not say what they answer.
+    /// Last request, because `@OK` and `@NG` do not name their request.
     asked: Option<Request>,
 }
 
-/// Longest piece that is kept for a line of text.
+/// Limit of characters in a line of text.
 const MOST: usize = 512;
 
 impl Trace {
-    /// As flags want it; `ends` are the addresses of a TCP connection.
+    /// Opens the trace that the flags request; `ends` are the addresses of a TCP connection.
     pub fn open(access: &Access, screen: &Screen, ends: Option<(SocketAddr, SocketAddr)>) -> Result<Self, Failure> {
         let record = match ends {
             Some(_) => trace::Trace::of_network(access, screen)?,
@@ -59,20 +59,20 @@ impl Trace {
         self.record.release();
     }
 
-    /// Tells whether the record is whole.
+    /// Checks that the trace is complete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.flush();
         self.record.finish()
     }
 
-    /// A request goes out whole.
+    /// A request is written at once.
     fn sent(&mut self, bytes: &[u8]) {
         self.flush();
         self.line(Direction::Sent, bytes);
         self.asked = Request::parse(&text(bytes)).ok();
     }
 
-    /// Characters come in pieces of any size; a line of text is for a whole block.
+    /// Characters arrive in pieces of any size; a line of text shows a whole block.
     fn received(&mut self, bytes: &[u8]) {
         for byte in bytes {
             self.pending.push(*byte);
@@ -82,7 +82,7 @@ impl Trace {
         }
     }
 
-    /// What came without a line end, before something else is told.
+    /// Prints characters without a line end before other text follows.
     fn flush(&mut self) {
         let pending = std::mem::take(&mut self.pending);
         if !pending.is_empty() {
@@ -111,7 +111,7 @@ mod tests {
     use crate::command::ConnectMode;
     use crate::output::{ColorChoice, Format};
 
-    /// What a capture file holds of a request and its answer.
+    /// Content of a capture file with a request and its answer.
     fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
         let file = tempfile::NamedTempFile::new().unwrap();
         let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(ConnectMode::Control) };

@@ -1,6 +1,6 @@
-//! Values as an operator types and reads them: `ax1=100.00`, `english`, `0/01/3`.
+//! Values as a user types and reads them: `ax1=100.00`, `english`, `0/01/3`.
 //!
-//! What a controller stores is a row of fields. An operator sees places: a field, or the three of a port's bit as one.
+//! A controller stores a row of fields. A user sees slots: one field, or the three fields of a port's bit together.
 
 use std::ops::Range;
 
@@ -17,53 +17,53 @@ use crate::controller::toyo::layout::{Layout, Record, UNLISTED};
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 
-/// A place for one value that an operator types.
+/// A slot for one value that the user types.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ValueSlot {
     /// `ax1`, `low`, `port`.
     pub name: String,
-    /// Which fields of the layout it stands for.
+    /// Range of its fields in the layout.
     fields: Range<usize>,
 }
 
-/// A value with all that is known of it.
+/// A value with its description.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Shown {
     /// As typed before `=`: `ax1`.
     pub name: String,
-    /// A number in its unit, a word as on the line, or a bit of a port as `station/port/bit`.
+    /// A number in its unit, a word of the protocol, or a bit of a port as `station/port/bit`.
     pub value: Json,
-    /// Unit of the number: `mm`, `mm/s`, `s`; null where it has none.
+    /// Unit of the number: `mm`, `mm/s`, `s`; null if there is none.
     pub unit: Option<&'static str>,
-    /// The word in words; null where it says what it means.
+    /// Meaning of the word; null if the word is clear.
     pub meaning: Option<&'static str>,
-    /// As on the line.
+    /// Text in the protocol.
     pub raw: String,
-    /// Whether the manual lists it; what it does not is shown as it came, and cannot be written.
+    /// Whether the manual lists the value. Other values are shown unchanged and cannot be written.
     pub in_manual: bool,
-    /// As typed.
+    /// Text as typed.
     #[serde(skip)]
     pub text: String,
 }
 
-/// What shall become of fields: a value, or what is there already.
+/// New values of the fields of a record; `None` keeps the present value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Changes(Vec<Option<Value>>);
 
-/// In place of a meaning.
+/// Text in place of a meaning.
 pub use crate::controller::toyo::program::NOT_IN_MANUAL;
 
-/// The axis (0 to 3) of which a field is the coordinate: X, Y, Z and R on the line are axes 1 to 4, whatever their letters.
+/// Axis (0 to 3) of a coordinate field. X, Y, Z and R in the protocol are axes 1 to 4, regardless of their letters.
 fn axis(field: &Field) -> Option<usize> {
     ["x", "y", "z", "r"].iter().position(|name| *name == field.name)
 }
 
-/// Whether it has coordinates, whose names are the letters of the axes.
+/// Whether the layout has coordinates, which are named by the letters of the axes.
 pub fn has_coordinates(layout: &Layout) -> bool {
     layout.fields.iter().any(|field| axis(field).is_some())
 }
 
-/// The places of a layout, coordinates by these letters.
+/// Slots of a layout. Coordinates have these letters.
 pub fn places(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
     let mut places = Vec::new();
     let mut words = layout.text.split("{}");
@@ -72,7 +72,7 @@ pub fn places(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
         let before = words.next().unwrap_or_default();
         let is_bit = before != "/" && field.name.starts_with("station") && layout.text.contains("{}/{}/{}");
         if is_bit {
-            // `PN1={}/{}/{}` has a name of its own.
+            // `PN1={}/{}/{}` has its own name.
             let label = before.rsplit(' ').next().and_then(|label| label.strip_suffix('='));
             let label = label.map_or("port".to_owned(), str::to_lowercase);
             places.push(ValueSlot { name: label, fields: index..index + 3 });
@@ -88,12 +88,12 @@ pub fn places(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
     places
 }
 
-/// The values of a record without coordinates, place by place.
+/// Values of a record without coordinates, slot by slot.
 pub fn shown(record: &Record) -> Vec<Shown> {
     shown_by(record, &Letters::USUAL)
 }
 
-/// The values of a record, place by place, coordinates by these letters.
+/// Values of a record, slot by slot. Coordinates have these letters.
 pub fn shown_by(record: &Record, letters: &Letters) -> Vec<Shown> {
     let layout = record.layout();
     if layout == UNLISTED {
@@ -105,12 +105,12 @@ pub fn shown_by(record: &Record, letters: &Letters) -> Vec<Shown> {
     places(&layout, letters).into_iter().map(|place| place.shown(&layout, record.values())).collect()
 }
 
-/// Values in a line as they may be typed, with their units behind: `low=10.0 high=100.0 mm/s`.
+/// Values in one line, followed by their units: `low=10.0 high=100.0 mm/s`.
 pub fn in_a_line(shown: &[Shown]) -> String {
     line(shown, shown.len() > 1)
 }
 
-/// The same; whether each has its name before it.
+/// Values in one line, with or without names.
 pub fn line(shown: &[Shown], is_named: bool) -> String {
     let common =
         shown.first().and_then(|first| first.unit).filter(|unit| shown.iter().all(|one| one.unit == Some(unit)));
@@ -125,13 +125,13 @@ pub fn line(shown: &[Shown], is_named: bool) -> String {
     texts.join(" ")
 }
 
-/// Values in a line as they are typed: `ax1=100.00 ax2=0.00`, and a single one without its name.
+/// Values in the form of the command line: `ax1=100.00 ax2=0.00`; a single value has no name.
 pub fn as_typed(shown: &[Shown]) -> String {
     let typed = |one: &Shown| if shown.len() > 1 { format!("{}={}", one.name, one.text) } else { one.text.clone() };
     shown.iter().map(typed).collect::<Vec<_>>().join(" ")
 }
 
-/// The values in which two records differ, in a line each; coordinates by these letters.
+/// Values in which two records differ, one line for each record. Coordinates have these letters.
 pub fn difference(old: &Record, new: &Record, letters: &Letters) -> [String; 2] {
     let (old, new) = (shown_by(old, letters), shown_by(new, letters));
     let is_named = new.len() > 1;
@@ -163,7 +163,7 @@ impl ValueSlot {
         Shown { name: self.name.clone(), value, unit, meaning, raw, in_manual, text }
     }
 
-    /// What somebody typed here.
+    /// Parses the text for this slot.
     fn read(&self, layout: &Layout, text: &str) -> Result<Vec<Value>, String> {
         let fields = &layout.fields[self.fields.clone()];
         if let [field] = fields {
@@ -182,7 +182,7 @@ impl ValueSlot {
         }
     }
 
-    /// What may be typed here.
+    /// Valid input for this slot.
     fn expected(&self, layout: &Layout) -> String {
         match &layout.fields[self.fields.clone()] {
             [field] => expected(field),
@@ -192,14 +192,14 @@ impl ValueSlot {
 }
 
 impl Changes {
-    /// What was typed for a layout without coordinates: all values in their order, or some of them as `name=value`. `what`
-    /// names it.
+    /// Parses the values for a layout without coordinates: all values in order, or some as `name=value`. `what` names
+    /// the record in errors.
     pub fn read(what: &str, layout: &Layout, typed: &[String]) -> Result<Self, Failure> {
         Self::read_by(what, layout, &Letters::USUAL, typed)
     }
 
-    /// The same, coordinates by these letters. Where axes have other letters than the usual ones, an order of coordinates
-    /// could mean letters or axes: they need their names.
+    /// Parses the values for a layout. Coordinates have these letters. With other letters than the usual ones,
+    /// coordinates need names, because their order could mean letters or axes.
     pub fn read_by(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
         let places = places(layout, letters);
         let wrong = |error: String| Failure::usage(format!("{what}: {error}"));
@@ -208,7 +208,7 @@ impl Changes {
         let mut changes = vec![None; layout.fields.len()];
         if named.iter().all(Option::is_none) {
             if has_coordinates(layout) && !letters.are_usual() {
-                let message = format!("coordinates need names here: {}", machine(letters));
+                let message = format!("coordinates need names on this machine: {}", machine(letters));
                 return Err(wrong(message).hint(by_name(&places)));
             }
             if typed.len() != places.len() {
@@ -223,42 +223,42 @@ impl Changes {
         }
         for (assignment, text) in named.into_iter().zip(typed) {
             let (name, value) =
-                assignment.ok_or_else(|| misplaced(format!("'{text}' has no name, and others have")))?;
+                assignment.ok_or_else(|| misplaced(format!("'{text}' has no name, but other values have")))?;
             let place = named_place(&places, layout, name).ok_or_else(|| {
                 if has_coordinates(layout) && ["x", "y", "z", "r"].iter().any(|axis| axis.eq_ignore_ascii_case(name)) {
-                    let message = format!("which axis {} is, is not known: {}", name.to_uppercase(), machine(letters));
+                    let message = format!("the axis of {} is unknown: {}", name.to_uppercase(), machine(letters));
                     return wrong(message).hint(by_name(&places));
                 }
                 let near = nearest(name, places.iter().map(|place| &place.name[..]));
                 let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-                misplaced(format!("there is no value '{}'{near}", name.escape_debug()))
+                misplaced(format!("unknown value '{}'{near}", name.escape_debug()))
             })?;
             if changes[place.fields.start].is_some() {
-                return Err(misplaced(format!("{} is given twice", place.name)));
+                return Err(misplaced(format!("{} appears twice", place.name)));
             }
             place.put(&mut changes, place.read(layout, value).map_err(wrong)?);
         }
         Ok(Self(changes))
     }
 
-    /// What shall become of each field.
+    /// New values of the fields.
     pub fn of(values: Vec<Option<Value>>) -> Self {
         Self(values)
     }
 
-    /// What shall become of each field.
+    /// New values of the fields.
     pub fn values(&self) -> &[Option<Value>] {
         &self.0
     }
 
-    /// All values, if none is left as it is.
+    /// All values, if every field has a new one.
     pub fn whole(&self) -> Option<Vec<Value>> {
         self.0.iter().cloned().collect()
     }
 
-    /// All values, with those that are left from what the controller answers to `read`; and that answer, so that it is not
-    /// read twice. A dry run, which has none, ends here if something is kept: what would be written is noted as `sketch`
-    /// makes it from the values that are known.
+    /// All values; unchanged fields keep the values that the controller answers to `read`. Also returns that answer, so
+    /// that it is read only once. A dry run has no answer. If it needs one, it records the block of `sketch` and ends
+    /// here.
     pub async fn completed(
         &self,
         link: &mut Link,
@@ -276,12 +276,12 @@ impl Changes {
         }
     }
 
-    /// All values, with those that are left from what was read.
+    /// All values; unchanged fields keep the values of `found`.
     ///
     /// # Errors
-    /// If that is nothing that could be written again.
+    /// If a kept value cannot be written again.
     pub fn over(&self, found: &Record) -> Result<Vec<Value>, Failure> {
-        // Numbers of rows and programs come first.
+        // Numbers of rows and programs precede the values.
         let keys = found.values().len().saturating_sub(self.0.len());
         let kept = found.pairs().skip(keys).zip(&self.0).filter(|(_, change)| change.is_none());
         let foreign = kept.map(|((field, value), _)| (field, value)).find(|(field, value)| !field.is_listed(value));
@@ -294,13 +294,13 @@ impl Changes {
         Ok(self.applied(&found.values()[keys..]))
     }
 
-    /// All values, with those that are left from what is there.
+    /// All values; unchanged fields keep the values of `found`.
     pub fn applied(&self, found: &[Value]) -> Vec<Value> {
         self.0.iter().zip(found).map(|(change, found)| change.as_ref().unwrap_or(found).clone()).collect()
     }
 }
 
-/// The place of that name. A coordinate also has the number of its axis: `ax2`.
+/// Slot by name. A coordinate is also named by the number of its axis: `ax2`.
 fn named_place<'p>(places: &'p [ValueSlot], layout: &Layout, name: &str) -> Option<&'p ValueSlot> {
     let numbered = |place: &&ValueSlot| {
         let field = layout.fields.get(place.fields.start)?;
@@ -310,33 +310,33 @@ fn named_place<'p>(places: &'p [ValueSlot], layout: &Layout, name: &str) -> Opti
     named.or_else(|| places.iter().find(|place| numbered(place).is_some()))
 }
 
-/// What letters the machine has.
+/// Sentence about the letters of the axes of this machine.
 pub fn machine(letters: &Letters) -> String {
     if *letters == Letters::UNKNOWN {
-        return "the controller does not tell the letters of its axes".to_owned();
+        return "the controller does not report the letters of its axes".to_owned();
     }
     let letters = letters.all().map(|letter| if letter.is_empty() { "?".to_owned() } else { letter });
-    format!("the letters of axes 1 to 4 are {}", letters.join(", "))
+    format!("axes 1 to 4 have the letters {}", letters.join(", "))
 }
 
-/// How coordinates are given by name.
+/// Hint for coordinates by name.
 fn by_name(places: &[ValueSlot]) -> String {
     let names: Vec<String> = places.iter().map(|place| format!("{}=…", place.name)).collect();
-    format!("give them by name: {}; ax1 to ax4 are axes 1 to 4 on every machine", names.join(" "))
+    format!("type them by name: {}; ax1 to ax4 also work on every machine", names.join(" "))
 }
 
-/// What would be kept may not be written.
+/// Failure for a kept value that cannot be written again.
 fn kept_unlisted(found: &str) -> Failure {
-    Failure::usage(format!("the controller holds '{found}', which is not in the manual and cannot be written back"))
-        .hint("nothing was written; give all values")
+    Failure::usage(format!("the stored value '{found}' is not in the manual and cannot be written again"))
+        .hint("nothing was written; type all values")
 }
 
-/// A number in its unit; a float only where there are decimals.
+/// A number in its unit; a float only if it has decimals.
 fn number(form: Number, units: i32) -> Json {
     if form.scale() > 1 { Json::from(f64::from(units) / f64::from(form.scale())) } else { Json::from(units) }
 }
 
-/// A value in the unit of its field; null where it is no number.
+/// Value in the unit of its field; null if it is not a number.
 pub fn json(field: &Field, value: &Value) -> Json {
     match (&field.form, value) {
         (Form::Number(form), Value::Number(units)) => number(*form, *units),
@@ -344,13 +344,13 @@ pub fn json(field: &Field, value: &Value) -> Json {
     }
 }
 
-/// `ax1=5`: name and value. What begins with something else, such as `<=`, is a value.
+/// Splits `ax1=5` into name and value. A text that begins with something else, such as `<=`, is a value.
 pub fn assignment(text: &str) -> Option<(&str, &str)> {
     let (name, value) = text.split_once('=')?;
     name.starts_with(|c: char| c.is_ascii_alphabetic()).then_some((name, value))
 }
 
-/// A value of a field; a word also by its meaning, and in any case.
+/// Parses the value of a field. A word is also accepted by its meaning, in any case.
 pub fn word(field: &Field, text: &str) -> Result<Value, String> {
     let Form::Word(words) = field.form else { return field.read(text).map_err(|error| error.to_string()) };
     let same = |other: &str| slug(other) == slug(text);
@@ -362,7 +362,7 @@ pub fn word(field: &Field, text: &str) -> Result<Value, String> {
     }
 }
 
-/// What may be typed for a field: `J (japanese) or E (english)`.
+/// Valid input for a field: `J (japanese) or E (english)`.
 fn expected(field: &Field) -> String {
     let Form::Word(words) = field.form else { return field.expected() };
     let texts: Vec<String> = words
@@ -378,24 +378,20 @@ fn expected(field: &Field) -> String {
     }
 }
 
-/// A meaning as one word: `external-point`.
+/// Meaning as one word: `external-point`.
 fn slug(text: &str) -> String {
     text.trim().to_lowercase().split([' ', '-', '_']).filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
 
-/// How values are typed.
+/// Hint about the values of a record.
 fn usage(places: &[ValueSlot], layout: &Layout) -> String {
     match places {
-        [place] => format!("its value is {}", place.expected(layout)),
+        [place] => format!("type the value: {}", place.expected(layout)),
         [first, ..] => {
             let names: Vec<&str> = places.iter().map(|place| &place.name[..]).collect();
-            format!(
-                "give all values in the order {}, or some by name, such as {}=…, which keeps the others",
-                names.join(" "),
-                first.name
-            )
+            format!("type all values in the order {}, or only some by name, such as {}=…", names.join(" "), first.name)
         }
-        [] => "it has no values".to_owned(),
+        [] => "it takes no values".to_owned(),
     }
 }
 

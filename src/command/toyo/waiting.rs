@@ -1,4 +1,4 @@
-//! Waiting for the end of what a controller has accepted: a return to origin, a program, a transfer of its memory card.
+//! Wait for the end of accepted work: a return to origin, a program, a transfer of the memory card.
 
 use std::time::Duration;
 
@@ -20,60 +20,60 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::progress::Progress;
 
-/// From one look at the status to the next.
+/// Interval between two reads of the status.
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(100);
-/// How long a controller may take to show that it began what it has accepted. What was not seen by then was over before
-/// the first look.
+/// Time limit for the controller to show that accepted work began. Work that was not visible by then ended before the
+/// first read.
 const BEGIN_WITHIN: Duration = Duration::from_secs(1);
-/// A step and what it waits for are asked at every so many looks.
+/// Number of status reads between two reads of the current step and of its wait condition.
 const STEP_EVERY: u32 = 5;
-/// Looks that a busy controller may refuse in a row, two seconds.
+/// Limit of refused reads in a row: two seconds of a busy controller.
 const MOST_REFUSED: u32 = 20;
-/// Looks that axes get to come to rest, two seconds.
+/// Number of reads for the axes to come to rest: two seconds.
 const LOOKS_TO_REST: u32 = 20;
 
-/// What is waited for.
+/// Type of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Work {
     /// A return to origin.
     Home,
-    /// The search for the origin of synchronized axes.
+    /// Search for the origin of synchronized axes.
     Search,
-    /// Anything that runs steps.
+    /// Execution of steps.
     Program,
     /// A transfer from or to the memory card.
     Card,
 }
 
-/// Work that the controller has accepted.
+/// Accepted work of the controller.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Accepted {
-    /// What.
+    /// Type of work.
     pub work: Work,
-    /// The order.
+    /// Command that started it.
     pub order: Command,
-    /// In a sentence: `the return to origin was accepted`.
+    /// Sentence about the acceptance: `the return to origin was accepted`.
     pub done: &'static str,
-    /// While it goes on: `the axes return to the origin`.
+    /// Sentence during the work: `the axes return to the origin`.
     pub doing: &'static str,
 }
 
-/// How it ended.
+/// End of the work.
 #[derive(Debug)]
 pub(super) struct End {
-    /// Where the axes stand; `None` where nothing moves.
+    /// Final position; `None` if nothing moves.
     pub place: Option<Coordinates>,
-    /// From the acceptance to the end; `None` if it was over before the first look.
+    /// Time from acceptance to end; `None` if the work ended before the first read.
     pub elapsed_ms: Option<u64>,
-    /// Whether it stands at a stop, and can go on.
+    /// Whether the program is paused and can continue.
     pub is_paused: bool,
 }
 
 impl Accepted {
-    /// Waits for the end, with the letters of the axes for what is told. A dry run notes what is asked meanwhile.
+    /// Waits for the end. Progress shows the letters of the axes. A dry run records the requests.
     ///
     /// # Errors
-    /// [`Kind::ConditionNotMet`] if it did not get to its end, [`Kind::OutcomeUnknown`] if contact was lost.
+    /// [`Kind::ConditionNotMet`] if the work did not complete, [`Kind::OutcomeUnknown`] if the connection was lost.
     pub(super) async fn wait(self, link: &mut Link, screen: &Screen, letters: Letters) -> Result<End, Failure> {
         if link.is_dry() {
             self.plan(link);
@@ -91,7 +91,7 @@ impl Accepted {
                     refused = 0;
                     let place = record.as_ref().map(|record| Coordinates::of(record, letters));
                     match watch.look(began.elapsed(), status, record) {
-                        // Until it was seen, the status may be that of before.
+                        // Until then, the status can be that of the time before the start.
                         Look::Running if !watch.seen => {}
                         Look::Running => teller.tell(status, place),
                         Look::Ended => {
@@ -114,7 +114,7 @@ impl Accepted {
         }
     }
 
-    /// Status and place; now and then the step, and what it waits for.
+    /// Reads status and position, and at intervals the step and its wait condition.
     async fn look(
         self,
         link: &mut Link,
@@ -130,7 +130,7 @@ impl Accepted {
         Ok((Status { inputs: teller.inputs, ..status }, place))
     }
 
-    /// Errors are asked for last: one that ends the work is not missed.
+    /// The page of errors is read last, so that an error that ends the work is not missed.
     const fn pages(self) -> &'static [u8] {
         if matches!(self.work, Work::Card) { &[3, 0] } else { &[0] }
     }
@@ -140,59 +140,59 @@ impl Accepted {
             link.plan(&status_page(*page), "every 100 ms until it has ended");
         }
         if self.work != Work::Card {
-            link.plan(&position(), "every 100 ms until it has ended: where the axes are");
+            link.plan(&position(), "every 100 ms until it has ended: position of the axes");
         }
         if self.work == Work::Program {
-            let about = Reason::about("now and then until it has ended: whether it waits for an input, and which step");
+            let about =
+                Reason::about("every 500 ms until it has ended: current step, and whether it waits for an input");
             for request in [status_page(4), steps::read_request(0)] {
-                link.plan_depending(&request.text(), about.depending_on("how long it takes"));
+                link.plan_depending(&request.text(), about.depending_on("duration of the work"));
             }
         }
-        link.plan_if(&status_page(1), "whether an error comes up");
+        link.plan_if(&status_page(1), "whether an error occurs");
     }
 
-    /// What kept it from its end.
+    /// Failure for work that did not complete.
     async fn failed(self, link: &mut Link, trouble: WaitFailure, place: Option<Coordinates>) -> Failure {
-        let place = place.map(|place| format!("; it stands at {}", place.in_a_line())).unwrap_or_default();
+        let place = place.map(|place| format!("; it is at {}", place.in_a_line())).unwrap_or_default();
         let tell = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{place}", self.done));
         match trouble {
             WaitFailure::Error => present_error(link, &tell).await,
-            WaitFailure::NoOrigin => tell("it ended without the origin").hint(
-                "somebody or something stopped it without an error: look at the machine, then repeat `toyo home`",
-            ),
-            WaitFailure::NotSeen => Failure { kind: Kind::OutcomeUnknown, ..tell("it was not seen to run") }
-                .hint("it was over before the first look, or it never began: look at `toyo status` and at the robot"),
-            WaitFailure::NotBegun => tell("it was not seen to begin")
-                .hint("it may still begin: keep clear, and look at `toyo status` and the teach pendant"),
+            WaitFailure::NoOrigin => tell("it ended without the origin")
+                .hint("check the machine: it was stopped without an error. Then repeat `toyo home`"),
+            WaitFailure::NotSeen => Failure { kind: Kind::OutcomeUnknown, ..tell("the status did not show it") }
+                .hint("check `toyo status` and the robot: it ended at once, or it did not begin"),
+            WaitFailure::NotBegun => tell("the status did not show its start")
+                .hint("keep clear, because it can still begin; check `toyo status` and the teach pendant"),
         }
     }
 
-    /// Contact lost: what was accepted goes on unseen.
+    /// Failure after a lost connection; the accepted work continues.
     fn lost(self, failure: Failure) -> Failure {
-        let message = format!("{}, but its end was not seen: {}", self.done, failure.message);
+        let message = format!("{}, but its result is unknown: {}", self.done, failure.message);
         Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-            .hint(format!("do not send it again: {}", refusal::verification_hint(self.order)))
+            .hint(format!("do not send the command again: {}", refusal::verification_hint(self.order)))
     }
 }
 
-/// The error that is present, as a failure that `tell` words.
+/// Failure for the present error, in the words of `tell`.
 pub(super) async fn present_error(link: &mut Link, tell: &impl Fn(&str) -> Failure) -> Failure {
     match link.status_of(&[1]).await {
         Ok(Status { error: errors::NONE, .. }) => {
-            tell("an error came up and is gone again").hint("`toyo alarm history` may tell which")
+            tell("an error occurred and was cancelled").hint("`toyo alarm history` can show the error")
         }
         Ok(Status { error: code, .. }) => {
             let error = errors::explain(code);
-            tell(&format!("an error came up ({})", error.in_a_line()))
+            tell(&format!("an error occurred ({})", error.in_a_line()))
                 .hint(refusal::cure(error.remedy))
                 .code(format!("{code:02X}"))
         }
-        Err(failure) => tell(&format!("an error came up, which could not be read: {}", failure.message))
-            .hint("`toyo alarm list` tells which"),
+        Err(failure) => tell(&format!("an error occurred, but its code could not be read: {}", failure.message))
+            .hint("`toyo alarm list` shows the error"),
     }
 }
 
-/// Where axes that are being stopped come to rest; where they were seen last if they cannot be asked.
+/// Position of rest of axes that are being stopped; the last position if it cannot be read.
 async fn resting_place(link: &mut Link, seen: Option<Coordinates>, letters: Letters) -> Option<Coordinates> {
     let mut last = seen?;
     for _ in 0..LOOKS_TO_REST {
@@ -208,21 +208,21 @@ async fn resting_place(link: &mut Link, seen: Option<Coordinates>, letters: Lett
     Some(last)
 }
 
-/// The current step with its number, unless the controller does not tell.
+/// Current step with its number; `None` if the controller does not report it.
 pub(super) async fn step(link: &mut Link) -> Result<Option<(i32, String)>, Failure> {
     let Ok(record) = steps::numbered(link, 0).await? else { return Ok(None) };
     let text = record.text("text").unwrap_or_default().to_owned();
     Ok(record.number("step").map(|number| (number, text)))
 }
 
-/// Whether the status becomes as it was ordered, within a second. A dry run notes the question.
+/// Whether the status reaches the commanded state within a second. A dry run records the request.
 pub(super) async fn becomes(
     link: &mut Link,
     (page, about): (u8, &str),
     is_so: impl Fn(Status) -> bool,
 ) -> Result<bool, Failure> {
     if link.is_dry() {
-        link.plan(&status_page(page), &format!("every 100 ms until it is so, at most 1s: {about}"));
+        link.plan(&status_page(page), &format!("every 100 ms, at most 1s: {about}"));
         return Err(unknown());
     }
     let until = Instant::now() + BEGIN_WITHIN;
@@ -232,9 +232,9 @@ pub(super) async fn becomes(
             Ok(status) if is_so(status) => return Ok(true),
             Ok(_) if is_late => return Ok(false),
             Err(failure) if is_late || failure.kind != Kind::Refused => {
-                let message = format!("the order was accepted, but what came of it was not seen: {}", failure.message);
+                let message = format!("the command was accepted, but its result is unknown: {}", failure.message);
                 return Err(Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-                    .hint("`toyo status` tells how the controller stands"));
+                    .hint("`toyo status` shows the state of the controller"));
             }
             _ => tokio::time::sleep(LOOK_EVERY).await,
         }
@@ -245,12 +245,12 @@ pub(super) fn position() -> Request {
     Request::bare(Command::Mpst)
 }
 
-/// Says how it goes: all the time on a terminal, elsewhere when it comes to a halt.
+/// Progress output: continuous on a terminal, otherwise only when the work halts.
 struct Teller {
     doing: &'static str,
     progress: Progress,
     screen: Screen,
-    /// As they were asked last.
+    /// Inputs at the last read.
     inputs: u8,
     step: String,
     halted: Option<&'static str>,
@@ -279,7 +279,7 @@ impl Teller {
     }
 }
 
-/// Watches work from its acceptance to its end.
+/// State of the watched work from its acceptance to its end.
 #[derive(Debug)]
 struct Watch {
     work: Work,
@@ -287,27 +287,27 @@ struct Watch {
     last: Option<Record>,
 }
 
-/// What a look says.
+/// Result of one read.
 #[derive(Debug, PartialEq, Eq)]
 enum Look {
-    /// Look again.
+    /// The work continues.
     Running,
-    /// It has ended.
+    /// The work has ended.
     Ended,
-    /// It did not get to its end.
+    /// The work did not complete.
     Failed(WaitFailure),
 }
 
-/// What keeps work from its end.
+/// Reason that work does not complete.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum WaitFailure {
     /// An error is present.
     Error,
-    /// A return to origin is over, and the origin is not known.
+    /// The return to origin has ended, and the origin is unknown.
     NoOrigin,
-    /// Nothing of it was seen.
+    /// The status did not show a start.
     NotBegun,
-    /// Nothing of it was seen, and it may have been over before the first look.
+    /// The status did not show the work; it can have ended before the first read.
     NotSeen,
 }
 
@@ -316,8 +316,8 @@ impl Watch {
         Self { work, seen: false, last: None }
     }
 
-    /// The place was read after the status: once the status says that nothing is executed, it is the last one. The
-    /// start may show late, and work that is over before the first look may not show at all.
+    /// Evaluates one read. The position was read after the status, so it is final once the status shows no execution.
+    /// The start can appear late, and short work may not appear at all.
     fn look(&mut self, elapsed: Duration, status: Status, place: Option<Record>) -> Look {
         let moves = self.last.is_some() && self.last != place;
         self.last = place;
@@ -328,7 +328,7 @@ impl Watch {
             Work::Card => status.card_reading() || status.card_writing(),
             _ => moves || status.executing() || status.homing(),
         };
-        // A pause ends by itself; a stop does not.
+        // A pause by an input ends by itself; a stop does not.
         if busy || (status.paused() && status.pause_input()) {
             self.seen = true;
             return Look::Running;
@@ -338,7 +338,7 @@ impl Watch {
             _ if !is_over => Look::Running,
             (Work::Home, true) if !status.homed() => Look::Failed(WaitFailure::NoOrigin),
             (Work::Home, false) if !status.homed() => Look::Failed(WaitFailure::NotBegun),
-            // Where it is paused at a stop, it has run.
+            // A program that is paused at a stop has run.
             (Work::Program, false) if !status.paused() => Look::Failed(WaitFailure::NotSeen),
             _ => Look::Ended,
         }

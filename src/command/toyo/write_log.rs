@@ -1,8 +1,7 @@
-//! Writes of one cell of the EEPROM over and over: within a connection, and by a script that starts a command for each.
+//! Log of EEPROM writes, to detect a loop of writes to one cell within a connection or in a script.
 //!
-//! A cell takes about a million rewrites (TO 2-1, note 2), which a loop of ten a second reaches in a day. So written
-//! cells go into a log in the state folder of the user, which looks back ten minutes. It is an aid: where it cannot
-//! be kept, nothing is lost but the warning.
+//! A cell takes about a million writes (TO 2-1, note 2), which a loop of ten per second reaches in a day. The log in
+//! the state folder of the user covers ten minutes. If it cannot be saved, only the warning is lost.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -14,47 +13,47 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use crate::command::frame::local::state_folder;
 use crate::files;
 
-/// Writes of one cell over one link that are no accident any more.
+/// Number of writes to one cell over one link that causes a warning.
 const LOOP: u32 = 3;
-/// The same over several links, where somebody may be trying values.
+/// The same over several links, for which a person can be the reason.
 const LOOP_OF_COMMANDS: u32 = 10;
-/// How far the log looks back.
+/// Period of the log.
 const WINDOW: Duration = Duration::from_secs(600);
-/// A log that is longer is written anew, without what is too old.
+/// A longer log is written again without old lines.
 const SIZE: u64 = 64 * 1024;
-/// What is larger is none that was written here.
+/// Size limit of the log.
 const MOST: u64 = 16 << 20;
 
-/// How often each cell was written.
+/// Number of writes to each cell.
 #[derive(Debug, Default)]
 pub struct WriteLog {
     log: Option<LogFile>,
-    /// By this link.
+    /// Writes of this link.
     own: HashMap<String, u32>,
-    /// By others within the window; read when the first cell is written.
+    /// Writes of other links in the period; read at the first write.
     others: Option<HashMap<String, u32>>,
 }
 
 #[derive(Debug)]
 struct LogFile {
     path: PathBuf,
-    /// What the cells are of.
+    /// Target URL of the robot.
     robot: String,
 }
 
 impl WriteLog {
-    /// Counts for a robot; with a log where the user has a state folder.
+    /// Counts for a robot, with a log in the state folder of the user if there is one.
     pub fn of(robot: &str) -> Self {
         let log = |folder: PathBuf| LogFile { path: folder.join("eeprom-writes"), robot: robot.to_owned() };
         Self { log: state_folder().map(log), ..Self::default() }
     }
 
-    /// Counts for a link that lasts as long as what it writes to.
+    /// Counts without a log, for a simulator in this process.
     pub fn without_file() -> Self {
         Self::default()
     }
 
-    /// Counts a write of a cell. Says so if it is one of too many.
+    /// Counts a write to a cell. Returns a warning for too many writes.
     pub fn written(&mut self, cell: &str) -> Option<String> {
         let log = self.log.as_ref();
         let others = self.others.get_or_insert_with(|| log.map(|log| log.read(now())).unwrap_or_default());
@@ -69,13 +68,13 @@ impl WriteLog {
         } else {
             return None;
         };
-        Some(format!("{warning}; a cell of the EEPROM wears out after about a million"))
+        Some(format!("{warning}; an EEPROM cell wears out after about a million writes"))
     }
 
-    /// Notes in the log what this link wrote.
+    /// Adds the writes of this link to the log.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// The file cannot be written.
     pub fn keep(&mut self) -> std::io::Result<()> {
         let own = std::mem::take(&mut self.own);
         match &self.log {
@@ -90,14 +89,14 @@ fn now() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs())
 }
 
-/// A line of the log: when, how often, which robot, which cell.
+/// Parses a line of the log: time, count, robot, cell.
 fn entry(line: &str) -> Option<(u64, u32, &str, &str)> {
     let mut parts = line.splitn(4, '\t');
     Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?, parts.next()?, parts.next()?))
 }
 
 impl LogFile {
-    /// How often each cell of the robot was written lately.
+    /// Recent writes to each cell of the robot.
     fn read(&self, now: u64) -> HashMap<String, u32> {
         let mut counts = HashMap::new();
         for (_, count, robot, cell) in fresh(&content(&self.path), now).filter_map(entry) {
@@ -118,14 +117,14 @@ impl LogFile {
         }
         let mut lines = String::new();
         for (cell, count) in cells {
-            // Nothing fails when text is written to a string.
+            // Writing to a string cannot fail.
             let _ = writeln!(lines, "{now}\t{count}\t{}\t{cell}", self.robot.replace(['\t', '\n'], " "));
         }
-        // Appended at once, so that lines of commands that run at the same time stay whole.
+        // One append keeps the lines of concurrent commands whole.
         fs::OpenOptions::new().create(true).append(true).open(&self.path)?.write_all(lines.as_bytes())
     }
 
-    /// Leaves out what is too old.
+    /// Removes old lines.
     fn shorten(&self, now: u64) -> std::io::Result<()> {
         let text = content(&self.path);
         let mut beside = files::draft_in(&files::folder_of(&self.path))?;
@@ -137,12 +136,12 @@ impl LogFile {
     }
 }
 
-/// The log as text; one that is not there, or is none, is empty.
+/// Text of the log; empty if it cannot be read.
 fn content(path: &Path) -> String {
     files::text(path, MOST).unwrap_or_default()
 }
 
-/// The lines within the window.
+/// Lines of the period.
 fn fresh(text: &str, now: u64) -> impl Iterator<Item = &str> {
     let since = now.saturating_sub(WINDOW.as_secs());
     text.lines().filter(move |line| entry(line).is_some_and(|(time, ..)| (since..=now).contains(&time)))

@@ -40,7 +40,7 @@ pub struct Serve {
     /// Start state (TOML): modes, variables, jobs, files, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Faults on the line, such as drop=5%,dup=2%,delay=0..50ms,seed=7; also reorder, corrupt, busy
+    /// Faults, such as drop=5%,delay=0..50ms,seed=7; also dup, reorder, corrupt, busy
     #[arg(long, value_name = "FAULTS")]
     fault: Option<FaultSpec>,
     /// Read console lines on stdin: `alarm 4315`, `mode teach`, `io 20010 on`, `help`
@@ -104,6 +104,13 @@ impl serve::Server for Yerc {
 
     fn console(&mut self, line: &str) -> Result<String, String> {
         self.simulated.0.console(self.server.now(), line)
+    }
+
+    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String> {
+        let faults: Option<FaultSpec> = faults.map(str::parse).transpose().map_err(|error| format!("{error}"))?;
+        self.simulated.0.set_busy(faults.as_ref().map_or(0.0, |faults| faults.busy.fraction()));
+        self.server.set_faults(faults.map(Faults::pair));
+        Ok(())
     }
 }
 

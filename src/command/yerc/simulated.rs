@@ -15,7 +15,7 @@ use crate::transport::fault::FaultSpec;
 pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> Result<Start, Failure> {
     let start = file.map_or_else(|| Ok(Start::for_model(model)), load)?;
     Ok(match faults {
-        Some(faults) => start.with_busy(f64::from(faults.busy.per_10_000()) / 10_000.0),
+        Some(faults) => start.with_busy(faults.busy.fraction()),
         None => start,
     })
 }

@@ -175,12 +175,24 @@ pub trait Serve {
     }
 
     /// Starts the server in its own threads or tasks. `simulator` selects one of several simulators of the fieldbus.
-    /// `link` is the name of the pseudo-terminal.
-    fn serve(&self, simulator: Option<&str>, start: Start, link: Option<&Path>) -> Result<Served, Failure>;
+    /// `link` is the name of the pseudo-terminal, `faults` the text of `--fault`.
+    fn serve(
+        &self,
+        simulator: Option<&str>,
+        start: Start,
+        link: Option<&Path>,
+        faults: Option<&str>,
+    ) -> Result<Served, Failure>;
 }
 
-/// Handler for console lines.
-pub type Console = dyn FnMut(&str) -> Result<String, String>;
+/// Operations of the console of a simulator on its fieldbus.
+pub trait Operator {
+    /// Executes a console line and returns the result or the reason for a failure.
+    fn console(&self, line: &str) -> Result<String, String>;
+
+    /// Sets the faults of link and device; `None` removes all faults.
+    fn set_faults(&self, faults: Option<&str>) -> Result<(), String>;
+}
 
 /// A served controller; it stops when this value is dropped.
 pub struct Served {
@@ -188,8 +200,8 @@ pub struct Served {
     pub target: String,
     /// Address that a network server listens on.
     pub address: Option<SocketAddr>,
-    /// Executes a console line and returns the result or the reason for a failure.
-    pub console: Box<Console>,
+    /// Server with its console.
+    pub operator: Box<dyn Operator>,
 }
 
 impl fmt::Debug for Served {

@@ -26,6 +26,9 @@ pub struct ServeArgs {
     bus: Option<String>,
     #[command(flatten)]
     servers: Given<Servers>,
+    /// Faults, such as drop=5%,delay=0..50ms,seed=7 or stall; `armctl help simulator` lists them
+    #[arg(long, value_name = "FAULTS")]
+    fault: Option<String>,
     /// DeviceNet, PROFIBUS: create a symbolic link to the pseudo-terminal and remove it at the end
     #[arg(long, value_name = "PATH", alias = "slcan-link")]
     link: Option<PathBuf>,
@@ -56,11 +59,8 @@ fn misplaced(flag: &str, chosen: &str, right: &str) -> Failure {
         .hint("`armctl sim yrcx -h` lists the options of each fieldbus")
 }
 
-/// Console lines for the fieldbus.
-const MORE: [(&str, &str); 2] = [
-    ("mischief NAME|off", "set a fault of the fieldbus device; an unknown name lists the faults"),
-    ("restart", "switch the slave or device off and on (PROFIBUS, PROFINET)"),
-];
+/// Console line of a slave or device.
+const RESTART: (&str, &str) = ("restart", "switch the slave or device off and on (PROFIBUS, PROFINET)");
 
 impl serve::Serve for ServeArgs {
     const ID: &'static str = "sim.yrcx";
@@ -79,7 +79,7 @@ impl serve::Serve for ServeArgs {
         if self.link.is_some() && !serve.has_terminal() {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
         }
-        let server = serve.serve(wanted, start(self.state.as_deref())?, self.link.as_deref())?;
+        let server = serve.serve(wanted, start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref())?;
         Ok(Started {
             reach: serve::reach("yrcx", &server.target),
             report: Serving { family: "yrcx", target: server.target.clone() },
@@ -96,8 +96,11 @@ impl serve::Server for Served {
     }
 
     fn console(&mut self, line: &str) -> Result<String, String> {
-        let told = (self.console)(line)?;
-        let more = MORE.map(|(typed, does)| format!("\n{}", help_line(typed, does)));
-        Ok(if line.trim() == "help" { told + &more.concat() } else { told })
+        let result = self.operator.console(line)?;
+        Ok(if line == "help" { format!("{result}\n{}", help_line(RESTART.0, RESTART.1)) } else { result })
+    }
+
+    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String> {
+        self.operator.set_faults(faults)
     }
 }

@@ -55,6 +55,11 @@ impl Busy {
         Self { share, random: fastrand::Rng::with_seed(seed) }
     }
 
+    /// Changes the share, from 0.0 to 1.0.
+    pub(crate) fn set_share(&mut self, share: f64) {
+        self.share = share.clamp(0.0, 1.0);
+    }
+
     /// Decides about the next request.
     pub(crate) fn refuses(&mut self) -> bool {
         self.share > 0.0 && self.random.f64() < self.share

@@ -124,6 +124,11 @@ impl<A: Application + 'static> Hub<A> {
         &self.places
     }
 
+    /// Changes the faults of frames: to the slave, from the slave.
+    pub fn set_faults(&self, faults: Option<(Faults, Faults)>) {
+        self.inner.lock().faults = faults;
+    }
+
     /// Calls `look` with the slave.
     pub fn with<T>(&self, look: impl FnOnce(&mut Device<A>, Now) -> T) -> Option<T> {
         let now = self.inner.start.elapsed();

@@ -13,8 +13,8 @@ use std::time::Duration;
 use fastrand::Rng;
 
 use super::{
-    DELAY_FORM, FaultSpecError, Key, SEED_FORM, SHARE_FORM, Setter, Share, between, delay, parse, write_delay,
-    write_shares,
+    DELAY_FORM, FaultSpecError, FaultText, Key, SEED_FORM, SHARE_FORM, Setter, Share, between, delay, parse_link,
+    write_delay, write_shares,
 };
 
 /// Limit of noise bytes in place of a datagram.
@@ -61,22 +61,23 @@ impl Default for FaultSpec {
     }
 }
 
-/// Keys with the form of their values.
-const KEYS: [Key<FaultSpec>; 7] = [
-    ("drop", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share))),
-    ("dup", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share))),
-    ("delay", Setter::Value(DELAY_FORM, |spec, text| delay(text).map(|delay| spec.delay = delay))),
-    ("reorder", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.reorder = share))),
-    ("corrupt", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.corrupt = share))),
-    ("busy", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.busy = share))),
-    ("seed", Setter::Value(SEED_FORM, |spec, text| text.parse().ok().map(|seed| spec.seed = seed))),
-];
+impl FaultText for FaultSpec {
+    const KEYS: &'static [Key<Self>] = &[
+        ("drop", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share))),
+        ("dup", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share))),
+        ("delay", Setter::Value(DELAY_FORM, |spec, text| delay(text).map(|delay| spec.delay = delay))),
+        ("reorder", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.reorder = share))),
+        ("corrupt", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.corrupt = share))),
+        ("busy", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.busy = share))),
+        ("seed", Setter::Value(SEED_FORM, |spec, text| text.parse().ok().map(|seed| spec.seed = seed))),
+    ];
+}
 
 impl FromStr for FaultSpec {
     type Err = FaultSpecError;
 
     fn from_str(text: &str) -> Result<Self, FaultSpecError> {
-        parse(text, &KEYS)
+        parse_link(text)
     }
 }
 
@@ -233,11 +234,12 @@ mod tests {
     fn errors_name_the_key_and_the_form() {
         let share = "a percentage from 0% to 100% with at most two decimals, as in 2.5%";
         let time = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
-        let cases = [
-            ("", "'' must be key=value, as in drop=5%"),
-            ("drop", "'drop' must be key=value, as in drop=5%"),
-            ("drop=5%,", "'' must be key=value, as in drop=5%"),
-            ("lose=5%", "unknown key 'lose'; known: drop, dup, delay, reorder, corrupt, busy and seed"),
+        let names = "the faults are drop, dup, delay, reorder, corrupt, busy, seed";
+        let cases: [(&str, &str); 15] = [
+            ("", &format!("unknown fault ''; {names}")),
+            ("drop", &format!("drop needs a value: {share}")),
+            ("drop=5%,", &format!("unknown fault ''; {names}")),
+            ("lose=5%", &format!("unknown fault 'lose'; {names}")),
             ("drop=1%,drop=2%", "drop appears twice"),
             ("drop=5", &format!("drop: '5' is not {share}")),
             ("dup=101%", &format!("dup: '101%' is not {share}")),

@@ -9,8 +9,8 @@ use std::time::Duration;
 use fastrand::Rng;
 
 use super::{
-    DELAY_FORM, FaultSpecError, Key, SEED_FORM, SHARE_FORM, Setter, Share, between, delay, parse, write_delay,
-    write_shares,
+    DELAY_FORM, FaultSpecError, FaultText, Key, SEED_FORM, SHARE_FORM, Setter, Share, between, delay, parse_link,
+    write_delay, write_shares,
 };
 
 /// Fault rates. Text form: `noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,busy=4%,echo,seed=7`; every part is
@@ -51,23 +51,24 @@ impl Default for LineFaultSpec {
     }
 }
 
-/// Keys with the form of their values.
-const KEYS: [Key<LineFaultSpec>; 8] = [
-    ("noise", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.noise = share))),
-    ("parity", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.parity = share))),
-    ("drop", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share))),
-    ("dup", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share))),
-    ("delay", Setter::Value(DELAY_FORM, |spec, text| delay(text).map(|delay| spec.delay = delay))),
-    ("busy", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.busy = share))),
-    ("echo", Setter::Flag(|spec| spec.echo = true)),
-    ("seed", Setter::Value(SEED_FORM, |spec, text| text.parse().ok().map(|seed| spec.seed = seed))),
-];
+impl FaultText for LineFaultSpec {
+    const KEYS: &'static [Key<Self>] = &[
+        ("noise", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.noise = share))),
+        ("parity", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.parity = share))),
+        ("drop", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share))),
+        ("dup", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share))),
+        ("delay", Setter::Value(DELAY_FORM, |spec, text| delay(text).map(|delay| spec.delay = delay))),
+        ("busy", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.busy = share))),
+        ("echo", Setter::Flag(|spec| spec.echo = true)),
+        ("seed", Setter::Value(SEED_FORM, |spec, text| text.parse().ok().map(|seed| spec.seed = seed))),
+    ];
+}
 
 impl FromStr for LineFaultSpec {
     type Err = FaultSpecError;
 
     fn from_str(text: &str) -> Result<Self, FaultSpecError> {
-        parse(text, &KEYS)
+        parse_link(text)
     }
 }
 
@@ -190,8 +191,8 @@ mod tests {
         for (text, message) in [
             ("echo=on", "echo has no value, but got 'on'"),
             ("echo,echo", "echo appears twice"),
-            ("noise", "'noise' must be key=value, as in drop=5%"),
-            ("reorder=1%", "unknown key 'reorder'; known: noise, parity, drop, dup, delay, busy, echo and seed"),
+            ("noise", "noise needs a value: a percentage from 0% to 100% with at most two decimals, as in 2.5%"),
+            ("reorder=1%", "unknown fault 'reorder'; the faults are noise, parity, drop, dup, delay, busy, echo, seed"),
             ("noise=1", "noise: '1' is not a percentage from 0% to 100% with at most two decimals, as in 2.5%"),
         ] {
             assert_eq!(text.parse::<LineFaultSpec>().unwrap_err().to_string(), message, "{text}");

@@ -1,4 +1,5 @@
 //! Fault injection with a seed, without sockets and clock: [`Faults`] for datagrams, [`LineFaults`] for a serial line.
+//! [`SimulatorFaults`] adds the faults of the simulated device itself.
 //!
 //! The input is what is sent, the output is what arrives. The same seed and the same traffic give the same faults on
 //! every computer.
@@ -34,6 +35,11 @@ impl Share {
         self.0
     }
 
+    /// The rate from 0.0 to 1.0.
+    pub fn fraction(self) -> f64 {
+        f64::from(self.0) / f64::from(Self::ALL.0)
+    }
+
     fn hits(self, rng: &mut Rng) -> bool {
         rng.u16(0..Self::ALL.0) < self.0
     }
@@ -65,19 +71,29 @@ impl fmt::Display for Share {
 /// Error of a [`FaultSpec`] or [`LineFaultSpec`] text.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FaultSpecError {
-    /// A part without a value.
-    #[error("'{part}' must be key=value, as in drop=5%")]
+    /// A fault without its value.
+    #[error("{key} needs a value: {form}")]
     NoValue {
-        /// The part.
-        part: String,
-    },
-    /// An unknown key.
-    #[error("unknown key '{key}'; known: {known}")]
-    UnknownKey {
         /// The key.
-        key: String,
-        /// The valid keys.
+        key: &'static str,
+        /// Valid form of the value.
+        form: &'static str,
+    },
+    /// An unknown fault.
+    #[error("unknown fault '{name}'; the faults are {known}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// The valid names.
         known: String,
+    },
+    /// Two faults of the device, which has one at a time.
+    #[error("{first} and {second} exclude each other")]
+    TwoOfDevice {
+        /// The first fault.
+        first: &'static str,
+        /// The second fault.
+        second: &'static str,
     },
     /// A repeated key.
     #[error("{key} appears twice")]
@@ -109,31 +125,99 @@ const SHARE_FORM: &str = "a percentage from 0% to 100% with at most two decimals
 const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
 const SEED_FORM: &str = "a whole number from 0 to 18446744073709551615";
 
-/// Key of a specification `S`, with the function that sets its value.
-type Key<S> = (&'static str, Setter<S>);
+/// Faults of a link in text form.
+pub trait FaultText: Default + 'static {
+    /// Names with the functions that set their values.
+    const KEYS: &'static [Key<Self>];
+}
 
-enum Setter<S> {
+/// Name of a fault, with the function that sets its value in `S`.
+pub type Key<S> = (&'static str, Setter<S>);
+
+/// Function that sets one value of `S`.
+#[derive(Debug)]
+pub enum Setter<S> {
     /// Form of the value, and the function that parses and sets it; `None` for a value of another form.
     Value(&'static str, fn(&mut S, &str) -> Option<()>),
     /// A key without a value.
     Flag(fn(&mut S)),
 }
 
-/// Parses comma-separated parts, each at most once.
-fn parse<S: Default, const N: usize>(text: &str, keys: &[Key<S>; N]) -> Result<S, FaultSpecError> {
+/// Faults of a simulator: of its link, and at most one of the device.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SimulatorFaults<S, D> {
+    /// Faults of the link; `None` if the text names none.
+    pub link: Option<S>,
+    /// Fault of the device.
+    pub device: Option<D>,
+}
+
+impl<S, D> Default for SimulatorFaults<S, D> {
+    fn default() -> Self {
+        Self { link: None, device: None }
+    }
+}
+
+/// Faults that a simulator has.
+#[derive(Debug, Clone, Copy)]
+pub struct FaultNames<D: 'static> {
+    /// Names of the faults of its link, of the [`FaultText::KEYS`].
+    pub link: &'static [&'static str],
+    /// Faults of the device, by name.
+    pub device: &'static [(&'static str, D)],
+}
+
+impl<D: Copy> FaultNames<D> {
+    /// Parses `drop=5%,stall,seed=7`.
+    ///
+    /// # Errors
+    /// [`FaultSpecError`] for an unknown name, which lists the known ones, a repeated name or a wrong value.
+    pub fn parse<S: FaultText>(&self, text: &str) -> Result<SimulatorFaults<S, D>, FaultSpecError> {
+        let of_device = |part: &str| self.device.iter().find(|(name, _)| *name == part);
+        let (device, link): (Vec<&str>, Vec<&str>) =
+            text.split(',').map(str::trim).partition(|part| of_device(part).is_some());
+        let mut faults = SimulatorFaults::default();
+        if !link.is_empty() {
+            let keys: Vec<&Key<S>> = S::KEYS.iter().filter(|(name, _)| self.link.contains(name)).collect();
+            faults.link = Some(parse(&link, &keys, self.device.iter().map(|(name, _)| *name))?);
+        }
+        let mut named = device.into_iter().filter_map(of_device);
+        if let Some((first, fault)) = named.next() {
+            faults.device = Some(*fault);
+            match named.next() {
+                Some((second, _)) if first == second => return Err(FaultSpecError::Twice { key: first }),
+                Some((second, _)) => return Err(FaultSpecError::TwoOfDevice { first, second }),
+                None => {}
+            }
+        }
+        Ok(faults)
+    }
+}
+
+/// Parses the faults of a link with all its names.
+fn parse_link<S: FaultText>(text: &str) -> Result<S, FaultSpecError> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    parse(&parts, &S::KEYS.iter().collect::<Vec<_>>(), [])
+}
+
+/// Parses parts, each name at most once. `others` are valid names besides `keys`, for the error.
+fn parse<S: Default>(
+    parts: &[&str],
+    keys: &[&'static Key<S>],
+    others: impl IntoIterator<Item = &'static str>,
+) -> Result<S, FaultSpecError> {
     let mut spec = S::default();
-    let mut seen = [false; N];
-    for part in text.split(',').map(str::trim) {
-        let (name, value) = part.split_once('=').map_or((part, None), |(name, value)| (name, Some(value)));
-        let Some((position, (key, setter))) = keys.iter().enumerate().find(|(_, (key, _))| *key == name) else {
-            return Err(match value {
-                None => FaultSpecError::NoValue { part: part.to_owned() },
-                Some(_) => FaultSpecError::UnknownKey { key: name.to_owned(), known: known(keys) },
-            });
+    let mut seen = Vec::new();
+    for part in parts {
+        let (name, value) = part.split_once('=').map_or((*part, None), |(name, value)| (name, Some(value)));
+        let Some((key, setter)) = keys.iter().find(|(key, _)| *key == name) else {
+            let known: Vec<&str> = keys.iter().map(|(key, _)| *key).chain(others).collect();
+            return Err(FaultSpecError::Unknown { name: name.to_owned(), known: known.join(", ") });
         };
-        if std::mem::replace(&mut seen[position], true) {
+        if seen.contains(key) {
             return Err(FaultSpecError::Twice { key });
         }
+        seen.push(*key);
         match (setter, value) {
             (Setter::Flag(set), None) => set(&mut spec),
             (Setter::Flag(_), Some(value)) => {
@@ -142,17 +226,10 @@ fn parse<S: Default, const N: usize>(text: &str, keys: &[Key<S>; N]) -> Result<S
             (Setter::Value(form, set), Some(value)) => {
                 set(&mut spec, value).ok_or_else(|| FaultSpecError::Value { key, value: value.to_owned(), form })?;
             }
-            (Setter::Value(..), None) => return Err(FaultSpecError::NoValue { part: part.to_owned() }),
+            (Setter::Value(form, _), None) => return Err(FaultSpecError::NoValue { key, form }),
         }
     }
     Ok(spec)
-}
-
-/// Lists the keys for a sentence.
-fn known<S>(keys: &[Key<S>]) -> String {
-    let names: Vec<&str> = keys.iter().map(|(key, _)| *key).collect();
-    let (last, others) = names.split_last().expect("a table of keys has some");
-    format!("{} and {last}", others.join(", "))
 }
 
 /// Writes the rates that are not 0, each followed by a comma.
@@ -215,4 +292,39 @@ fn between(rng: &mut Rng, range: &RangeInclusive<Duration>) -> Duration {
     let (least, most) = (micros(range.start()), micros(range.end()));
     // A specification made in code can have its limits in the wrong order.
     Duration::from_micros(if least < most { rng.u64(least..=most) } else { least })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NAMES: FaultNames<u8> = FaultNames { link: &["drop", "delay", "seed"], device: &[("stall", 1), ("mute", 2)] };
+
+    fn parsed(text: &str) -> Result<SimulatorFaults<FaultSpec, u8>, String> {
+        NAMES.parse(text).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn faults_of_link_and_device_share_one_text() {
+        let link = |text: &str| Some(text.parse::<FaultSpec>().unwrap());
+        assert_eq!(parsed("stall"), Ok(SimulatorFaults { link: None, device: Some(1) }));
+        assert_eq!(parsed("seed=7,drop=5%"), Ok(SimulatorFaults { link: link("drop=5%,seed=7"), device: None }));
+        let both = SimulatorFaults { link: link("drop=5%,seed=7"), device: Some(2) };
+        assert_eq!(parsed("drop=5%, mute, seed=7"), Ok(both));
+    }
+
+    #[test]
+    fn errors_of_simulator_faults_list_the_names() {
+        let names = "the faults are drop, delay, seed, stall, mute";
+        for (text, message) in [
+            ("", format!("unknown fault ''; {names}")),
+            ("loud", format!("unknown fault 'loud'; {names}")),
+            ("stall=1", format!("unknown fault 'stall'; {names}")),
+            ("busy=5%", format!("unknown fault 'busy'; {names}")),
+            ("stall,mute", "stall and mute exclude each other".to_owned()),
+            ("mute,mute", "mute appears twice".to_owned()),
+        ] {
+            assert_eq!(parsed(text), Err(message), "{text}");
+        }
+    }
 }

@@ -40,7 +40,7 @@ pub enum Content {
     Easy(Vec<easy_text::Filled>),
 }
 
-/// Asks what kind of controller it is.
+/// Asks type and version of the controller.
 pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
     let system = link.ask(&Request::bare(Command::Sysp)).await?;
     let shown = |name: &str, show: fn(&Field, &Value) -> String| {
@@ -66,11 +66,11 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
 
 /// What a dry run notes of [`controller`].
 pub fn plan_controller(link: &mut Link) {
-    link.plan(&Request::bare(Command::Sysp), "what kind of controller it is");
+    link.plan(&Request::bare(Command::Sysp), "type and version of the controller");
     link.plan(&task_axes(), "which tasks have axes");
     link.plan(&letters_request(), "the letters of the axes");
     link.plan(&Request::bare(Command::Rovr), "the override");
-    link.plan(&steps::rooms_request(), "how many steps the tasks have");
+    link.plan(&steps::rooms_request(), "number of steps of the tasks");
 }
 
 /// The values of a record in a line.
@@ -161,7 +161,10 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
             let foreign = (1..).zip(&read).filter(|(_, record)| !record.is_listed());
             let left_out = foreign.map(|(step, record): (i32, _)| LeftOut {
                 key: step.to_string(),
-                why: format!("'{}' is {NOT_IN_MANUAL}: it is kept as text, and cannot be written", record.written()),
+                why: format!(
+                    "'{}' is {NOT_IN_MANUAL}; the backup has its text, but a restore cannot write it",
+                    record.written()
+                ),
             });
             Ok(Text { text, left_out: left_out.collect() })
         }
@@ -171,10 +174,10 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
 async fn parameters_text(link: &mut Link, screen: &Screen) -> Result<Text, Failure> {
     let kept = param::DumpReport::read(link, screen).await?;
     let text = kept.text();
-    let refused = kept.refused.into_iter().map(|key| LeftOut { key, why: "the controller refuses it".to_owned() });
+    let refused = kept.refused.into_iter().map(|key| LeftOut { key, why: "the controller refused it".to_owned() });
     let unfit = kept.unfit.into_iter().map(|param::Unfit { key, value, why, .. }| LeftOut {
         key,
-        why: format!("it holds {value}, which may not be written: {why}"),
+        why: format!("its value {value} cannot be written back: {why}"),
     });
     let failed = kept.failed.into_iter().map(|param::Failed { key, error }| LeftOut { key, why: error.message });
     Ok(Text { text, left_out: refused.chain(unfit).chain(failed).collect() })
@@ -200,7 +203,7 @@ fn sorted(keys: impl IntoIterator<Item = String>, answers: Answers) -> Result<(V
 
 /// What is not in a TOML file, as comments of it.
 fn remarks(left_out: &[LeftOut]) -> String {
-    left_out.iter().map(|LeftOut { key, why }| format!("\n# {key} is left out: {}\n", escape::line(why))).collect()
+    left_out.iter().map(|LeftOut { key, why }| format!("\n# {key} is missing: {}\n", escape::line(why))).collect()
 }
 
 impl Content {

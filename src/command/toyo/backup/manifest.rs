@@ -35,7 +35,7 @@ impl About for Controller {
 
     fn check(&self) -> Result<(), String> {
         match self.speed_override_percent {
-            Some(percent) if !(1..=100).contains(&percent) => Err(format!("an override of {percent} % is none")),
+            Some(percent) if !(1..=100).contains(&percent) => Err(format!("an override of {percent} % is not valid")),
             _ => Ok(()),
         }
     }

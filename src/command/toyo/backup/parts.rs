@@ -91,8 +91,8 @@ impl FromStr for Part {
         }
         let names: Vec<String> = all.iter().map(ToString::to_string).collect();
         Err(match nearest(name, names.iter().map(String::as_str)) {
-            Some(near) => format!("there is no part '{name}'; did you mean {near}?"),
-            None => format!("there is no part '{name}'"),
+            Some(near) => format!("unknown part '{name}'; did you mean {near}?"),
+            None => format!("unknown part '{name}'"),
         })
     }
 }

@@ -29,21 +29,19 @@ use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 
-/// Writes back what a backup holds.
+/// Write a backup back to the controller.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "All files are checked first, against their hashes and for their content. Each value is compared \
-                  before it is written: what the controller holds already is not written, as its EEPROM takes about a \
-                  million rewrites. So after a restore that was cut off the same command goes on where it ended.\n\n\
-                  Machine parameters (E) and special ones (U) are left out unless --machine is given. They come first; \
-                  if one of E was changed, nothing else is written, as only communication works until the \
-                  controller's power was switched off and on. Then restore again without --machine.\n\nSteps and all \
-                  else are written in program mode; a controller in another mode is switched to it, and back."
-)]
+#[command(after_help = "All files are checked first: their hashes and their content. Each value is compared \
+                  before the write. Equal values are not written, because the EEPROM takes about a \
+                  million rewrites. After an interrupted restore, the same command continues.\n\n\
+                  Machine parameters (E) and special ones (U) need --machine. They are written first; \
+                  after a change of E nothing else is written, because the controller executes nothing before a \
+                  restart. Then restore again without --machine.\n\nThe restore \
+                  selects program mode temporarily.")]
 pub struct Restore {
     #[command(flatten)]
     options: RestoreOptions,
-    /// Go on with a restore that was cut off; with a part, those before it are not even compared
+    /// Continue an interrupted restore; with a part, earlier parts are not compared
     #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "parameters")]
     resume: Option<Part>,
 }
@@ -107,8 +105,8 @@ impl Asked {
         manifest::check_origin(&manifest::existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
         let parts = self.chosen(&manifest)?;
         if self.restoring.machine && !parts.contains(&Part::Parameters) {
-            return Err(Failure::usage("--machine is about the parameters, which are not among the parts")
-                .hint("leave --machine away, or name `parameters` with --only"));
+            return Err(Failure::usage("--machine needs the parameters, which --only excludes")
+                .hint("remove --machine, or add `parameters` to --only"));
         }
         let mut jobs = Vec::new();
         for part in parts {
@@ -151,7 +149,7 @@ impl Asked {
             let first = first.or_else(|| (resume == Part::Parameters).then_some(0));
             let first = first.ok_or_else(|| {
                 Failure::usage(format!("--resume={resume}: the backup does not have it"))
-                    .hint("name a part that the manifest of the backup lists, or --resume alone")
+                    .hint("type a part from the manifest of the backup, or --resume alone")
             })?;
             parts.drain(..first);
         }
@@ -394,7 +392,7 @@ fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()
         return Ok(());
     }
     Err(Failure::new(Kind::Rejected, format!("the backup is of another machine: {}", other.join(", ")))
-        .hint("nothing was written; take the backup of this robot; --force writes it all the same"))
+        .hint("use the backup of this robot, or --force to write this one; nothing was written"))
 }
 
 /// Whether all programs fit the tasks; before anything is written.
@@ -403,10 +401,9 @@ fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
         let Part::Program(task) = part else { continue };
         let room = found.task_steps[usize::from(*task) - 1];
         if content.steps() > room {
-            let message = format!("{part} needs room for {} steps, and task {task} has {room}", content.steps());
-            return Err(Failure::usage(message).hint(
-                "--machine restores the machine parameters, E22 (task-steps) among them; or leave the part out with --only",
-            ));
+            let message = format!("{part} needs {} steps, but task {task} has {room}", content.steps());
+            return Err(Failure::usage(message)
+                .hint("restore E22 (task-steps) with --machine, or exclude the part with --only"));
         }
     }
     Ok(())
@@ -431,10 +428,10 @@ async fn must_be_there(link: &mut Link, step: u16, text: &str) -> Result<(), Fai
         return Ok(());
     }
     let message = format!(
-        "step {step} is '{text}' in the backup, which is {NOT_IN_MANUAL} and is not written; here it is '{found}'"
+        "step {step} is '{text}' in the backup, which is {NOT_IN_MANUAL} and cannot be written; the controller has '{found}'"
     );
     Err(Failure::new(Kind::Rejected, message)
-        .hint("nothing of this program was written; write the step with the teach pendant, then restore again"))
+        .hint("write the step with the teach pendant, then restore again; nothing of this program was written"))
 }
 
 /// Stores cells: how many were written, and which the controller does not have.
@@ -446,7 +443,7 @@ async fn store_all(
 ) -> Result<(Cells, Vec<LeftOut>), Failure> {
     let fates = stores::store_all(link, screen, work, stores).await?;
     let absent = stores.iter().zip(&fates).filter(|(_, fate)| **fate == StoreResult::NotThere);
-    let why = "the controller does not have it";
+    let why = "missing on the controller";
     let absent = absent.map(|(store, _)| LeftOut { key: store.key.clone(), why: why.to_owned() });
     Ok((stores::sum(&fates), absent.collect()))
 }
@@ -464,7 +461,7 @@ fn settle(result: &mut FileItem, outcome: Result<(Cells, Vec<LeftOut>), Failure>
     }
 }
 
-/// Writes down how many values were written and how many were equal.
+/// Reports how many values were written and how many were equal.
 fn count(result: &mut FileItem, cells: Cells) {
     let number = |cells: u32| usize::try_from(cells).unwrap_or(usize::MAX);
     (result.more.written, result.more.unchanged) =

@@ -22,13 +22,15 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// Saves all that is stored in a controller in a folder of text files.
+/// Save all data of a controller to a folder of text files.
 #[derive(Debug, Args)]
-#[command(after_help = "Parameters and tables, palletizing and easy programs, and of each task points and program; \
-                  manifest.json lists them with sizes and hashes, and says what is missing and why. At 9600 baud it \
+#[command(
+    after_help = "The backup has parameters, tables, palletizing and easy programs, and the points and program of each task. \
+                  manifest.json lists them with sizes and hashes, and the reason for missing parts. At 9600 baud a backup \
                   takes some minutes: half a minute for the parameters, and for each task a minute and a half for the \
                   points and 35 ms for each step.\n\nEach task is made the current one for a while, which is a change: \
-                  a read-only robot refuses it, unless --current-task leaves the other tasks out.")]
+                  use --current-task for a read-only robot."
+)]
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
@@ -72,7 +74,7 @@ async fn make(context: Context<'_, Toyo>, making: Making, current_task: bool) ->
     }
     if current_task && !task.scope.iter().any(|word| word == CURRENT_TASK) {
         return Err(Failure::usage(format!("{} is a backup of every task", task.folder.display()))
-            .hint("of the current task alone, make one in another folder"));
+            .hint("use another folder for a backup of the current task"));
     }
     let outcome = cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task))).await;
     tasks::done(link, outcome).await
@@ -110,7 +112,7 @@ async fn save(
 
 async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackedUp, Failure> {
     content::plan_controller(link);
-    link.plan(&Request::bare(table::Command::Mtsk), "which task is the current one");
+    link.plan(&Request::bare(table::Command::Mtsk), "the current task");
     link.plan(&content::first_read(Part::Parameters)?, "the first of the parameters");
     if !current_task {
         tasks::choose(link, Some(1)).await?;

@@ -143,7 +143,7 @@ fn a_backup_that_was_cut_off_goes_on() {
     let failed = failed.unwrap();
     assert_eq!((failed.kind, &data["complete"]), (Kind::Mixed, &false.into()));
     assert!(failed.message.starts_with("1 of 21 failed, 14 not tried: palletizing-05: "), "{}", failed.message);
-    assert!(failed.hint.unwrap().ends_with("read the missing parts with --resume"));
+    assert!(failed.hint.unwrap().ends_with("use --resume to read the missing parts"));
     assert_eq!(failure(&mut controller(FULL), &["backup", folder]).kind, Kind::Local);
     let (mut bench, heard) = Bench::with_faults(FULL, |_, _| Fault::None);
     let data = bench.data(&["backup", folder, "--resume"]);
@@ -229,7 +229,7 @@ fn a_restore_that_fails_says_how_far_it_got() {
     let failed = failed.unwrap();
     assert_eq!(failed.kind, Kind::OutcomeUnknown);
     assert!(
-        failed.message.contains("palletizing-03: ") && failed.message.contains("written or not: start"),
+        failed.message.contains("palletizing-03: ") && failed.message.contains("unknown: start"),
         "{}",
         failed.message
     );

@@ -1,4 +1,4 @@
-//! Lines of the host communication in a capture: of serial lines as `--trace` records them, and of device servers.
+//! Lines of the host communication in a capture file of a serial line or a device server.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -10,25 +10,25 @@ use crate::controller::toyo::request::Request;
 use crate::transport::capture::{Carrier, Message};
 use crate::transport::tap::Direction;
 
-/// Everything that may be a conversation; which is, its lines tell in the end.
+/// All streams that can be a conversation. The lines decide at the end.
 #[derive(Debug, Default)]
 pub struct LineDecoder {
     conversations: BTreeMap<Connection, Conversation>,
-    /// Bytes that they take.
+    /// Bytes that the conversations occupy.
     kept: usize,
     decoded: DecodedCapture<FieldNote>,
 }
 
-/// What a conversation goes over.
+/// Medium of a conversation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Connection {
-    /// A serial line, of a section of the file.
+    /// A serial line, by section of the file.
     Serial(usize),
-    /// TCP, its ends in order.
+    /// A TCP connection, with its ends in order.
     Tcp(SocketAddr, SocketAddr),
 }
 
-/// The lines of both ends.
+/// Lines of both ends.
 #[derive(Debug, Default)]
 struct Conversation {
     lines: Vec<ReceivedLine>,
@@ -36,30 +36,30 @@ struct Conversation {
     pending: [Vec<u8>; 2],
     packets: u64,
     notes: Vec<String>,
-    /// Whether any line can only be of this communication.
+    /// Whether a line proves that this is host communication.
     is_ours: bool,
-    /// Bytes that the lines take.
+    /// Bytes that the lines occupy.
     kept: usize,
 }
 
-/// A line, with the packet where it ends.
+/// A line, with the packet of its end.
 #[derive(Debug)]
 struct ReceivedLine {
     number: u64,
     time: Duration,
-    /// 0 for the end that is first in the connection.
+    /// 0 for the first end of the connection.
     end: usize,
     text: String,
     is_cut: bool,
 }
 
-/// Bytes that a conversation takes beside its lines.
+/// Bytes of a conversation without its lines.
 const CONVERSATION: usize = 1024;
-/// Bytes of conversations that are kept: their lines are told in order at the end, which takes all of them.
+/// Limit of stored bytes. The lines are printed in order at the end, so they are all stored.
 const ROOM: usize = 64 << 20;
-/// Longest piece without a line end; the longest block is shorter.
+/// Limit of characters without a line end; the longest block is shorter.
 const MOST: usize = 512;
-/// Lines without a block after which a stream is something else, which need not be kept.
+/// Number of lines without a block after which a stream is not stored further.
 const MOST_FOREIGN: usize = 1000;
 
 impl CaptureDecoder for LineDecoder {
@@ -75,7 +75,7 @@ impl CaptureDecoder for LineDecoder {
             }
         };
         if self.kept > ROOM {
-            let full = "there are more lines than there is room for; the first ones are told";
+            let full = "the capture exceeds the memory limit; only the first lines are shown";
             if !self.decoded.notes.iter().any(|note| note == full) {
                 self.decoded.notes.push(full.to_owned());
             }
@@ -131,7 +131,7 @@ impl CaptureDecoder for LineDecoder {
 }
 
 impl Conversation {
-    /// Ends the line of one end.
+    /// Completes the line of one end.
     fn line(&mut self, end: usize, message: &Message<'_>, is_cut: bool) {
         let bytes = std::mem::take(&mut self.pending[end]);
         let text = String::from_utf8_lossy(&bytes).trim_end_matches(['\r', '\n']).to_owned();
@@ -145,7 +145,7 @@ impl Conversation {
         }
     }
 
-    /// Which end is the controller: the one whose lines are answers.
+    /// Index of the controller: the end whose lines are answers.
     fn controller(&self, connection: Connection) -> usize {
         if let Connection::Serial(_) = connection {
             return 1;
@@ -166,7 +166,7 @@ impl Conversation {
         };
         decoded.notes.append(&mut self.notes);
         for rest in self.pending.iter().filter(|rest| !rest.is_empty()) {
-            decoded.notes.push(format!("left out at the end, without a line end: '{}'", rest.escape_ascii()));
+            decoded.notes.push(format!("incomplete last line: '{}'", rest.escape_ascii()));
         }
         self.lines.sort_by_key(|line| line.number);
         let mut asked: Option<(u64, Request)> = None;
@@ -196,7 +196,7 @@ impl Conversation {
     }
 }
 
-/// Whether a line can only be of this communication: a verdict, or `@` and a word of the table.
+/// Whether a line belongs to this protocol for certain: a verdict, or `@` and a word of the table.
 fn is_block(text: &str) -> bool {
     matches!(text.trim_end_matches(' '), "@OK" | "@NG") || Request::parse(text).is_ok()
 }

@@ -1,4 +1,4 @@
-//! `toyo easy`: the eight easy programs, each a part of the sequential program that is repeated.
+//! `toyo easy`: the eight easy programs. Each repeats a part of the sequential program.
 
 mod progress;
 
@@ -18,11 +18,11 @@ use crate::controller::toyo::table::Command;
 use crate::failure::Failure;
 
 commands! {
-    /// What can be done with easy programs.
+    /// Commands for easy programs.
     pub enum Easy {
         /// Read programs: 1-3; without any, all 8
         Get(Get<Rows<Numbered>>),
-        /// List programs that hold something
+        /// List programs that are not empty
         List(List<Rows<Numbered>>),
         /// Write a program: 1 START LOOP END
         Set(Set<Rows<Numbered>>),
@@ -39,7 +39,7 @@ commands! {
     }
 }
 
-/// Easy programs as such.
+/// The easy programs as a table and as a type of program.
 #[derive(Debug)]
 pub struct Numbered;
 
@@ -60,17 +60,17 @@ impl Kind for Numbered {
     }
 }
 
-/// The number of a program, 1 to 8.
+/// Field of the program number, 1 to 8.
 fn key() -> &'static field::Field {
     &Command::Resy.row().requests[0].fields[0]
 }
 
-/// What reads a program.
+/// Request that reads a program.
 pub fn read(program: i32) -> Result<Request, Failure> {
     Request::new(Command::Resy, vec![Value::Number(program), Value::Number(0)]).map_err(|error| wrong(&error))
 }
 
-/// A program with its values.
+/// EEPROM cell of a program with these values.
 pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
     let all: Vec<Value> = [Value::Number(program), Value::Number(0)].into_iter().chain(values).collect();
     let write = Request::new(Command::Wesy, all.clone()).map_err(|error| wrong(&error))?;
@@ -126,11 +126,11 @@ impl rows::Kind for Numbered {
 /// An easy program.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Program {
-    /// Tag of the sequential program where it begins.
+    /// Start tag in the sequential program.
     start_tag: i32,
-    /// How often it is repeated.
+    /// Number of repetitions.
     loops: i32,
-    /// Tag where it ends.
+    /// End tag.
     end_tag: i32,
 }
 

@@ -11,7 +11,7 @@ use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::output::view::View;
 
-/// How far the easy program is that runs, or that is chosen.
+/// Show the progress of the running or selected easy program.
 #[derive(Debug, Args)]
 pub struct Progress {}
 
@@ -33,17 +33,17 @@ impl Command for Progress {
     }
 }
 
-/// Where an easy program is.
+/// Progress of an easy program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProgressReport {
     /// 1 to 8.
     #[serde(rename = "number")]
     program: i32,
-    /// Step of the easy program that is executed.
+    /// Current step of the easy program.
     step: i32,
-    /// Step of the sequential program that is executed.
+    /// Current step of the sequential program.
     sequential_step: i32,
-    /// Tag of the hand program that is executed.
+    /// Current tag of the hand program.
     hand_tag: i32,
     /// Repetitions.
     loops: i32,

@@ -14,11 +14,11 @@ use crate::command::{Command, Context};
 use crate::controller::typed;
 use crate::failure::Failure;
 
-/// Reads signals, or all signals of ports.
+/// Read signals, or all signals of ports.
 #[derive(Debug, Args)]
 #[command(after_help = BITS)]
 pub struct Get {
-    /// Such as IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or a name
+    /// Signals, such as IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or names
     #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',', add = complete::SIGNAL)]
     signals: Vec<Spots>,
     #[command(flatten)]
@@ -37,7 +37,7 @@ impl Command for Get {
 
 async fn get(signals: &[Spots], Station { station }: Station, context: Context<'_, Toyo>) -> Result<Signals, Failure> {
     if station != 0 && signals.iter().any(|spots| spots.is_named) {
-        return Err(Failure::usage("names are those of the controller's own ports, of station 0")
+        return Err(Failure::usage("names belong to ports of station 0, the controller itself")
             .hint("type port and bit, as in IN1.3"));
     }
     let spots: Vec<Spot> = typed::once(signals.iter().flat_map(|spots| spots.spots.iter().copied()));
@@ -46,11 +46,11 @@ async fn get(signals: &[Spots], Station { station }: Station, context: Context<'
     Signals::new(spots.into_iter().filter_map(|spot| row(spot, station, &bytes, names)).collect())
 }
 
-/// Signals for a watch; inputs and outputs unless given.
+/// Signals for a watch; default: inputs and outputs.
 #[derive(Debug, Args)]
 #[command(after_help = BITS)]
 pub struct Watched {
-    /// Such as IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or a name; all inputs and outputs unless given
+    /// Signals, such as IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or names; default: all inputs and outputs
     #[arg(value_name = "SIGNAL", value_delimiter = ',', add = complete::SIGNAL)]
     signals: Vec<Spots>,
     #[command(flatten)]

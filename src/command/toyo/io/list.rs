@@ -11,7 +11,7 @@ use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context};
 use crate::failure::{Failure, Kind};
 
-/// Reads all ports of a station. Ports that the controller refuses are left out.
+/// List all ports of a station, without ports that the controller refuses.
 #[derive(Debug, Args)]
 #[command(after_help = BITS)]
 pub struct List {
@@ -49,7 +49,7 @@ async fn rows(
     let names = names::of(context.robot, context.screen);
     let mut bytes = read(context.link, station, &spots).await?;
     let refused = |byte: &Result<u8, Failure>| byte.as_ref().is_err_and(|failure| failure.kind == Kind::Refused);
-    // A controller with fewer ports is no error, one that refuses all of them is.
+    // A controller can have fewer ports. It is an error if it refuses all ports.
     if !bytes.values().all(refused) {
         bytes.retain(|_, byte| !refused(byte));
     }

@@ -1,10 +1,10 @@
-//! `toyo io`: ports of eight bits, on the controller itself (station 0) and on its slave stations (1 to 4).
+//! `toyo io`: ports of eight bits on the controller (station 0) and on its slave stations (1 to 4).
 //!
 //! A signal is a bit of a port: `IN1.3`, `OUT1.3`, `INT1.3` (an internal port). `IN0` and `OUT0` are the system ports
 //! SY01.
 //!
-//! The manual does not say which character of a port is which bit. Bit 8 stands first and bit 1 last: the comments of
-//! its sample 3-1 call `.......1` output bit 1 (ambiguity C9).
+//! The manual does not define the order of the bits. armctl prints bit 8 first and bit 1 last: the comments of sample
+//! 3-1 call `.......1` output bit 1 (ambiguity C9).
 
 mod get;
 mod list;
@@ -20,7 +20,7 @@ use crate::command::commands;
 use crate::command::frame::watch::Watch;
 
 commands! {
-    /// What can be done with signals.
+    /// Commands for signals.
     pub enum Io {
         /// Read signals: IN1.3, OUT1.1..OUT1.8, INT2
         Get(get::Get),
@@ -35,7 +35,7 @@ commands! {
     }
 }
 
-/// Where ports are.
+/// Station of the ports.
 #[derive(Debug, Clone, Copy, Args)]
 struct Station {
     /// I/O station: 0 the controller itself, 1 to 4 its slaves
@@ -43,7 +43,7 @@ struct Station {
     station: u8,
 }
 
-/// What the manual leaves open (ambiguities C8 and C9).
+/// Open points of the manual (ambiguities C8 and C9).
 const BITS: &str = "IN1.3 is bit 3 of input port 1, OUT1.3 of output port 1, INT1.3 of internal port 1; IN1 is the whole \
-                    port, IN0 and OUT0 the system ports. Bit 1 is the rightmost one of a port. The manual shows that in an \
-                    example only (3-1).";
+                    port, IN0 and OUT0 the system ports. Bit 1 is the rightmost bit of a port, as in the example of section \
+                    3-1 of the manual.";

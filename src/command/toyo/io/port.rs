@@ -1,4 +1,4 @@
-//! Ports, and how signals are named in them.
+//! Ports and the names of their signals.
 
 use std::str::FromStr;
 
@@ -14,10 +14,10 @@ use crate::controller::typed;
 
 use super::super::numbers::small;
 
-/// A port and its bits.
+/// A port with its bits.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Port {
-    /// As the manual names it: `PN01`, `SY01` for the system port.
+    /// Name in the manual: `PN01`, `SY01` for the system port.
     pub name: String,
     /// 0 for the system port.
     pub number: u8,
@@ -36,7 +36,7 @@ pub fn name(number: u8) -> String {
     if number == 0 { "SY01".to_owned() } else { format!("PN{number:02}") }
 }
 
-/// A kind of ports, in the order in which they are listed.
+/// Type of ports, in the order of lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PortBank {
     /// `MINP`.
@@ -61,7 +61,7 @@ impl PortBank {
         }
     }
 
-    /// In messages.
+    /// Noun for messages.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Input => "input",
@@ -78,7 +78,7 @@ impl PortBank {
         }
     }
 
-    /// As reports have it.
+    /// Kind in reports.
     pub const fn kind(self) -> IoKind {
         match self {
             Self::Input => IoKind::Input,
@@ -87,12 +87,12 @@ impl PortBank {
         }
     }
 
-    /// The first port of a station.
+    /// First port of a station.
     pub const fn first(self, station: u8) -> u8 {
         if station == 0 && !matches!(self, Self::Internal) { 0 } else { 1 }
     }
 
-    /// The last port of a station (TO 2-8). Screen 7 of the inputs, which the manual allows, would be beyond it (C8).
+    /// Last port of a station (TO 2-8). The manual also allows screen 7 of the inputs, which is beyond this port (C8).
     pub const fn last(self, station: u8) -> u8 {
         match (self, station) {
             (Self::Input, 0) => 23,
@@ -104,24 +104,23 @@ impl PortBank {
         }
     }
 
-    /// The screen that a port is on: 1 to 3, 4 to 7, 8 to 11, and so on. Others than the controller have only one.
+    /// Screen of a port: 1 to 3, 4 to 7, 8 to 11, and so on. Only the controller has more than one screen.
     pub fn screen(self, station: u8, port: u8) -> u8 {
         if station == 0 && self != Self::Internal && port > 3 { port / 4 + 1 } else { 1 }
     }
 
-    /// The screen that has a port, if there is one.
+    /// Screen of a port; `None` if the station has no such port.
     pub fn screen_of(self, station: u8, port: u8) -> Option<u8> {
         (port <= self.last(station)).then(|| self.screen(station, port))
     }
 
-    /// Asks for a screen of them.
+    /// Request for a screen.
     pub fn request(self, station: u8, screen: u8) -> Request {
         Request::of(self.command(), [Value::Number(station.into()), Value::Number(screen.into())])
     }
 }
 
-/// The ports in an answer. A number that is there twice is that of the next port, as where the manual prints PN02
-/// twice (ambiguity C7).
+/// Ports in an answer. A repeated number means the next port, because the manual prints PN02 twice (ambiguity C7).
 pub fn ports_of(record: &Record) -> Vec<Port> {
     let mut ports: Vec<Port> = record.bits("sy01").map(|byte| Port::new(0, byte)).into_iter().collect();
     for (number, bits) in [("port1", "bits1"), ("port2", "bits2"), ("port3", "bits3"), ("port4", "bits4")] {
@@ -139,7 +138,7 @@ pub fn ports_of(record: &Record) -> Vec<Port> {
 /// A signal: a bit of a port, from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Spot {
-    /// Which kind of port.
+    /// Type of the port.
     pub bank: PortBank,
     /// 0 for the system port.
     pub port: u8,
@@ -154,12 +153,12 @@ impl std::hash::Hash for PortBank {
 }
 
 impl Spot {
-    /// Whether it is on in the byte of its port.
+    /// Whether the bit is on in the byte of its port.
     pub const fn is_on(self, byte: u8) -> bool {
         byte >> (self.bit - 1) & 1 == 1
     }
 
-    /// As reports name it; names are those of station 0.
+    /// Report item; names belong to station 0.
     pub fn item(self, station: u8, names: &Names) -> IoItem {
         let Self { bank, port, bit } = self;
         let kind = match bank {
@@ -179,12 +178,12 @@ impl Spot {
     }
 }
 
-/// Signals as typed: one, all of a port, a range of either, or the name of one.
+/// Signals as typed: one signal, all signals of a port, a range, or a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Spots {
-    /// In their order.
+    /// Signals in order.
     pub spots: Vec<Spot>,
-    /// Whether a name was typed: names are those of station 0.
+    /// Whether a name was typed; names belong to station 0.
     pub is_named: bool,
 }
 
@@ -203,7 +202,7 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
     let ends = rest.split_once("..").or_else(|| rest.split_once('-'));
     let first = ends.map_or(rest, |(first, _)| first);
     let port_of = |text: &str| typed::unsigned::<u8>(text).filter(|port| *port <= 99);
-    // `IN1.3` is port 1, bit 3; the last end of a range may leave out what the first one has said.
+    // `IN1.3` is port 1, bit 3. The end of a range can omit the part that equals the beginning.
     let spot = |text: &str| {
         let text = bank_of(text).filter(|(other, _)| *other == bank).map_or(text, |(_, rest)| rest);
         let (port, bit) = match text.split_once('.') {
@@ -239,7 +238,7 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
     Ok((least..=most).filter_map(place).collect())
 }
 
-/// A range the other way round.
+/// The range in reverse order.
 fn turned(text: &str) -> String {
     let ends = text.split_once("..").or_else(|| text.split_once('-'));
     ends.map_or_else(|| text.to_owned(), |(from, to)| format!("{to}..{from}"))
@@ -290,7 +289,7 @@ mod tests {
     #[test]
     fn a_number_that_is_there_twice_is_that_of_the_next_port() {
         let request = Request::parse("@MOUT SNO=0 GN=1").unwrap();
-        // As TO 2-8 prints it.
+        // Text of TO 2-8.
         let printed = "@MOUT SNO=0 GN=1 SY01=00000001 PN01=00000010 PN02=00000100 PN02=00001000";
         let Answer::Data(record) = request.answer(printed).unwrap() else { panic!("it is data") };
         let ports: Vec<(String, u8)> = ports_of(&record).into_iter().map(|port| (port.name, port.byte)).collect();

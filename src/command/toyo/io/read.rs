@@ -1,4 +1,4 @@
-//! Ports that are read, a screen at a time.
+//! Reads of ports, one screen at a time.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,13 +8,13 @@ use crate::command::robot::io::IoRow;
 use crate::controller::names::Names;
 use crate::failure::{Failure, Kind};
 
-/// Bytes of ports, or why they were not read.
+/// Bytes of ports, or the reason for a missing byte.
 pub type Bytes = BTreeMap<(PortBank, u8), Result<u8, Failure>>;
 
-/// Reads the ports of signals. When the line falls silent, the rest is not asked.
+/// Reads the ports of signals. After a lost connection the remaining ports are not read.
 ///
 /// # Errors
-/// A port that a station does not have, or a line that is broken. A dry run ends here.
+/// A port that the station does not have, or a lost connection. A dry run ends here.
 pub async fn read(link: &mut Link, station: u8, spots: &[Spot]) -> Result<Bytes, Failure> {
     let wanted: BTreeSet<(PortBank, u8)> = spots.iter().map(|spot| (spot.bank, spot.port)).collect();
     for (bank, port) in &wanted {
@@ -47,20 +47,20 @@ pub async fn read(link: &mut Link, station: u8, spots: &[Spot]) -> Result<Bytes,
     Ok(found)
 }
 
-/// A signal of what was read.
+/// Report item of a signal.
 pub fn row(spot: Spot, station: u8, bytes: &Bytes, names: &Names) -> Option<IoRow> {
     let byte = bytes.get(&(spot.bank, spot.port))?.clone();
     Some(IoRow::state(spot.item(station, names), byte.map(|byte| spot.is_on(byte))))
 }
 
-/// Refuses a port that a station does not have.
+/// Refuses a port that the station does not have.
 fn exists(bank: PortBank, station: u8, port: u8) -> Result<(), Failure> {
     let (first, last) = (bank.first(station), bank.last(station));
     if (first..=last).contains(&port) {
         return Ok(());
     }
     Err(if last == 0 {
-        Failure::usage("internal ports are those of the controller itself").hint("remove --station")
+        Failure::usage("only station 0, the controller itself, has internal ports").hint("remove --station")
     } else {
         let message = format!("station {station} has {} ports {first} to {last}, not {port}", bank.word());
         Failure::usage(message).hint("`armctl toyo io list` lists the signals of a station")

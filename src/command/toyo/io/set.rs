@@ -24,26 +24,26 @@ use crate::controller::toyo::table;
 use crate::controller::typed;
 use crate::failure::{Failure, Kind};
 
-/// Sets outputs. All bits of a port change at once; ports follow each other as they are typed.
+/// Set outputs. All bits of a port change at once; ports change in the typed order.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A whole port is eight characters for the bits 8 to 1, so that the rightmost one is bit 1: 1 is on, 0 \
-                        is off, a dot leaves the bit alone. Each port is read back behind its order; only the ports \
-                        that `io list` shows can be. A running program may set the same outputs."
+    after_help = "A whole port is eight characters for bits 8 to 1; the rightmost character is bit 1. 1 is on, 0 is off, \
+                        and a dot keeps the bit. Each port that `io list` shows is read back. \
+                        A running program can set the same outputs."
 )]
 pub struct Set {
-    /// Such as OUT1.3=on (port 1, bit 3), OUT1=.......1 (port 1, bits 8 to 1), or NAME=on
+    /// Outputs with states, such as OUT1.3=on (port 1, bit 3), OUT1=.......1 (port 1, bits 8 to 1), or NAME=on
     #[arg(required = true, value_name = "PORT[.BIT]=VALUE", add = complete::OUTPUT_STATE)]
     assignments: Vec<Assignment>,
     #[command(flatten)]
     station: Station,
 }
 
-/// Orders one of the direct outputs F1 to F4.
+/// Switch one of the direct outputs F1 to F4.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Parameter M12 (direct-outputs) has four bits, which are taken for those of F1 to F4: the manual does \
-                        not say it in words, nor whether a bit is switched on or over. Look at `toyo io list --out` after it."
+    after_help = "armctl uses the four bits of parameter M12 (direct-outputs) for F1 to F4. The manual does not describe the \
+                        bits, or whether a bit is set or toggled. Check the result with `toyo io list --out`."
 )]
 pub struct Direct {
     /// 1 to 4
@@ -51,23 +51,23 @@ pub struct Direct {
     number: u8,
 }
 
-/// Bits of a port, and what they shall be.
+/// Bits of a port with their new states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Assignment {
     port: u8,
     mask: Mask,
-    /// Whether a name was typed: names are those of station 0.
+    /// Whether a name was typed; names belong to station 0.
     is_named: bool,
 }
 
-/// A port, or a bit of it, as typed.
+/// A port or a bit of it, as typed.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     port: u8,
     bit: Option<u8>,
 }
 
-/// `OUT1.3`, `OUT1`; `PN01`, `1.3` and `1` are taken, too.
+/// Parses `OUT1.3`, `OUT1`; also `PN01`, `1.3` and `1`.
 fn place_of(text: &str) -> Result<Place, String> {
     let (port, bit) = text.split_once('.').map_or((text, None), |(port, bit)| (port, Some(bit)));
     let prefix = ["PN", "pn", "OUT", "out"].into_iter().find_map(|prefix| port.strip_prefix(prefix));
@@ -77,7 +77,7 @@ fn place_of(text: &str) -> Result<Place, String> {
     Ok(Place { port, bit: bit.map(number).transpose()? })
 }
 
-/// The fields of DOUT STN=0 PN01=........
+/// Fields of DOUT STN=0 PN01=........
 fn fields() -> &'static [Field] {
     table::Command::Dout.row().requests[0].fields
 }
@@ -110,7 +110,7 @@ fn one_bit(number: u8, value: &str) -> Result<Mask, String> {
 }
 
 impl Set {
-    /// What each port gets, in the order of the first mention. A bit that is given twice is a mistake.
+    /// One assignment for each port, in the order of the first mention. A repeated bit is an error.
     fn orders(&self) -> Result<Vec<Assignment>, Failure> {
         let mut orders: Vec<Assignment> = Vec::new();
         for assignment in &self.assignments {
@@ -121,8 +121,8 @@ impl Set {
             let (one, other) = (known.mask, assignment.mask);
             let twice = one.care & other.care;
             if twice != 0 {
-                let message = format!("bit {} of port {} is given twice", twice.trailing_zeros() + 1, known.port);
-                return Err(Failure::usage(message).hint("give each bit one state"));
+                let message = format!("bit {} of port {} appears twice", twice.trailing_zeros() + 1, known.port);
+                return Err(Failure::usage(message).hint("type one state for each bit"));
             }
             known.mask = Mask { care: one.care | other.care, bits: one.bits | other.bits };
         }
@@ -139,7 +139,7 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<WrittenSignals, Failure> {
         let Station { station } = self.station;
         if station != 0 && self.assignments.iter().any(|assignment| assignment.is_named) {
-            return Err(Failure::usage("names are those of the controller's own ports, of station 0")
+            return Err(Failure::usage("names belong to ports of station 0, the controller itself")
                 .hint("type port and bit, as in OUT1.3=on"));
         }
         let orders = self.orders()?;
@@ -153,11 +153,11 @@ impl Command for Set {
     }
 }
 
-/// A port around an order for it, where it was read.
+/// A port before and after a command, if it was read.
 struct Around {
     old: Option<u8>,
     now: Option<u8>,
-    /// What is said of bits that are not as they were set.
+    /// Failure if bits differ from the command.
     failure: Option<Failure>,
 }
 
@@ -176,14 +176,14 @@ impl Around {
 }
 
 impl Assignment {
-    /// The signals that it sets.
+    /// Signals of the assignment.
     fn bits(&self) -> impl Iterator<Item = Spot> {
         let Self { port, mask, .. } = *self;
         let spots = (1..=8).map(move |bit| Spot { bank: OUTPUTS, port, bit });
         spots.filter(move |spot| spot.is_on(mask.care))
     }
 
-    /// Sets it, and reads it back where that can be.
+    /// Sets the port, and reads it back if possible.
     async fn set(&self, link: &mut Link, station: u8) -> Result<Around, Failure> {
         let order = self.order(station)?;
         let Some(screen) = OUTPUTS.screen_of(station, self.port) else {
@@ -195,7 +195,7 @@ impl Assignment {
         let old = link.before(&read).await?.as_ref().and_then(own).map(|port| port.byte);
         link.ask(&order).await?;
         if link.is_dry() {
-            link.plan(&read, "the port as it is then");
+            link.plan(&read, "the port after the change");
             return Ok(Around::UNREAD);
         }
         let answer = read_back(link, &order, &read).await?;
@@ -206,11 +206,11 @@ impl Assignment {
         };
         let reads = format!("{} reads {:08b}", found.name, found.byte);
         let failure = not_held(&order, &reads)
-            .hint("a program that runs may set the same outputs; `toyo io list --out` reads them");
+            .hint("a running program can set the same outputs; `toyo io list --out` shows the outputs");
         Ok(Around { old, now: Some(found.byte), failure: Some(failure) })
     }
 
-    /// As it is sent.
+    /// Request that sets the port.
     fn order(&self, station: u8) -> Result<Request, Failure> {
         let values = vec![
             field::Value::Number(station.into()),
@@ -221,7 +221,7 @@ impl Assignment {
     }
 }
 
-/// The failure of an order, with what became of the others; `done` of them were accepted.
+/// Failure of a command with the result of the others; the controller accepted `done` of them.
 fn account(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
     if orders.len() == 1 {
         return failure;
@@ -311,7 +311,7 @@ mod tests {
         let keys = |item: &Value| [item["name"].clone(), item["old"].clone(), item["value"].clone()];
         assert_eq!(keys(&set["items"][0]), [Value::from("OUT1.3"), false.into(), true.into()], "{set}");
         assert_eq!(keys(&set["items"][1]), [Value::from("OUT18.1"), false.into(), true.into()], "{set}");
-        // A bit that was left alone may be anything.
+        // A bit marked with a dot can have any state.
         let odd = |block: &str, _| match block {
             "@MOUT SNO=0 GN=1" => {
                 Fault::Answered("@MOUT SNO=0 GN=1 SY01=00000000 PN01=10000000 PN02=10000001 PN03=00000000")

@@ -92,7 +92,9 @@ fn small_steps_are_done_one_by_one() {
     );
     let failure = bench.run(&["jog", "x", "+", "inch", "--steps", "3"]).unwrap_err();
     assert!(
-        failure.message.starts_with("step 1 of 3: it was accepted, but the axis has not moved; the axis was stopped")
+        failure
+            .message
+            .starts_with("step 1 of 3: the step was accepted, but the axis did not move; the axis was stopped")
     );
     assert_eq!(count(&heard, "@JGST X=+C Y=SP Z=SP R=SP"), 1);
     ends_with_a_stop(&heard);
@@ -256,7 +258,7 @@ fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
     bench.data(&["run", "sequential", "1", "--no-wait"]);
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("NG")), "{failure}");
-    assert!(failure.message.contains("a program or command is being executed"), "{failure}");
+    assert!(failure.message.contains("the controller executes a program or command"), "{failure}");
     assert_eq!(count(&heard, STOP), 1, "the stop goes out nevertheless");
     assert_eq!(bench.data(&["status"])["running"], true, "what somebody else runs goes on");
     bench.close().unwrap();
@@ -292,9 +294,7 @@ fn a_jog_that_somebody_else_stops_says_so() {
     let failure = stopped.unwrap_err();
     assert_eq!(failure.kind, Kind::ConditionNotMet);
     assert!(
-        failure
-            .message
-            .starts_with("the axis came to rest before its time: somebody else stopped it; the axis was stopped"),
+        failure.message.starts_with("the axis stopped early: another client stopped it; the axis was stopped"),
         "{failure}"
     );
 }

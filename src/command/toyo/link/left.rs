@@ -1,4 +1,4 @@
-//! What a command that was killed has left behind, told by the next one.
+//! Report of changes that an ended process left on the controller.
 
 use super::Link;
 use crate::client::toyo::{Error, status_page};
@@ -8,29 +8,25 @@ use crate::controller::toyo::status::{RunMode, Status};
 use crate::controller::toyo::table::commands::Command;
 
 impl Link {
-    /// Looks whether what others left behind is still so, and says how to undo it: before anything but a stop, and after
-    /// that.
+    /// Reads whether the changes are still present, and reports how to undo them. This happens before every command
+    /// except a stop, and after a stop.
     pub(super) async fn tell_what_is_left(&mut self) {
         if self.is_dry() || self.is_gone() {
             return;
         }
         for left in std::mem::take(&mut self.left) {
-            // What cannot be asked now is asked by the next command.
+            // If the request fails, the next command tries again.
             let Ok(told) = self.still_so(&left).await else { return };
             if told.is_empty() {
                 left.settled();
             }
             for what in told {
-                self.screen.note(&format!(
-                    "{}: a command that ended before its time (since {}) left something: {what}",
-                    self.label,
-                    left.since()
-                ));
+                self.screen.note(&format!("{}: a command of {} ended early: {what}", self.label, left.since()));
             }
         }
     }
 
-    /// What of it is still so, each with how to undo it.
+    /// Changes that are still present, each with the command that undoes it.
     async fn still_so(&mut self, left: &Left) -> Result<Vec<String>, Error> {
         let mut told = Vec::new();
         let mut status = Status::default();
@@ -40,10 +36,10 @@ impl Link {
             }
         }
         if left.owed.moving.is_some() && (status.executing() || status.homing()) {
-            told.push("something is still executed; `toyo stop` stops it, a jog too".to_owned());
+            told.push("the robot still runs a program or a jog; `toyo stop` stops it".to_owned());
         }
         if left.owed.host && status.host_on() {
-            told.push("the host is still ON, which was OFF; `toyo host off` gives the start input back".to_owned());
+            told.push("the host is still ON and was OFF before; `toyo host off` releases it".to_owned());
         }
         for block in &left.owed.back {
             let Ok(back) = Request::parse(block) else { continue };
@@ -53,15 +49,19 @@ impl Link {
                     let Answer::Data(found) = asked else { continue };
                     let (found, before) = (found.number("task"), back.record().number("task"));
                     let (now, before) = (found.unwrap_or_default(), before.unwrap_or_default());
-                    let how = format!("task {now} is the current one, task {before} was; `toyo task set {before}`");
+                    let how = format!(
+                        "the current task is {now} and was {before} before; `toyo task set {before}` selects it"
+                    );
                     (now != before).then_some(how)
                 }
-                Command::Maut if status.run_mode() == Some(RunMode::Program) => {
-                    Some("the controller is in program mode, it was in automatic mode; `toyo mode auto`".to_owned())
-                }
-                Command::Mstp if status.run_mode() == Some(RunMode::Program) => {
-                    Some("the controller is in program mode, it was in step mode; `toyo mode step`".to_owned())
-                }
+                Command::Maut if status.run_mode() == Some(RunMode::Program) => Some(
+                    "the controller is in program mode and was in automatic mode before; `toyo mode auto` selects it"
+                        .to_owned(),
+                ),
+                Command::Mstp if status.run_mode() == Some(RunMode::Program) => Some(
+                    "the controller is in program mode and was in step mode before; `toyo mode step` selects it"
+                        .to_owned(),
+                ),
                 _ => None,
             });
         }

@@ -1,6 +1,6 @@
-//! Looks on what a client does: keeps the record of the traffic, writes down what is changed, and says what others have
-//! left on a controller, as far as a command comes by it: the host ON, with it what is executed, another current task.
-//! Nothing is asked for that alone.
+//! Observer of the client: it records the trace, keeps the journal of temporary changes, and reports a host that is ON
+//! or a current task that this user did not choose. It sends no requests of its own; it uses the answers that commands
+//! read.
 
 use std::sync::{Arc, Mutex};
 
@@ -16,20 +16,20 @@ use crate::controller::toyo::table::commands::Command;
 use crate::output::Screen;
 use crate::transport::tap::Direction;
 
-/// What a link shares with its client.
+/// State that a link shares with its client.
 #[derive(Debug)]
 pub(super) struct Onlooker {
     pub(super) trace: Trace,
-    /// What is changed for a while, for others to find if this process is killed.
+    /// Temporary changes, for other processes to find if this process is killed.
     pub(super) debts: Debts,
-    /// What is meant to stay as it is; and what is not, and was told.
+    /// Settings that the user chose to keep.
     pub(super) chosen: Chosen,
     pub(super) told: Told,
     pub(super) screen: Screen,
     pub(super) label: String,
 }
 
-/// What was told, or need not be: each is told once over a link.
+/// Notices that were printed or are not needed. A link prints each one once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Told {
     host: bool,
@@ -39,7 +39,7 @@ pub(super) struct Told {
 impl Told {
     pub(super) const ALL: Self = Self { host: true, task: true };
 
-    /// What a note of this user tells anyway.
+    /// Notices that the journal entries of this user already contain.
     pub(super) fn by(left: &[Left]) -> Self {
         let chooses = |block: &String| block.trim_start_matches('@').starts_with(Command::Ctsk.row().word);
         Self {
@@ -49,7 +49,7 @@ impl Told {
     }
 }
 
-/// The client's hold of it.
+/// Client's reference to the observer.
 #[derive(Debug)]
 pub(super) struct Watching(pub(super) Arc<Mutex<Onlooker>>);
 
@@ -66,18 +66,19 @@ impl Watcher<Event> for Watching {
             Event::Borrows(back) => onlooker.debts.push(&back.text()),
             Event::PutBack(back) => onlooker.debts.pop(&back.text()),
             Event::NotPutBack(back) => {
-                onlooker.screen.note(&format!("{}: the line is gone", not_put_back(&back.text())));
+                onlooker.screen.note(&format!("{}: the connection is lost", not_put_back(&back.text())));
             }
             Event::Host { status, is_taken } => onlooker.tell_foreign_host(status, is_taken),
             Event::Task(task) => onlooker.tell_foreign_task(task),
-            Event::Reopened => onlooker.screen.detail(1, "the line is there again"),
+            Event::Reopened => onlooker.screen.detail(1, "the connection is open again"),
             _ => {}
         }
     }
 }
 
 impl Onlooker {
-    /// Says that the host is ON if nobody here wants that. What is executed while it is ON, a host has started.
+    /// Prints a notice if the host is ON and this user did not switch it ON. Execution while the host is ON was started
+    /// by a host.
     fn tell_foreign_host(&mut self, status: Status, is_taken: bool) {
         let Some(choice) = self.chosen.get() else { return };
         if !status.host_on() {
@@ -91,16 +92,16 @@ impl Onlooker {
         }
         self.told.host = true;
         let what = if status.executing() || status.homing() {
-            "the host is ON and something is executed, and no armctl of this user does that: if nobody else is at work, \
-             `toyo stop` stops it and `toyo host off` gives the start input back"
+            "another client switched the host ON and started a program: if no other person uses the robot, \
+             `toyo stop` stops it and `toyo host off` releases the host"
         } else {
-            "the host is ON, and no armctl of this user keeps it so: as long as it is, the start input does nothing; \
-             `toyo host off` gives it back"
+            "another client switched the host ON, which disables the start input; \
+             `toyo host off` releases the host"
         };
         self.screen.note(&format!("{}: {what}", self.label));
     }
 
-    /// Says that a task is the current one if nobody here chose it. Task 1 is the first, and no news.
+    /// Prints a notice if another client selected the current task. Task 1 is the default and needs no notice.
     fn tell_foreign_task(&mut self, task: Option<i32>) {
         let Some(task) = task.and_then(|task| u8::try_from(task).ok()) else { return };
         let Some(choice) = self.chosen.get() else { return };
@@ -115,26 +116,26 @@ impl Onlooker {
         }
         self.told.task = true;
         self.screen.note(&format!(
-            "{}: task {task} is the current one, and no armctl of this user chose it: commands without --task are about \
-             it; `toyo task set 1` chooses the first",
+            "{}: another client selected task {task}, and commands without --task use \
+             it; `toyo task set 1` selects task 1",
             self.label
         ));
     }
 
-    /// Somebody wants the host as it is now.
+    /// Records that the user chose the present state of the host.
     pub(super) fn choose_host(&mut self, is_on: bool) {
         self.told.host = true;
         self.chosen.change(|choice| choice.host = is_on);
     }
 
-    /// Somebody wants this task to be the current one.
+    /// Records that the user chose this task as the current one.
     pub(super) fn choose_task(&mut self, task: u8) {
         self.told.task = true;
         self.chosen.change(|choice| choice.task = Some(task));
     }
 
-    /// Whether this is no time to say so: something moves, which a terminal that is held must not hold up, or another
-    /// process of this user has changed it for a while.
+    /// Whether a notice must wait: during motion, because a blocked terminal must not delay a stop, and while another
+    /// process of this user has changed the setting temporarily.
     fn is_no_time(&self) -> bool {
         self.debts.owed().moving.is_some() || self.debts.others_owe()
     }

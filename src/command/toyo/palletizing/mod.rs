@@ -1,4 +1,4 @@
-//! `toyo palletizing`: the sixteen palletizing programs, of sixteen records each.
+//! `toyo palletizing`: the sixteen palletizing programs with sixteen records each.
 
 mod progress;
 
@@ -31,11 +31,11 @@ use crate::output::Screen;
 use crate::output::view;
 
 commands! {
-    /// What can be done with palletizing programs.
+    /// Commands for palletizing programs.
     pub enum Palletizing {
         /// Read the records of a program: 3 source-p1
         Get(Get<Records>),
-        /// List the records of a program that hold something
+        /// List records of a program that are not empty
         List(List<Records>),
         /// Write a record: 1 source-p1 x=100
         Set(Set<Records>),
@@ -52,7 +52,7 @@ commands! {
     }
 }
 
-/// Palletizing programs as such.
+/// The palletizing programs as a type of program.
 #[derive(Debug)]
 pub struct Numbered;
 
@@ -73,23 +73,23 @@ impl Kind for Numbered {
     }
 }
 
-/// The number of a program, 1 to 16.
+/// Field of the program number, 1 to 16.
 fn field() -> &'static field::Field {
     &Command::Rplt.row().requests[0].fields[0]
 }
 
-/// A program on a command line.
+/// Parses a program number.
 fn parse_program(text: &str) -> Result<i32, String> {
     numbers::number(field(), text)
 }
 
-/// What reads records of a program.
+/// Requests that read records of a program.
 pub fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>, Failure> {
     let read = |record: &&Pallet| Request::read_pallet(program, record);
     records.iter().map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
 }
 
-/// A record of a program with its values.
+/// EEPROM cell of a record with these values.
 pub fn cell(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Cell, Failure> {
     Ok(Cell {
         read: Request::read_pallet(program, record).map_err(|error| wrong(&error))?,
@@ -105,7 +105,7 @@ pub struct Records {
     letters: Letters,
 }
 
-/// Which program.
+/// Program to use.
 #[derive(Debug, Clone, Args)]
 pub struct ProgramOptions {
     /// Program, 1 to 16
@@ -131,7 +131,7 @@ impl Hash for Key {
     }
 }
 
-/// What a record has besides.
+/// Additional keys of a record.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct About {
     /// Number of the program, 1 to 16.
@@ -139,7 +139,7 @@ pub struct About {
     program: i32,
     /// Number of the record, 1 to 16.
     record: u8,
-    /// What it holds.
+    /// Content.
     about: &'static str,
     #[serde(flatten)]
     listed: Listed,
@@ -159,9 +159,9 @@ impl Store for Records {
         range: "Records by name or number: start source-p0 6",
         reading: None,
         writing: Some(
-            "All values of a record in their order, or some by name, which keeps the others: `palletizing set 1 source-p1 \
-             100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. What the controller holds \
-             already is not written: its EEPROM takes about a million rewrites.",
+            "All values of a record in order, or some by name; the others stay: `palletizing set 1 source-p1 \
+             100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. Equal values \
+             are not written, because the EEPROM takes about a million rewrites.",
         ),
     };
     const IDS: Ids = ids!("toyo.palletizing");
@@ -171,7 +171,7 @@ impl Store for Records {
         let found = Pallet::named(&text.to_lowercase()).ok_or_else(|| {
             let near = nearest(text, RECORDS.iter().map(|record| record.name));
             let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-            format!("there is no such record{near}")
+            format!("unknown record{near}")
         });
         Ok(vec![Key(found?)])
     }
@@ -251,7 +251,7 @@ impl EepromRow for Records {
         cell(self.program, record, values)
     }
 
-    /// The block that writes a record; `?` stands for values that are kept.
+    /// Block that writes a record; `?` stands for kept values.
     fn sketch(&self, Key(record): Key, values: &[Option<Value>]) -> String {
         let body = record.layout.sketch(values).unwrap_or_default();
         format!("@WPLT {:02} SNO={:02} {body}", self.program, record.number)

@@ -12,7 +12,7 @@ use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::output::view::View;
 
-/// How far the palletizing program is that runs, or that is chosen.
+/// Show the progress of the running or selected palletizing program.
 #[derive(Debug, Args)]
 pub struct Progress {}
 
@@ -26,34 +26,34 @@ impl Command for Progress {
     }
 }
 
-/// Where a palletizing program is.
+/// Progress of a palletizing program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProgressReport {
     /// 1 to 16.
     #[serde(rename = "number")]
     program: i32,
-    /// Which side is a matrix: `M-1`, `1-M` or `M-M`.
+    /// Which sides are a matrix: `M-1`, `1-M` or `M-M`.
     mode: &'static str,
-    /// The same in words.
+    /// Meaning of the mode.
     mode_meaning: String,
-    /// What is executed: `START`, `SOURCE`, `DESTI` or `END`.
+    /// Current part: `START`, `SOURCE`, `DESTI` or `END`.
     state: &'static str,
-    /// The same in words.
+    /// Meaning of the state.
     state_meaning: String,
     /// Pieces in the three directions.
     directions: [Pieces; 3],
-    /// Tag of the hand program that is executed.
+    /// Current tag of the hand program.
     hand_tag: i32,
-    /// Step of the sequential program that is executed.
+    /// Current step of the sequential program.
     sequential_step: i32,
 }
 
 /// Pieces in one direction.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Pieces {
-    /// The one under way.
+    /// Number of the current piece.
     done: i32,
-    /// How many there are.
+    /// Number of pieces.
     pieces: i32,
 }
 

@@ -21,23 +21,23 @@ use crate::failure::{Failure, Kind};
 use crate::output::view::View;
 use crate::output::{Screen, escape};
 
-/// Where to.
+/// Save all parameters and tables as TOML.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Parameters, and the tables of speeds, times, MVM groups and torque limits; points go to a file of \
-                        their own by `point dump`. Each value stands there by its name, with its unit, for \
-                        people and for `param restore`. The file is whole or is not written. It takes about 20 s at \
+    after_help = "The file has parameters and the tables of speeds, times, MVM groups and torque limits. `point dump` \
+                        saves points. Each value has its name and unit, for \
+                        people and for `param restore`. The command writes a complete file or none. It takes about 20 s at \
                         9600 baud."
 )]
 pub struct Dump {
-    /// A new file; without one, the text goes to stdout
+    /// A new file; default: stdout
     file: Option<PathBuf>,
     /// Replace the file if it exists
     #[arg(long, requires = "file")]
     force: bool,
 }
 
-/// The table of points, which is for point list.
+/// The table of points, which `point list` reads.
 const POINTS: &str = "T1";
 
 impl Command for Dump {
@@ -63,7 +63,7 @@ impl Command for Dump {
     }
 }
 
-/// All parameters, and all rows of the tables but points.
+/// All parameters, and all rows of the tables except points.
 fn keys() -> Vec<Key> {
     let tables = PARAMETERS.iter().filter(|parameter| parameter.id != POINTS);
     let rows = tables.filter_map(|table| Some((table, table.row()?))).flat_map(|(table, field)| {
@@ -72,16 +72,16 @@ fn keys() -> Vec<Key> {
     singles().map(Key::single).chain(rows).collect()
 }
 
-/// What was read.
+/// Result of the read.
 #[derive(Debug, Default)]
 pub struct DumpReport {
-    /// What may be written back.
+    /// Values that can be written back.
     pub settings: Vec<Setting>,
-    /// What the controller refuses, mostly because it does not have it.
+    /// Parameters that the controller refuses, usually because it does not have them.
     pub refused: Vec<String>,
-    /// What holds something that may not be written.
+    /// Values that cannot be written back.
     pub unfit: Vec<Unfit>,
-    /// What could not be read.
+    /// Parameters that could not be read.
     pub failed: Vec<Failed>,
 }
 
@@ -90,25 +90,25 @@ pub struct DumpReport {
 pub struct Failed {
     /// `M17`, or a row as `T2.5`.
     pub key: String,
-    /// Why.
+    /// Reason.
     pub error: Failure,
 }
 
-/// A value that the controller holds although it may not be written.
+/// A stored value that cannot be written back.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Unfit {
     /// `M17`, or a row as `T2.5`.
     pub key: String,
-    /// As it is.
+    /// The stored value.
     pub value: String,
     /// Whether the manual lists it.
     pub in_manual: bool,
-    /// Why it may not be written.
+    /// Reason.
     pub why: String,
 }
 
 impl DumpReport {
-    /// Reads all parameters, and all tables but that of points. A dry run notes them and ends.
+    /// Reads all parameters, and all tables except points. A dry run records the requests and ends.
     pub async fn read(link: &mut Link, screen: &Screen) -> Result<Self, Failure> {
         let keys = keys();
         let contents = read(link, screen, &keys).await?;
@@ -119,7 +119,7 @@ impl DumpReport {
         Ok(kept)
     }
 
-    /// As TOML, with what is not in it in comments.
+    /// The values as TOML, with comments about the others.
     pub fn text(&self) -> String {
         format!("{}{}", parameters::write(&self.settings), self.remarks())
     }
@@ -146,7 +146,7 @@ impl DumpReport {
         }
     }
 
-    /// What is not in the file, as comments.
+    /// Comments about parameters that are not in the file.
     fn remarks(&self) -> String {
         let mut text = String::new();
         if !self.refused.is_empty() {
@@ -156,7 +156,7 @@ impl DumpReport {
             text.push_str(&format!("\n# {key} was not read: {}\n", escape::line(&error.message)));
         }
         for Unfit { key, value, why, .. } in &self.unfit {
-            text.push_str(&format!("\n# {key} is {value}, which may not be written: {why}\n"));
+            text.push_str(&format!("\n# {key} is {value}, which cannot be written back: {why}\n"));
         }
         text
     }
@@ -170,21 +170,21 @@ pub fn key_text(Key { parameter, row }: Key) -> String {
     }
 }
 
-/// What was saved.
+/// Result of a dump.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Dumped {
-    /// Where; null if the text went to stdout.
+    /// Path; null if the text went to stdout.
     file: Option<String>,
-    /// How many parameters and rows it holds.
+    /// Number of parameters and rows.
     saved: usize,
-    /// Those that the controller refuses, mostly because it does not have them.
+    /// Parameters that the controller refuses, usually because it does not have them.
     refused: Vec<String>,
-    /// Those that are left out, as what they hold may not be written.
+    /// Parameters whose values cannot be written back.
     unfit: Vec<Unfit>,
-    /// Those that could not be read.
+    /// Parameters that could not be read.
     failed: Vec<Failed>,
     taken_at: String,
-    /// The TOML, if there is no file.
+    /// TOML text if there is no file.
     text: Option<String>,
 }
 
@@ -200,7 +200,7 @@ impl Report for Dumped {
             ("file", file.as_deref().unwrap_or_default().into()),
             ("parameters and rows", (*saved).into()),
             ("not on this controller", listed(refused.join(", ")).into()),
-            ("may not be written", listed(unfit.join(", ")).into()),
+            ("cannot be written back", listed(unfit.join(", ")).into()),
         ])
     }
 

@@ -1,19 +1,19 @@
-//! What is special about parameters 2 (E) and 3 (U).
+//! Special rules of parameters 2 (E) and 3 (U).
 
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
 
-/// Most steps that the tasks have together (TO 2-4, E22).
+/// Limit of the steps of all tasks together (TO 2-4, E22).
 const MOST_STEPS: i32 = 5000;
-/// From more steps than that on, there is no room for easy programs.
+/// Limit of steps with easy programs.
 const BESIDE_EASY: i32 = 2000;
 
-/// What to do after a machine parameter was changed.
-pub const POWER_CYCLE: &str = "switch the controller's power off and on: until then only communication works";
+/// Remedy after a change of a machine parameter.
+pub const POWER_CYCLE: &str = "switch the controller's power off and on; until then it executes nothing";
 
-/// What follows from a change of several machine parameters.
+/// Consequence of a change of several machine parameters.
 pub fn consequence_of(parameters: &[&Parameter]) -> String {
     let names: Vec<String> =
         parameters.iter().map(|parameter| format!("{} ({})", parameter.id, parameter.name)).collect();
@@ -21,19 +21,17 @@ pub fn consequence_of(parameters: &[&Parameter]) -> String {
     of_machine(&what, parameters.iter().any(|parameter| is_task_steps(parameter)))
 }
 
-/// What follows from a change of machine parameters; `has_steps` if the steps of tasks are among them.
+/// Consequence of a change of machine parameters; `has_steps` if the steps of tasks are among them.
 fn of_machine(what: &str, has_steps: bool) -> String {
     let lost = if has_steps {
-        "; steps beyond a smaller number are lost, and so are easy programs if there are more than 2000 steps"
+        "; steps above a smaller limit are lost, and above 2000 steps all easy programs are lost"
     } else {
         ""
     };
-    format!(
-        "after a change of {what} only communication works until the controller's power is switched off and on{lost}"
-    )
+    format!("after a change of {what} the controller executes nothing before a restart{lost}")
 }
 
-/// What to say before a parameter is changed from what the controller holds.
+/// Warnings before a parameter changes.
 pub fn warnings(parameter: &Parameter, found: Option<&Record>, values: &[Value]) -> Vec<String> {
     if parameter.group() == Group::Special {
         return vec![format!("warning: {} ({}) is not for normal use", parameter.id, parameter.name)];
@@ -44,17 +42,17 @@ pub fn warnings(parameter: &Parameter, found: Option<&Record>, values: &[Value])
     }
 }
 
-/// Whether values that are to be written go together.
+/// Checks that new values fit together.
 pub fn check(parameter: &Parameter, values: &[Value]) -> Result<(), Failure> {
     let steps = total(values);
     if is_task_steps(parameter) && steps > MOST_STEPS {
-        return Err(Failure::usage(format!("the tasks would have {steps} steps together; there are {MOST_STEPS}"))
-            .hint("take steps from another task: `toyo param get task-steps`"));
+        return Err(Failure::usage(format!("all tasks together would have {steps} steps; the limit is {MOST_STEPS}"))
+            .hint("reduce the steps of another task: `toyo param get task-steps`"));
     }
     Ok(())
 }
 
-/// Whether a parameter says how many steps the program of each task has.
+/// Whether a parameter defines the number of steps of each task.
 pub fn is_task_steps(parameter: &Parameter) -> bool {
     parameter.id == "E22"
 }

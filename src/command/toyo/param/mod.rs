@@ -1,4 +1,4 @@
-//! `toyo param`: parameters, one or all.
+//! `toyo param`: parameters.
 
 mod dump;
 mod machine;
@@ -34,7 +34,7 @@ use crate::output::Screen;
 use crate::output::view;
 
 commands! {
-    /// What can be done with parameters.
+    /// Commands for parameters.
     pub enum Param {
         /// Read parameters by name, id or group: soft-limit-plus P01 axis
         Get(Get<Parameters>),
@@ -49,16 +49,16 @@ commands! {
     }
 }
 
-/// All parameters, and the rows of the parameters that are tables.
+/// All parameters, and the rows of parameters that are tables.
 #[derive(Debug)]
 pub struct Parameters;
 
-/// A parameter, or a row of one that is a table.
+/// A parameter, or a row of a parameter that is a table.
 #[derive(Debug, Clone, Copy)]
 pub struct Key {
     /// The parameter.
     pub parameter: &'static Parameter,
-    /// The row of a table.
+    /// Row of a table.
     pub row: Option<i32>,
 }
 
@@ -82,30 +82,30 @@ impl Key {
     }
 }
 
-/// What a parameter has besides.
+/// Additional keys of a parameter.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct About {
     /// `P01`.
     pub id: &'static str,
     /// `mode`, `axis`, `machine`, `special` or `table`.
     pub group: &'static str,
-    /// What it holds.
+    /// Content.
     pub about: &'static str,
-    /// Controllers that have it; none if all have.
+    /// Controllers with the parameter; empty for all.
     pub only_on: &'static [&'static str],
     #[serde(flatten)]
     listed: Listed,
 }
 
-/// Groups of parameters, for all of them.
+/// Groups that include all parameters.
 const GROUPS: [Group; 4] = [Group::Mode, Group::Axis, Group::Machine, Group::Special];
 
-/// Parameters that have no rows.
+/// Parameters without rows.
 fn singles() -> impl Iterator<Item = &'static Parameter> {
     PARAMETERS.iter().filter(|parameter| parameter.row().is_none())
 }
 
-/// A parameter by its name or id, or all of a group.
+/// A parameter by name or id, or all parameters of a group.
 fn parse(name: &str) -> Result<Vec<Key>, String> {
     if let Some(group) = GROUPS.iter().find(|group| group.name().eq_ignore_ascii_case(name)) {
         return Ok(singles().filter(|parameter| parameter.group() == *group).map(Key::single).collect());
@@ -119,12 +119,12 @@ fn parse(name: &str) -> Result<Vec<Key>, String> {
             let known = singles().flat_map(|parameter| [parameter.name, parameter.id]);
             let known = known.chain(GROUPS.iter().map(|group| group.name()));
             let near = nearest(name, known).map_or(String::new(), |near| format!("; did you mean {near}?"));
-            Err(format!("there is no such parameter{near}"))
+            Err(format!("unknown parameter{near}"))
         }
     }
 }
 
-/// The noun that leads to the rows of a table.
+/// Command name for the rows of a table.
 fn command_of(table: &Parameter) -> &'static str {
     match &table.id[..2] {
         "T1" => "point",
@@ -135,15 +135,15 @@ fn command_of(table: &Parameter) -> &'static str {
     }
 }
 
-/// Reads parameters and rows; each answers for itself. What is refused is asked for once more, as a controller that is busy
-/// refuses, too.
+/// Reads parameters and rows, each with its own result. A refused read has a second attempt, because a busy controller
+/// also refuses.
 pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Records, Failure> {
     let request = |key: &Key| Request::read_parameter(key.parameter, key.row);
     let requests = keys.iter().map(request).collect::<Result<Vec<Request>, _>>().map_err(|error| wrong(&error))?;
     let rare = |key: &Key, failure: Failure| match &failure.hint {
         Some(hint) if failure.kind == Kind::Refused && !key.parameter.only_on.is_empty() => {
             let (id, models) = (key.parameter.id, key.parameter.only_on.join(", "));
-            let hint = format!("only some controllers have {id}: {models}; or {hint}");
+            let hint = format!("only some controllers have {id}: {models}; {hint}");
             failure.hint(hint)
         }
         _ => failure,
@@ -169,17 +169,17 @@ impl Store for Parameters {
     const WORDS: Words = Words {
         nouns: ["parameter", "parameters"],
         placeholder: "NAME",
-        range: "Names or ids in any case: soft-limit-plus, P01; or a group: mode, axis, machine, special",
+        range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, machine, special",
         reading: Some(
-            "`param list` shows the names of those that this controller has. In JSON, each value has its unit, and what \
-             stands on the line beside what it means.",
+            "`param list` shows the names of the parameters of this controller. In JSON, each value has its unit, \
+             its protocol text and its meaning.",
         ),
         writing: Some(
-            "All values in their order, or some by name, which keeps the others: `param set soft-limit-plus 100 200 0 0`, \
-             `param set P01 ax2=150`. Words as on the line or by what they mean: `param set pendant-language english`. A bit \
-             of a port is STATION/PORT/BIT: 0/01/3.\n\nWhat the controller holds already is not written: its EEPROM takes \
-             about a million rewrites. Machine parameters (E): after a change only communication works until the power was \
-             switched off and on.",
+            "All values in order, or some by name; the others stay: `param set soft-limit-plus 100 200 0 0`, \
+             `param set P01 ax2=150`. Words of the protocol or their meaning: `param set pendant-language english`. A bit \
+             of a port is STATION/PORT/BIT: 0/01/3.\n\nEqual values are not written, because the EEPROM takes \
+             about a million rewrites. After a change of machine parameters (E) the controller executes nothing before a \
+             restart.",
         ),
     };
     const IDS: Ids = ids!("toyo.param");
@@ -259,7 +259,7 @@ impl EepromRow for Parameters {
         let values = key.row.map(Value::Number).into_iter().chain(values).collect();
         parameter_cell(key.parameter, values).map_err(|error| {
             Failure::usage(format!("{}: {error}", key.parameter.name))
-                .hint("the controller holds a value that may not be written; give all values")
+                .hint("the stored value cannot be written back; type all values")
         })
     }
 

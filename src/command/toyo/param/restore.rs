@@ -17,19 +17,17 @@ use crate::controller::toyo::table::Group;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 
-/// Which file, and what of it.
+/// Write parameters from a file.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "All of the file is checked before anything is sent. What the controller holds already is not written: \
-                  its EEPROM takes about a million rewrites. If the work is cut off, the same command goes on.\n\n\
-                  Machine parameters (E) and special ones (U) are left out unless --group names them. Machine parameters \
-                  come last: after a change only communication works until the controller's power was switched off and \
-                  on."
-)]
+#[command(after_help = "The whole file is checked before anything is sent. Equal values are not written, because \
+                  the EEPROM takes about a million rewrites. After an interruption, the same command continues.\n\n\
+                  Machine parameters (E) and special ones (U) need --group. Machine parameters \
+                  are written last: after a change the controller executes nothing before a \
+                  restart.")]
 pub struct Restore {
-    /// What `param dump` wrote, or somebody with an editor; - is stdin
+    /// File from `param dump` or an editor; - is stdin
     file: PathBuf,
-    /// Only these, such as machine,special [default: mode,axis,table]
+    /// Groups to write, such as machine,special [default: mode,axis,table]
     #[arg(long, value_name = "GROUP", value_delimiter = ',')]
     group: Vec<Part>,
 }
@@ -49,7 +47,7 @@ pub enum Part {
     Machine,
 }
 
-/// In the order of writing: after a machine parameter, a controller may take nothing else.
+/// Order of the writes. After a machine parameter, a controller can refuse all others.
 const ORDER: [(Part, Group); 5] = [
     (Part::Mode, Group::Mode),
     (Part::Axis, Group::Axis),
@@ -57,7 +55,7 @@ const ORDER: [(Part, Group); 5] = [
     (Part::Special, Group::Special),
     (Part::Machine, Group::Machine),
 ];
-/// What is written if nobody says which.
+/// Default groups.
 const USUAL: [Part; 3] = [Part::Mode, Part::Axis, Part::Table];
 
 impl Command for Restore {
@@ -65,7 +63,7 @@ impl Command for Restore {
     type Report = WrittenItems<Vec<Shown>, About>;
     const ID: &'static str = "toyo.param.restore";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite parameters by those of the file";
+    const INTENT: &'static str = "overwrite parameters with those of the file";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Self::Report, Failure> {
@@ -78,12 +76,12 @@ impl Command for Restore {
             settings.partition(|setting| self.place(setting).is_some());
         chosen.sort_by_key(|setting| self.place(setting));
         if chosen.is_empty() {
-            return Err(Failure::usage(format!("{name} holds no parameters of the groups wanted"))
-                .hint("--group chooses the groups: mode, axis, table, special, machine"));
+            return Err(Failure::usage(format!("{name} has no parameters of the selected groups"))
+                .hint("select groups with --group: mode, axis, table, special, machine"));
         }
         if self.group.is_empty() && !left.is_empty() {
             let parameters = if left.len() == 1 { "parameter" } else { "parameters" };
-            let left_out = format!("{} machine or special {parameters} left out", left.len());
+            let left_out = format!("skipped {} machine or special {parameters}", left.len());
             screen.note(&format!("{left_out} (--group machine,special)"));
         }
         let row = |setting: Setting| {
@@ -97,7 +95,7 @@ impl Command for Restore {
 }
 
 impl Restore {
-    /// Where in the order of writing a setting stands; `None` if its group is not wanted.
+    /// Position of a setting in the order of the writes; `None` if its group is not selected.
     fn place(&self, setting: &Setting) -> Option<usize> {
         let wanted = if self.group.is_empty() { &USUAL[..] } else { &self.group };
         ORDER.iter().position(|(part, group)| *group == setting.parameter.group() && wanted.contains(part))

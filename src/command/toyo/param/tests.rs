@@ -1,4 +1,4 @@
-//! What `toyo param` sends, and what it refuses.
+//! Tests of the blocks and refusals of `toyo param`.
 
 use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
 
@@ -10,7 +10,7 @@ use crate::controller::toyo::table::Parameter;
 fn parameters_are_read_by_name_or_id() {
     assert_eq!(blocks(&["param", "get", "Soft-Limit-Plus", "p01", "M09"]).unwrap(), ["@RPAR P01", "@RPAR M09"]);
     assert_eq!(blocks(&["param", "list", "special"]).unwrap(), ["@RPAR U03", "@RPAR U21", "@RPAR U22"]);
-    // Those that only some controllers have are asked twice, if they are refused.
+    // Parameters that only some controllers have get a second request after a refusal.
     let mut all = blocks(&["param", "list"]).unwrap();
     all.dedup();
     assert_eq!(all.len(), 74);
@@ -37,7 +37,7 @@ fn a_write_compares_first_and_takes_the_host() {
     assert_eq!(blocks(&["param", "set", "m09", "english"]).unwrap(), ["@RPAR M09", "@WPAR M09 E", "@RPAR M09"]);
     assert_eq!(blocks(&["param", "set", "m01", "0/01/3"]).unwrap(), ["@RPAR M01", "@WPAR M01 0/01/3", "@RPAR M01"]);
     assert_eq!(blocks(&["param", "set", "p13", "<=", "-5", "0/01/3"]).unwrap()[1], "@WPAR P13 AX1<=-0005.00 0/01/3");
-    // What the others hold is not known in a dry run.
+    // Kept values are unknown in a dry run.
     assert_eq!(
         all_blocks(&["param", "set", "p01", "ax2=150"]).unwrap(),
         [
@@ -102,12 +102,12 @@ fn what_is_lost_is_said_before() {
     );
 }
 
-/// How many items were written.
+/// Number of written items.
 fn written(report: &serde_json::Value) -> usize {
     report["items"].as_array().unwrap().iter().filter(|item| item["written"] == true).count()
 }
 
-/// A file in a folder of its own.
+/// A file in its own folder.
 fn file_of(text: &str) -> (tempfile::TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("parameters.toml").to_str().unwrap().to_owned();
@@ -240,7 +240,7 @@ fn a_change_of_a_part_reads_once_before_it_writes() {
         heard.borrow_mut().clear();
         bench.data(words);
         let heard = heard.borrow();
-        // Once before it is written, once to read it back.
+        // Once before the write, and once to read it back.
         assert_eq!(heard.iter().filter(|block| *block == read).count(), 2, "{heard:#?}");
     }
 }

@@ -1,4 +1,4 @@
-//! `toyo point`: rows of the coordinate table, which each task has for itself.
+//! `toyo point`: rows of the coordinate table. Each task has its own table.
 
 mod teach;
 
@@ -34,11 +34,11 @@ use crate::failure::Failure;
 use crate::output::Screen;
 
 table_commands! {
-    /// What can be done with points.
+    /// Commands for points.
     Point of Points {}
 }
 
-/// Every point has four coordinates, whatever axes there are.
+/// Every point has four coordinates, regardless of the number of axes.
 pub const AXES: usize = 4;
 
 /// The coordinate table of a task.
@@ -46,12 +46,12 @@ pub const AXES: usize = 4;
 pub struct Points {
     letters: Letters,
     wanted: Option<u8>,
-    /// The task whose points they are, once that is known.
+    /// Task of the points.
     task: u8,
 }
 
 impl Points {
-    /// The table of a task, or of the current one.
+    /// Table of a task, or of the current task.
     pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
         Ok(Self { letters: link.letters().await?, wanted: task, task: task.unwrap_or_default() })
     }
@@ -67,39 +67,39 @@ impl Points {
     }
 }
 
-/// Whose points.
+/// Task of the points.
 #[derive(Debug, Clone, Args)]
 pub struct TaskOptions {
-    /// Task, 1 to 4, instead of the current one; it is selected meanwhile, which a read-only robot refuses
+    /// Task, 1 to 4; default: the current task. armctl selects it temporarily, which a read-only robot does not allow
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     pub task: Option<u8>,
 }
 
-/// What a point has besides.
+/// Additional keys of a point.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct OfTask {
-    /// Whose point it is.
+    /// Task of the point.
     pub task: u8,
     #[serde(flatten)]
     listed: Listed,
 }
 
-/// The number of a point, 1 to 999.
+/// Field of the point number, 1 to 999.
 fn field() -> field::Field {
     table().key.fields[0].named("point")
 }
 
-/// A point on a command line: its number, or its name.
+/// Parses a point number or a name.
 pub fn parse_point(text: &str) -> Result<i32, String> {
     named(Kind::Point, text, |text| number(&field(), text))
 }
 
-/// What reads a point.
+/// Request that reads a point.
 fn request(point: i32) -> Result<Request, Failure> {
     Request::read_parameter(table(), Some(point)).map_err(|error| wrong(&error))
 }
 
-/// Reads points of the selected task; each answers for itself.
+/// Reads points of the selected task, each with its own result.
 pub async fn read(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Records, Failure> {
     let requests = points.iter().copied().map(request).collect::<Result<Vec<Request>, Failure>>()?;
     read_each(link, screen, "reading points", &requests).await
@@ -119,10 +119,10 @@ impl Store for Points {
         range: "Rows of the coordinate table, 1 to 999: 1-10,20; or names",
         reading: Some("999 points take a minute and a half at 9600 baud."),
         writing: Some(
-            "Values are x, y, z and r in mm, all in this order or some by name: z=12.5 keeps the others. Names are the \
-             letters that the teach pendant shows (E01); where those are not X, Y, Z and R in this order, names are needed. \
-             ax1 to ax4 are axes 1 to 4 on every machine. @FILE takes what `position --json` printed, @- what comes from \
-             stdin, `here` the current position. What the controller holds already is not written: its EEPROM takes about a \
+            "Values are x, y, z and r in mm, all in this order or some by name; the others stay: z=12.5. Names are the \
+             letters on the teach pendant (E01). If they are not X, Y, Z and R in this order, names are necessary. \
+             ax1 to ax4 are axes 1 to 4 on every machine. @FILE reads the output of `position --json`, @- reads it from \
+             stdin, `here` is the current position. Equal values are not written, because the EEPROM takes about a \
              million rewrites.",
         ),
     };

@@ -1,4 +1,4 @@
-//! `toyo teach`: stores where the axes are in a point. `point set 5 here` and `point teach 5` are this.
+//! `toyo teach`: stores the current position as a point. `point set 5 here` and `point teach 5` are equivalent.
 
 use clap::Args;
 
@@ -20,11 +20,11 @@ use crate::controller::toyo::table::Command as Word;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Confirmation, outdated};
 
-/// Stores where the axes are in a point, and reads it back.
+/// Store the current position as a point, and read it back.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "What is stored is what `toyo position` tells at that moment, with servo power on or off; before a return \
-                  to the origin that means nothing, and is refused. `toyo point set 5 here` and `toyo point teach 5` are \
+    after_help = "The command stores the position of `toyo position`, with servo power on or off. It needs a completed return \
+                  to the origin. `toyo point set 5 here` and `toyo point teach 5` are \
                   the same."
 )]
 pub struct Teach {
@@ -35,7 +35,7 @@ pub struct Teach {
     options: TaskOptions,
 }
 
-/// How a position reads in words.
+/// Position as text.
 fn shown(place: &Coordinates) -> String {
     format!("{} (mm)", place.in_a_line())
 }
@@ -52,9 +52,9 @@ impl Command for Teach {
         if context.link.status_of(&[0]).await.known()?.is_some_and(|status| !status.homed()) {
             return Err(Failure::new(
                 Kind::ConditionNotMet,
-                "the return to origin is not complete: no position is known",
+                "the return to origin is not complete, so the position is unknown",
             )
-            .hint("`toyo home` returns to the origin; nothing was stored"));
+            .hint("use `toyo home` first; nothing was stored"));
         }
         let mut points = Points::of_task(context.link, self.options.task).await?;
         points.select(context.link).await?;
@@ -84,7 +84,7 @@ impl Teach {
         if is_asked {
             let now = Coordinates::of(&stands(link).await?, points.letters());
             if now != place {
-                let message = format!("the axes have moved since the question, to {}", shown(&now));
+                let message = format!("the axes moved after the confirmation, to {}", shown(&now));
                 return Err(outdated(format!("{message}; nothing was stored")));
             }
         }
@@ -92,14 +92,14 @@ impl Teach {
         if !is_there {
             points.write(link, screen, &[(point, Some(&found), &new)]).await?;
         }
-        // What was written has been read back and is that.
+        // The value was written and read back.
         let name = point.to_string();
         let taught = Taught::new(name, Some(old.position()), place.position(), place.position().of_group(UNIT));
         Ok(taught.unchanged(is_there).with("point", point).with("task", points.task()))
     }
 }
 
-/// Where the axes are.
+/// Reads the position of the axes.
 async fn stands(link: &mut Link) -> Result<Record, Failure> {
     link.ask(&Request::bare(Word::Mpst)).await
 }

@@ -1,4 +1,4 @@
-//! What `toyo point` sends, and what becomes of it.
+//! Tests of the blocks and results of `toyo point`.
 
 use crate::command::toyo::testing::{Bench, Fault, blocks, objection};
 
@@ -103,7 +103,7 @@ fn a_worn_cell_ends_it_with_an_account() {
     assert!(last.starts_with("not written: "), "{last}");
 }
 
-/// Whether each point was answered for, and written.
+/// Whether each point has a result, and whether it was written.
 fn outcomes(report: &serde_json::Value) -> Vec<(bool, bool)> {
     let flag = |item: &serde_json::Value, key: &str| item[key].as_bool().unwrap();
     report["items"].as_array().unwrap().iter().map(|item| (flag(item, "ok"), flag(item, "written"))).collect()
@@ -153,7 +153,7 @@ fn a_task_that_was_chosen_is_put_back() {
     assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["task"], 3);
 }
 
-/// Axes 2 and 3 have the other's letters, as on a machine whose second axis goes up and down.
+/// Axes 2 and 3 have exchanged letters, as on a machine with a vertical second axis.
 const CROSSED: &str = "write = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\norigin = true\n";
 
 #[test]

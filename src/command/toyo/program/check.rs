@@ -19,34 +19,36 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Section, Tone, View};
 
-/// Checks program files and tells every mistake with its line and column. Takes no robot.
+/// Check program files and print each error with line and column. Needs no robot.
 #[derive(Debug, Args)]
-#[command(after_help = "The exit code is 0 if every file is a program, 8 if one is not, and 1 if one cannot be read. \
-                        `program put` and `sim run` check as well; a faulty file is a wrong argument to them: 2.\n\n\
-                        The form of a file: a step a line, # or ; begin a comment, labels stand for tags, numbers may \
-                        be short. A controller would stop at what is warned of: a RET without a call, a call that leads \
-                        back to itself, half an arc, a point that is not taught, and what a run of some seconds at the \
-                        desk stops at.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
-                        JMPI TAG=next STN=0 PN1=.......1   ; while the gripper is full\n      END")]
+#[command(
+    after_help = "The exit code is 0 if all files are valid programs, 8 if a file has errors, and 1 if a file cannot be read. \
+                        `program put` and `sim run` check too, and end with exit code 2.\n\n\
+                        Form of a file: one step per line, # or ; begins a comment, labels stand for tags, numbers can \
+                        be short. Warnings show where a controller stops: a RET without a call, a call that leads \
+                        back to itself, half an arc, a missing point, or an error in an offline run of some \
+                        seconds.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
+                        JMPI TAG=next STN=0 PN1=.......1   ; while the gripper is full\n      END"
+)]
 pub struct Check {
     /// Program files; - is stdin
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Steps that the task has room for
+    /// Number of steps of the task
     #[arg(long, value_name = "STEPS", default_value_t = 5000, value_parser = clap::value_parser!(u16).range(1..=5000))]
     room: u16,
-    /// Points that are taught (CSV, as `point dump` writes them): a move to another one is told
+    /// Taught points (CSV from `point dump`); a move to another point causes a warning
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
-    /// A name that the files have for a point, a counter or a timer, as robots.toml has it: pick=PT1 (repeatable)
+    /// Name of a point, a counter or a timer, as in robots.toml: pick=PT1 (repeatable)
     #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
     name: Vec<Name>,
-    /// Warnings are errors
+    /// Treat warnings as errors
     #[arg(long)]
     strict: bool,
 }
 
-/// The error of a TSTR whose task has no program.
+/// Error of a TSTR whose task has no program.
 const NO_TASK: u8 = 0x63;
 
 impl OfflineCommand for Check {
@@ -75,13 +77,13 @@ impl OfflineCommand for Check {
     }
 }
 
-/// Adds the step at which a run stops with an error, unless something is said of it already.
+/// Adds the step at which an offline run stops with an error, unless it already has a finding.
 fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
     let Some(Stop { code, after_s, line }) = stop else { return };
     let said = findings.iter().filter(|finding| finding.line == *line).map(|finding| finding.severity).min();
     let severity = match said {
         Some(Severity::Error | Severity::Warning) => return,
-        // It depends on what only a controller has, or another file has the program of the task.
+        // The result depends on the controller, or another file has the program of the task.
         Some(Severity::Note) => Severity::Note,
         None if code.is_none_or(|code| code == NO_TASK) => Severity::Note,
         None => Severity::Warning,
@@ -99,13 +101,13 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
             severity,
             line: *line,
             column: 1,
-            message: format!("at the desk {what}"),
-            hint: Some("`toyo sim run` shows the steps before; counters begin at 0, inputs are off".to_owned()),
+            message: format!("in an offline run {what}"),
+            hint: Some("`toyo sim run` shows the earlier steps; counters begin at 0, inputs are off".to_owned()),
         },
     );
 }
 
-/// What there is to say about files.
+/// Result for all files.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Verdict {
     files: Vec<FileVerdict>,
@@ -113,19 +115,19 @@ pub struct Verdict {
     strict: bool,
 }
 
-/// What there is to say about a file.
+/// Result for a file.
 #[derive(Debug, Serialize, JsonSchema)]
 struct FileVerdict {
     file: String,
-    /// Whether it is a program.
+    /// Whether the file is a program.
     ok: bool,
-    /// Steps of the program; null if it is none.
+    /// Number of steps; null if the file is not a program.
     steps: Option<usize>,
-    /// Its labels with the tags they stand for.
+    /// Labels with their tags.
     labels: Vec<Labelled>,
     errors: usize,
     warnings: usize,
-    /// In the order of the text.
+    /// Findings in the order of the text.
     findings: Vec<Remark>,
 }
 
@@ -135,7 +137,7 @@ pub struct Labelled {
     name: String,
     /// Number of its tag.
     tag: i32,
-    /// Its TAG step.
+    /// Step of the tag.
     step: usize,
     /// Line of the file.
     line: usize,
@@ -213,7 +215,7 @@ impl Report for Verdict {
             ([], _) => return None,
             ([one], false) => format!("{one} has errors"),
             ([one], true) => format!("{one} has warnings"),
-            (many, _) => format!("{} of {} files are not in order: {}", many.len(), self.files.len(), many.join(", ")),
+            (many, _) => format!("{} of {} files have errors: {}", many.len(), self.files.len(), many.join(", ")),
         };
         Some(Failure::new(Kind::ConditionNotMet, what))
     }
@@ -259,7 +261,7 @@ b.txt: 2 steps, 1 label
         assert_eq!((failure.kind.exit(), failure.message.as_str()), (8, "a.txt has errors"));
     }
 
-    /// What shows only when the steps run.
+    /// Errors that appear only when the steps run.
     #[test]
     fn a_run_finds_what_the_steps_do_not_show() {
         let folder = tempfile::tempdir().unwrap();

@@ -24,9 +24,9 @@ use crate::gate::Confirmation;
 use crate::output::Screen;
 use crate::output::view::View;
 
-/// Copies steps over others, in a task or from one to another.
+/// Copy steps over others, within a task or to another task.
 #[derive(Debug, Args)]
-#[command(after_help = and_mode("A tag that is copied within a task is there twice: a program stops at it with error A2."))]
+#[command(after_help = and_mode("A tag that is copied within a task exists twice, and a program stops there with error A2."))]
 pub struct Copy {
     /// First step
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
@@ -34,13 +34,13 @@ pub struct Copy {
     /// Last step
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     to: u16,
-    /// Step that becomes a copy of the first; what is there and behind it is overwritten
+    /// First target step; the copy overwrites the steps from here on
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     at: u16,
-    /// Task of the steps, 1 to 4, instead of the current one
+    /// Task of the steps, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     from_task: Option<u8>,
-    /// Task of the copy, 1 to 4, instead of the same
+    /// Task of the copy, 1 to 4; default: the task of the steps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     to_task: Option<u8>,
 }
@@ -57,11 +57,11 @@ impl Command for Copy {
         let Context { link, screen, authority, .. } = context;
         if self.to < self.from {
             return Err(Failure::usage(format!("the last step, {}, is before the first, {}", self.to, self.from))
-                .hint("name the lower step first"));
+                .hint("type the lower step first"));
         }
         if usize::from(self.end()) > crate::controller::toyo::program::MOST_STEPS {
-            return Err(Failure::usage(format!("the copy would end at step {}; there are 5000", self.end()))
-                .hint("copy fewer steps, or to a lower one"));
+            return Err(Failure::usage(format!("the copy would end at step {}; the limit is 5000", self.end()))
+                .hint("copy fewer steps, or choose a lower target"));
         }
         if self.to_task.is_none() || self.from_task == self.to_task {
             self.overlap()?;
@@ -80,14 +80,14 @@ impl Copy {
         self.at.saturating_add(self.to - self.from)
     }
 
-    /// What a controller makes of it is not known.
+    /// The manual does not define the result of an overlap.
     fn overlap(&self) -> Result<(), Failure> {
         if self.at > self.to || self.end() < self.from {
             return Ok(());
         }
         let Self { from, to, at, .. } = self;
         Err(Failure::usage(format!("steps {from} to {to} and their copy, {at} to {}, overlap", self.end()))
-            .hint("`program get --from --to` and `program put --at` move steps a little"))
+            .hint("use `program get --from --to` and `program put --at` instead"))
     }
 
     fn order(&self, from_task: u8, to_task: u8) -> Request {
@@ -97,7 +97,7 @@ impl Copy {
         Request::of(table::Command::Cpss, values)
     }
 
-    /// The order as far as it is known before the current task is.
+    /// Command text without the current task, which is not known yet.
     fn sketch(&self) -> String {
         let step = |step: u16| Some(Value::Number(step.into()));
         let task = |task: Option<u8>| task.map(|task| Value::Number(task.into()));
@@ -132,8 +132,9 @@ impl Copy {
         if source == target
             && let Some(tag) = tags(&wanted, 1).keys().next()
         {
-            screen
-                .note(&format!("warning: tag {tag:03} is in the task twice now; a program stops there with error A2"));
+            screen.note(&format!(
+                "warning: the task now contains tag {tag:03} twice, and a program stops there with error A2"
+            ));
         }
         let lost = (self.at..).zip(wanted.iter().zip(&found));
         let lost = lost.filter(|(_, (wanted, found))| wanted != found && **found != steps::nop());
@@ -152,18 +153,18 @@ impl Copy {
 
     async fn dry_run(&self, link: &mut Link) -> Result<Copied, Failure> {
         tasks::choose(link, self.from_task).await?;
-        link.plan(&steps::rooms_request(), "whether there is room");
-        link.plan(&steps::rooms_request(), "whether there is room for the copy");
+        link.plan(&steps::rooms_request(), "the number of steps of the task");
+        link.plan(&steps::rooms_request(), "the number of steps of the target task");
         for step in self.from..=self.to {
-            link.plan(&steps::read_request(step), "what is copied");
+            link.plan(&steps::read_request(step), "the source of the copy");
         }
         tasks::choose(link, self.to_task.or(self.from_task)).await?;
         let there: Vec<Request> = (self.at..=self.end()).map(steps::read_request).collect();
         for read in &there {
-            link.plan(read, "what is there");
+            link.plan(read, "the target of the copy");
         }
         steps::plan_open(link).await?;
-        link.plan_order(&self.sketch(), "whether they differ, and which task is the current one").await?;
+        link.plan_order(&self.sketch(), "whether they differ, and the current task").await?;
         for read in &there {
             link.plan_if(read, "whether they differ");
         }
@@ -172,7 +173,7 @@ impl Copy {
     }
 }
 
-/// What was copied.
+/// Result of a copy.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Copied {
     from_task: u8,
@@ -181,9 +182,9 @@ pub struct Copied {
     to_task: u8,
     /// First step of the copy.
     at_step: u16,
-    /// How many.
+    /// Number of steps.
     steps: usize,
-    /// Whether they were the same before, so that nothing was written.
+    /// Whether the steps were already equal, so that nothing was written.
     was_there: bool,
 }
 
@@ -192,7 +193,7 @@ impl Report for Copied {
         let Self { from_task, first_step, last_step, to_task, at_step, steps, was_there } = self;
         let to = if from_task == to_task { String::new() } else { format!(" of task {to_task}") };
         let end = usize::from(*at_step) + steps - 1;
-        let done = if *was_there { "nothing written: they are the same already" } else { "copied, and compared" };
+        let done = if *was_there { "nothing written: the steps are equal" } else { "copied, and compared" };
         View::text(format!("steps {first_step} to {last_step} of task {from_task} to {at_step} to {end}{to}: {done}"))
     }
 }

@@ -24,17 +24,17 @@ use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::View;
 
-/// Deletes steps; those behind them move up.
+/// Delete steps; later steps move up.
 #[derive(Debug, Args)]
-#[command(after_help = and_mode("What is deleted is printed, in the form of a program file."))]
+#[command(after_help = and_mode("The command prints the deleted steps in the form of a program file."))]
 pub struct Delete {
-    /// Step, or the first of several
+    /// Step, or the first of several steps
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     step: u16,
-    /// The last of several
+    /// Last of several steps
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     to: Option<u16>,
-    /// Task, 1 to 4, instead of the current one
+    /// Task, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }
@@ -52,7 +52,7 @@ impl Command for Delete {
         let last = self.to.unwrap_or(self.step);
         if last < self.step {
             return Err(
-                Failure::usage(format!("--to {last} is before step {}", self.step)).hint("name the lower step first")
+                Failure::usage(format!("--to {last} is before step {}", self.step)).hint("type the lower step first")
             );
         }
         if link.is_dry() {
@@ -73,15 +73,15 @@ impl Delete {
         }
     }
 
-    /// What is deleted, for a person to confirm.
+    /// Change to confirm.
     fn change(&self, deleted: &[Record], task: u8) -> Change {
-        // A step without effect counts as well: those behind it move up.
+        // A step without effect also counts, because later steps move up.
         let steps = (self.step..).zip(deleted).map(|(step, record)| format!("step {step}: {}", record.written()));
         let change = match deleted.len() {
             1 => Change::new(format!("delete a step of task {task}")),
             many => Change::new(format!("delete {many} steps of task {task}")),
         };
-        steps.fold(change, Change::item).note("The steps behind move up.")
+        steps.fold(change, Change::item).note("Later steps move up.")
     }
 
     async fn delete(
@@ -112,26 +112,26 @@ impl Delete {
 
     async fn dry_run(&self, link: &mut Link, authority: &Authority<'_>, last: u16) -> Result<Deleted, Failure> {
         tasks::choose(link, self.task).await?;
-        link.plan(&steps::rooms_request(), "how many steps the task has");
+        link.plan(&steps::rooms_request(), "number of steps of the task");
         for step in self.step..=last {
-            link.plan(&steps::read_request(step), "what is deleted");
+            link.plan(&steps::read_request(step), "the deleted steps");
         }
         let behind = steps::read_request(last.saturating_add(1).min(5000));
-        link.plan_if(&behind, "whether there is one behind");
+        link.plan_if(&behind, "whether a later step exists");
         authority.confirm(&Change::nothing()).await?;
         steps::plan_open(link).await?;
         link.ask(&self.order(last)).await?;
-        link.plan(&steps::read_request(self.step), "what is there now");
+        link.plan(&steps::read_request(self.step), "the steps after the change");
         link.put_back().await?;
         Err(unknown())
     }
 }
 
-/// Steps that are no more.
+/// Deleted steps.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Deleted {
     task: u8,
-    /// With the numbers that they had.
+    /// The steps with their former numbers.
     deleted: Vec<Step>,
 }
 

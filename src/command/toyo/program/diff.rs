@@ -24,21 +24,19 @@ use crate::failure::{Failure, Kind};
 use crate::output::csv::RowsOf;
 use crate::output::view::{Section, View};
 
-/// Compares the steps of a program in the controller with those of a text file. The exit code is 8 if they differ.
+/// Compare a program in the controller with a text file. The exit code is 8 if they differ.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Steps are compared: labels, comments and the form of numbers do not count, nor NOPs at the end. \
-                        All steps of the task are read, which takes about 35 ms each at 9600 baud. To read another task \
-                        than the current one, that task is made the current one for a while, which is a change: a \
-                        read-only robot refuses it."
-)]
+#[command(after_help = "The comparison ignores labels, comments, the form of numbers, and NOPs at the end. \
+                        It reads all steps of the task, which takes about 35 ms each at 9600 baud. For another task \
+                        than the current one, armctl selects that task temporarily. This is a change, which a \
+                        read-only robot does not allow.")]
 pub struct Diff {
     /// A program file; - is stdin
     file: PathBuf,
-    /// Task, 1 to 4, instead of the current one
+    /// Task, 1 to 4; default: the current task
     #[arg(value_name = "TASK", value_parser = clap::value_parser!(u8).range(1..=4))]
     number: Option<u8>,
-    /// The same as a flag
+    /// Task as a flag
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }
@@ -79,25 +77,25 @@ impl Command for Diff {
     }
 }
 
-/// How a program in the controller (old) and a file (new) differ.
+/// Differences between a program in the controller and a file.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Difference {
     task: u8,
-    /// Whether the steps are the same.
+    /// Whether the steps are equal.
     equal: bool,
     /// The file.
     files: [FileItem<Steps>; 1],
 }
 
-/// What there is to say about the steps of a file.
+/// Comparison of the steps with a file.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Steps {
-    /// How steps differ; a line is a step.
+    /// Changes from the controller (old) to the file (new); one line per step.
     #[serde(flatten)]
     compared: Compared,
-    /// Steps in the controller, up to the last that is no NOP.
+    /// Steps in the controller, up to the last step that is not a NOP.
     controller_steps: usize,
-    /// Steps of the file, up to the last that is no NOP.
+    /// Steps of the file, up to the last step that is not a NOP.
     file_steps: usize,
 }
 
@@ -120,7 +118,7 @@ impl Difference {
         let (Self { task, equal, .. }, file) = (self, self.file());
         let Steps { controller_steps, file_steps, .. } = &self.files[0].more;
         if *equal {
-            format!("the program of task {task} and {file} are the same, {file_steps} steps")
+            format!("the program of task {task} and {file} are equal, {file_steps} steps")
         } else {
             format!("the program of task {task} ({controller_steps} steps) and {file} ({file_steps} steps) differ")
         }

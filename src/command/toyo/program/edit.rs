@@ -1,4 +1,4 @@
-//! `toyo program edit`: the program of a task, through the editor of the user, and back.
+//! `toyo program edit`: edits the program of a task in the editor of the user and writes it back.
 
 use std::collections::BTreeMap;
 
@@ -24,15 +24,15 @@ use crate::failure::Failure;
 use crate::gate::Confirmation;
 use crate::output::view::View;
 
-/// Edits the program of a task.
+/// Edit the program of a task.
 #[derive(Debug, Args)]
 #[command(after_help = and_mode(
-    "The program is read, opened in $VISUAL or $EDITOR, checked, compared, and after a yes the steps that differ are written \
-     and read back. A program that was changed meanwhile is not overwritten. Whatever goes wrong, what you wrote stays in a \
-     file, and the message says where."
+    "armctl reads the program, opens it in $VISUAL or $EDITOR, and checks it. After a confirmation it writes the changed steps \
+     and reads them back. It does not overwrite a program that another client changed. After a failure, your text stays in a \
+     file that the message names."
 ))]
 pub struct Edit {
-    /// Task, 1 to 4, instead of the current one
+    /// Task, 1 to 4; default: the current task
     #[arg(value_name = "TASK", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }
@@ -48,13 +48,13 @@ impl Command for Edit {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<EditedProgram, Failure> {
         let Context { robot, link, screen, several, authority } = context;
         if several {
-            return Err(Failure::usage("one program of one robot is edited").hint("name the robot with -r"));
+            return Err(Failure::usage("the editor needs one robot").hint("select the robot with -r"));
         }
         let get = Get::whole(self.task);
         if link.is_dry() {
             let planned = get.dry_run(link).await;
             link.plan_overwriting(&steps::read_request(1), "@WSTX ?").await?;
-            link.then("the text is edited, and the steps that then differ are written and read back");
+            link.then("you edit the text, and armctl writes the changed steps and reads them back");
             return planned.map(|_| EditedProgram { changed: false, hunks: Vec::new(), stored: None });
         }
         let outcome = get.read(link, screen).await;
@@ -82,22 +82,21 @@ impl Command for Edit {
             }
             Err(failure) => {
                 let task = self.task.map_or_else(String::new, |task| format!(" --task {task}"));
-                Err(edited.kept(failure, |path| {
-                    format!("what you wrote is in {path}: `toyo program put {path}{task}` writes it")
-                }))
+                Err(edited
+                    .kept(failure, |path| format!("your text is in {path}: `toyo program put {path}{task}` writes it")))
             }
         }
     }
 }
 
-/// A program after an edit.
+/// Result of an edit.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct EditedProgram {
     /// Whether the text was changed.
     changed: bool,
-    /// What was changed in the text.
+    /// Changes of the text.
     hunks: Vec<Hunk>,
-    /// What became of the steps.
+    /// Result for the steps.
     #[serde(skip_serializing_if = "Option::is_none")]
     stored: Option<Stored>,
 }

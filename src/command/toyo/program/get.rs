@@ -29,40 +29,40 @@ use crate::output::csv::RowsOf;
 use crate::output::escape;
 use crate::output::view::{Cell, View};
 
-/// Reads the program of a task as text, which `program put` writes back.
+/// Read the program of a task as text, which `program put` writes back.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "All steps are read, as subroutines may stand behind END; NOPs up to the end of the task are left out of the text. A step takes about 35 ms at 9600 baud. To read another task than the current one, that task is \
-                        made the current one for a while, which is a change: a read-only robot refuses it.\n\nA controller \
-                        keeps neither labels nor comments. Where it holds the steps that `program put` of this machine \
-                        wrote last, the text that was put is given; where it holds others, a note says so and the steps \
-                        are given.\n\nWhere the controller \
-                        refuses a step, the others are given, and ? stands in its place, which no program has: that text \
-                        is refused wherever a program is read, and no file is written."
+    after_help = "All steps are read, because subroutines can follow END. The text omits NOPs at the end. A step takes about 35 ms at 9600 baud. For another task than the current one, armctl selects that task \
+                        temporarily. This is a change, which a read-only robot does not allow.\n\nA controller \
+                        stores neither labels nor comments. If it has the steps that `program put` of this computer \
+                        wrote last, the command prints that text; otherwise it prints a note and the steps.\
+                        \n\nIf the controller \
+                        refuses a step, the text has ? in its place. Such a text \
+                        is not a valid program, and no file is written."
 )]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
 pub struct Get {
-    /// A new file; without one, the text goes to stdout
+    /// A new file; default: stdout
     file: Option<PathBuf>,
-    /// Task, 1 to 4, instead of the current one
+    /// Task, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
     /// First step
     #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
     from: u16,
-    /// Last step, instead of the last of the task
+    /// Last step; default: the last step of the task
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     to: Option<u16>,
     /// Stop at the first END
     #[arg(long)]
     until_end: bool,
-    /// Put step numbers before the instructions
+    /// Print step numbers before the instructions
     #[arg(long)]
     numbers: bool,
-    /// Say in comments what the points, speeds and other table rows are that the program names
+    /// Add comments with the points, speeds and other table rows of the program
     #[arg(long)]
     explain: bool,
-    /// Show the steps as the controller has them, without labels and comments of the text that was put
+    /// Print the steps of the controller, without labels and comments of the text that was written
     #[arg(long)]
     plain: bool,
     /// Replace the file if it exists
@@ -86,7 +86,7 @@ impl Command for Get {
                 .hint("name the lower step with --from"));
         }
         if let Some(file) = self.file.as_ref().filter(|_| several) {
-            return Err(Failure::usage(format!("{} is for the program of one robot", file.display()))
+            return Err(Failure::usage(format!("{} needs one robot", file.display()))
                 .hint("run the command once for each robot, or `toyo backup` for all of them"));
         }
         let target = self.file.clone().map(|file| Target::new(file, self.force)).transpose()?;
@@ -119,7 +119,7 @@ impl Command for Get {
                 draft.write(text.as_bytes())?;
                 draft.commit()
             }
-            // What looks like a program shall be one, and nothing whole be replaced by it.
+            // A program file must be complete, and must not be replaced by an incomplete one.
             Some(_) => Err(Failure::new(Kind::ConditionNotMet, NOT_WRITTEN)),
             None => Ok(()),
         };
@@ -146,12 +146,12 @@ impl Command for Get {
 }
 
 impl Get {
-    /// Whether the text is to be another one than that which was put.
+    /// Whether options require another text than the one that was written.
     fn changes_text(&self) -> bool {
         self.plain || self.numbers || self.explain
     }
 
-    /// All steps of a task, or of the current one.
+    /// All steps of a task, or of the current task.
     pub fn whole(task: Option<u8>) -> Self {
         Self {
             file: None,
@@ -166,7 +166,7 @@ impl Get {
         }
     }
 
-    /// Reads the steps: of which task, how many it has room for, and what each is.
+    /// Reads the steps: their task, the number of steps of the task, and each step.
     pub async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers), Failure> {
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, self.to.unwrap_or(self.from)).await?;
@@ -175,34 +175,34 @@ impl Get {
         Ok((task, room, read))
     }
 
-    /// Notes what is read.
+    /// Records the requests of a dry run.
     pub async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
         tasks::choose(link, self.task).await?;
-        link.plan(&steps::rooms_request(), "how many steps the task has");
+        link.plan(&steps::rooms_request(), "number of steps of the task");
         link.plan(&steps::read_request(self.from), "the first step");
-        link.then("the steps behind it are read, one after the other");
+        link.then("the later steps are read in order");
         Err(unknown())
     }
 }
 
-/// That the text that was put last is not that of the program.
+/// Note that the program differs from the text that was written last.
 fn other_program(source: &Source, differences: usize) -> String {
     let Source { file, put_at, .. } = source;
     let steps = if differences == 1 { "1 step differs".to_owned() } else { format!("{differences} steps differ") };
     format!(
-        "note: the controller does not hold the text of {} any more, put on {put_at}: {steps}. These are its steps, without \
+        "note: the program differs from the text of {}, written on {put_at}: {steps}. The output shows its steps without \
          labels and comments",
         escape::line(file)
     )
 }
 
-/// Why there is no file.
-const NOT_WRITTEN: &str = "was not written, as the program is not whole";
+/// Reason why no file was written.
+const NOT_WRITTEN: &str = "was not written, because the program is incomplete";
 
-/// Why steps were not read.
+/// Reasons why steps were not read.
 fn unread(answers: &Answers) -> Unread {
     let why = |failure: &Failure| match failure.kind {
-        // The same for all that were not asked any more.
+        // One reason for all steps that were not requested.
         Kind::NoAnswer => in_a_word(failure.kind).to_owned(),
         _ => escape::line(&failure.message).into_owned(),
     };
@@ -210,11 +210,12 @@ fn unread(answers: &Answers) -> Unread {
     failed.map(|(index, failure)| (index, why(failure))).collect()
 }
 
-/// The rows of tables that steps name; those that the controller refuses are left out.
+/// Table rows that the steps use, without rows that the controller refuses.
 async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows, Failure> {
     let mut rows = Rows::new();
     for (id, row) in program::uses(steps) {
-        let parameter = Parameter::named(id).ok_or_else(|| Failure::local(format!("there is no table {id}")))?;
+        let parameter =
+            Parameter::named(id).ok_or_else(|| Failure::local(format!("internal error: unknown table {id}")))?;
         let request = Request::read_parameter(parameter, Some(row)).map_err(|error| misuse(&error.into()))?;
         rows.extend(link.try_ask(&request).await?.ok().map(|content| ((id, row), content)));
     }
@@ -225,23 +226,23 @@ async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows, Failure> {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Got {
     task: u8,
-    /// Steps that the task has.
+    /// Number of steps of the task.
     room_steps: u16,
     /// The first step that was read.
     first_step: u16,
     /// The last step that was read.
     last_step: usize,
-    /// Steps up to the last that is no NOP, or was not read.
+    /// Steps up to the last one that is not a NOP or was not read.
     used_steps: usize,
     /// Tags with their steps.
     tags: Vec<Tag>,
-    /// Each step; without the NOPs at the end of the task.
+    /// Each step, without the NOPs at the end of the task.
     steps: Vec<Item<Step>>,
-    /// Whether the text is the one that was put, with its labels and comments.
+    /// Whether the text is the one that was written, with its labels and comments.
     is_source: bool,
-    /// The text as a file has it, with `?` for what was not read; null if it went to a file.
+    /// Text of the file, with `?` for steps that were not read; null if it went to a file.
     text: Option<String>,
-    /// The text, and the file that it went to; no file is written where a step was not read.
+    /// Text, and the file that was written; no file is written if a step was not read.
     files: [FileItem<Plain>; 1],
     #[serde(skip)]
     read_steps: usize,
@@ -259,14 +260,14 @@ struct Tag {
 pub struct Step {
     /// From 1.
     pub step: usize,
-    /// As the controller has it.
+    /// Instruction in the controller.
     pub instruction: String,
-    /// Whether the manual lists it; what it does not cannot be written.
+    /// Whether the manual lists it; other instructions cannot be written.
     pub in_manual: bool,
 }
 
 impl Step {
-    /// As it was read.
+    /// A step as read.
     pub fn of(step: usize, record: &Record) -> Self {
         Self { step, instruction: record.written(), in_manual: record.is_listed() }
     }
@@ -300,7 +301,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
     use crate::failure::Kind;
 
-    /// A controller that does this with step 2 of three.
+    /// A controller with a fault at step 2 of three.
     fn with_step_2(fault: Fault) -> Bench {
         let state = "steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }";
         Bench::with_faults(state, move |block, _| if block == "@RSTX 0002" { fault } else { Fault::None }).0
@@ -311,7 +312,7 @@ mod tests {
         let mut bench = with_step_2(Fault::Answered("@NG"));
         let (got, failure) = bench.run(&["program", "get"]).unwrap();
         let failure = failure.unwrap();
-        let why = "the controller refused RSTX 0002 (@NG): the status does not tell why";
+        let why = "the controller refused RSTX 0002 (@NG): the status shows no reason";
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Mixed, Some("NG")));
         assert_eq!(failure.message, format!("1 of 2000 failed: {why}"));
         let steps = got["steps"].as_array().unwrap();
@@ -326,7 +327,7 @@ mod tests {
              at the end of the program are omitted\n"
         );
         assert_eq!(got["text"], text);
-        // Nothing takes it for a program.
+        // The text is not accepted as a program.
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("partial.txt");
         std::fs::write(&path, text).unwrap();

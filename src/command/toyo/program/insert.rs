@@ -28,17 +28,17 @@ use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::View;
 
-/// Inserts a step; the one that was there and those behind it move on by one.
+/// Insert a step; this step and later ones move by one.
 #[derive(Debug, Args)]
-#[command(after_help = and_mode("The last step of the task falls out; if it is no NOP, that is asked before."))]
+#[command(after_help = and_mode("The last step of the task is lost. If it is not a NOP, the command refuses."))]
 pub struct Insert {
     /// Number of the new step
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     step: u16,
-    /// Its instruction, such as MOVP pick or OUT STN=0 PN1=.......1; quote < and >
+    /// Instruction, such as MOVP pick or OUT STN=0 PN1=.......1; quote < and >
     #[arg(num_args = 0.., default_value = "NOP", add = complete::INSTRUCTION)]
     instruction: Vec<String>,
-    /// Task, 1 to 4, instead of the current one
+    /// Task, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }
@@ -63,7 +63,7 @@ impl Command for Insert {
 }
 
 impl Insert {
-    /// The instruction as it is sent. Its tag may be anywhere in the program.
+    /// Instruction for the protocol. Its tag can be anywhere in the program.
     fn instruction(&self, names: &Names) -> Result<Record, Failure> {
         let text = self.instruction.join(" ");
         let part = Part { first: self.step.into(), tags: None };
@@ -76,7 +76,7 @@ impl Insert {
             (None, Some(step)) => Ok(step.record),
             (wrong, _) => Err(wrong.unwrap_or_else(|| {
                 Failure::usage(format!("'{text}' is not a valid instruction")).hint(
-                    "name one instruction with its operands, such as JMP TAG=5; `armctl toyo program insert --help`",
+                    "type one instruction with its operands, such as JMP TAG=5; see `armctl toyo program insert --help`",
                 )
             })),
         }
@@ -99,9 +99,10 @@ impl Insert {
         let before = link.ask(&steps::read_request(step)).await?;
         let last = link.ask(&steps::read_request(room)).await?;
         if last != steps::nop() {
-            let message = format!("step {room}, the last of task {task}, would fall out: {}", last.written());
-            return Err(Failure::new(Kind::Rejected, message)
-                .hint("delete it first, or give the task more steps by the machine parameter E22 (task-steps)"));
+            let message = format!("step {room}, the last of task {task}, would be lost: {}", last.written());
+            return Err(Failure::new(Kind::Rejected, message).hint(
+                "delete the step first, or increase the steps of the task with machine parameter E22 (task-steps)",
+            ));
         }
         authority.confirm(&self.change(task, &before)).await?;
         steps::open(link).await?;
@@ -119,7 +120,7 @@ impl Insert {
 
     fn change(&self, task: u8, before: &Record) -> Change {
         let step = self.step;
-        let behind = format!("step {step} ({}) and the steps behind it move on by one", before.written());
+        let behind = format!("step {step} ({}) and later steps move by one", before.written());
         Change::new(format!("insert a step before step {step} of task {task}")).item(behind)
     }
 
@@ -130,15 +131,15 @@ impl Insert {
         instruction: &Record,
     ) -> Result<Inserted, Failure> {
         tasks::choose(link, self.task).await?;
-        link.plan(&steps::rooms_request(), "how many steps the task has");
-        link.plan(&steps::read_request(self.step), "what moves on");
-        let last = Reason::about("the last step, which must be a NOP").depending_on("how many steps the task has");
+        link.plan(&steps::rooms_request(), "number of steps of the task");
+        link.plan(&steps::read_request(self.step), "the steps that move");
+        let last = Reason::about("the last step, which must be a NOP").depending_on("number of steps of the task");
         link.plan_depending("@RSTX ?", last);
         authority.confirm(&Change::nothing()).await?;
         steps::plan_open(link).await?;
         link.ask(&self.order()).await?;
         if self.step < 5000 {
-            link.plan_if(&steps::read_request(self.step + 1), "whether it is the last one");
+            link.plan_if(&steps::read_request(self.step + 1), "whether it is the last step");
         }
         let cell = steps::cell(self.step, instruction)?;
         link.plan(&cell.read, THERE);
@@ -148,14 +149,14 @@ impl Insert {
     }
 }
 
-/// Steps did not move as they should.
+/// Failure because steps did not move as expected.
 pub fn moved_wrong(step: u16, wanted: &Record, found: &Record) -> Failure {
     let (wanted, found) = (wanted.written(), found.written());
-    Failure::new(Kind::Malformed, format!("the controller said @OK, but step {step} is '{found}', not '{wanted}'"))
-        .hint("`toyo program get` shows what it has now")
+    Failure::new(Kind::Malformed, format!("the controller answered @OK, but step {step} is '{found}', not '{wanted}'"))
+        .hint("`toyo program get` shows the program")
 }
 
-/// A step that is new.
+/// Result of an insert.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Inserted {
     task: u8,

@@ -1,8 +1,7 @@
-//! Source texts of the programs that were put, kept by the address of the controller: a controller keeps neither labels nor
-//! comments.
+//! Source texts of programs that were written, because a controller stores neither labels nor comments.
 //!
-//! A file per controller and task in the state folder of the user. It counts only for the very steps that it was put as. It
-//! is an aid: where it cannot be kept or read, nothing is lost but labels and comments.
+//! The state folder of the user has one file per controller and task. A text is valid only for exactly the steps that
+//! it produced. If it cannot be saved or read, only labels and comments are lost.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -19,65 +18,65 @@ use crate::controller::toyo::table::Op;
 use crate::files;
 use crate::settings::Robot;
 
-/// What such a file begins with.
+/// Beginning of each file.
 const FORMAT: &str = "armctl-toyo-source";
-/// What is larger is none that was written here: 5000 steps with long comments are less.
+/// Size limit of a file; 5000 steps with long comments need less.
 const MOST: u64 = 8 << 20;
-/// Tasks that a controller may have.
+/// Tasks of a controller.
 const TASKS: std::ops::RangeInclusive<u8> = 1..=4;
 
-/// The kept texts of a controller.
+/// Source texts of a controller.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// Its files begin with this; `None` where nothing is kept.
+    /// Path prefix of the files; `None` if nothing is saved.
     prefix: Option<PathBuf>,
     address: String,
-    /// Whether the steps behind the kept ones count as unknown by now.
+    /// Whether the steps after the program can have changed.
     is_doubted: bool,
 }
 
-/// A text that was put, with the steps that it became.
+/// A text that was written, with its steps.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     format: String,
-    /// The controller that it was put to.
+    /// Address of the controller.
     address: String,
     task: u8,
-    /// What the file was called.
+    /// Name of the file.
     pub file: String,
-    /// When it was put.
+    /// Time of the write.
     pub put_at: Timestamp,
     /// The text.
     pub text: String,
-    /// The steps up to the last that is no NOP, as the controller has them.
+    /// Steps in the controller, up to the last one that is not a NOP.
     steps: Vec<String>,
-    /// How many steps the task had.
+    /// Number of steps of the task.
     room: u16,
-    /// Whether all steps behind these were NOP, and no command of this user has changed them since.
+    /// Whether all later steps were NOP, and no command of this user has changed them since.
     rest_is_nop: bool,
 }
 
 impl Source {
-    /// How many steps it has.
+    /// Number of steps.
     pub fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// Whether steps from the first one on are those that it was put as.
+    /// Whether steps from the first one on equal the steps of the text.
     pub fn is(&self, steps: &[Record]) -> bool {
         self.differences(steps) == 0
     }
 
-    /// How many steps differ from those that it was put as.
+    /// Number of steps that differ from the steps of the text.
     pub fn differences(&self, steps: &[Record]) -> usize {
         let used = used(steps);
         let differing = steps[..used].iter().zip(&self.steps).filter(|(step, kept)| step.written() != **kept).count();
         differing + used.abs_diff(self.steps.len())
     }
 
-    /// Whether the steps behind it need no look before these steps are put, as far as those up to its last one are as they
-    /// were put. An edit on the pendant behind them may be missed then, which must not matter: the new program defines no
-    /// tag that might be there twice, jumps to none but its own, and does not run on into what is behind it.
+    /// Whether the steps after the program need not be read before these steps are written. Its own steps are
+    /// unchanged. An edit on the pendant after them can be missed. It must not matter: the new program defines no tag
+    /// that can exist twice, jumps only to its own tags, and does not run beyond its end.
     pub fn knows_rest(&self, steps: &[Record], room: u16) -> bool {
         let known: Vec<Record> = self.steps.iter().filter_map(|step| instruction(step).ok()).collect();
         let known = tags(&known, 1);
@@ -86,23 +85,23 @@ impl Source {
     }
 }
 
-/// Whether steps end before what is behind them.
+/// Whether the program ends before the later steps.
 fn ends(steps: &[Record]) -> bool {
     let layouts = [Op::End, Op::Jmp, Op::Ret].map(|op| op.row().layout);
     steps[..used(steps)].last().is_some_and(|last| layouts.contains(&last.layout()))
 }
 
-/// Whether a step goes to a tag that only a run tells.
+/// Whether a step jumps to a tag that is known only at run time.
 fn computes_jump(step: &Record) -> bool {
     [Op::Brac, Op::Psel].iter().any(|op| step.layout() == op.row().layout)
 }
 
 impl Sources {
-    /// Of a robot; of a simulator in this process nothing is kept.
+    /// Source texts of a robot; nothing is saved for a simulator in this process.
     pub fn of(robot: &Robot) -> Self {
         let Some(address) = robot.target.value.address().key() else { return Self::default() };
         let hash = Sha256::digest(address.as_bytes()).iter().take(8).fold(String::new(), |mut text, byte| {
-            // Nothing fails when text is written to a string.
+            // Writing to a string cannot fail.
             let _ = write!(text, "{byte:02x}");
             text
         });
@@ -116,14 +115,14 @@ impl Sources {
         Some(path.into())
     }
 
-    /// The text that was put last as the whole program of a task; none where there is none, or none that can be read.
+    /// The text that was last written as the whole program of a task; `None` if it does not exist or cannot be read.
     pub fn get(&self, task: u8) -> Option<Source> {
         let text = files::text(&self.path(task)?, MOST).ok()?;
         let source: Source = serde_json::from_str(&text).ok()?;
         (source.format == FORMAT && source.address == self.address && source.task == task).then_some(source)
     }
 
-    /// Keeps a text that was put, with all the steps of its task.
+    /// Saves a text that was written, with all steps of its task.
     pub fn keep(&mut self, task: u8, (file, text): (&str, &str), steps: &[Record], room: u16) -> std::io::Result<()> {
         let steps = steps[..used(steps)].iter().map(Record::written).collect();
         let now = Timestamp::now();
@@ -146,13 +145,13 @@ impl Sources {
         files::replace(&path, &serde_json::to_vec(source)?)
     }
 
-    /// Something changes steps of the controller: what is behind a program may not be NOP any more.
+    /// Marks the steps after the programs as unknown, before a command that changes steps.
     pub fn doubt(&mut self) {
         if std::mem::replace(&mut self.is_doubted, true) {
             return;
         }
         for source in TASKS.filter_map(|task| self.get(task)).filter(|source| source.rest_is_nop) {
-            // Without this, a later put reads less than it should; so the file goes.
+            // The file is deleted if this fails, because a later put would otherwise read too few steps.
             if self.write(&Source { rest_is_nop: false, ..source.clone() }).is_err()
                 && let Some(path) = self.path(source.task)
             {
@@ -161,7 +160,7 @@ impl Sources {
         }
     }
 
-    /// What was doubted is known again.
+    /// Marks the steps as known again.
     pub fn trust(&mut self) {
         self.is_doubted = false;
     }

@@ -17,15 +17,15 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, Tone, View};
 
-/// Lists the tasks with the steps that their programs have room for.
+/// List the tasks with the number of steps of their programs.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "To count what is used, every step of every task is read, at about 35 ms a step at 9600 baud, and \
-                        each task is made the current one for a while, which is a change: a read-only robot refuses \
-                        it."
+    after_help = "--used reads every step of every task, which takes about 35 ms per step at 9600 baud. armctl selects \
+                        each task temporarily. This is a change, which a read-only robot does not \
+                        allow."
 )]
 pub struct List {
-    /// Read the programs: how many steps they use, and their tags
+    /// Read the programs to count their steps and list their tags
     #[arg(long)]
     used: bool,
 }
@@ -43,9 +43,9 @@ impl Command for List {
         let Context { link, screen, .. } = context;
         if link.is_dry() {
             tasks::choose(link, None).await?;
-            link.plan(&steps::rooms_request(), "how many steps the tasks have");
+            link.plan(&steps::rooms_request(), "number of steps of the tasks");
             if self.used {
-                link.then("every step of every task is read, which is made the current one before");
+                link.then("every step of every task is read, after the selection of the task");
             }
             return Err(unknown());
         }
@@ -88,15 +88,15 @@ pub struct Listed {
 #[derive(Debug, Serialize, JsonSchema)]
 struct Task {
     task: u8,
-    /// Whether commands that name no task are about it.
+    /// Whether it is the current task.
     current: bool,
-    /// Steps that it has (E22).
+    /// Number of steps of the task (E22).
     room_steps: u16,
-    /// Steps up to the last that is no NOP; null where they were not read.
+    /// Steps up to the last one that is not a NOP; null if they were not read.
     used_steps: Option<usize>,
-    /// Tags in its program; null where it was not read.
+    /// Tags of the program; null if it was not read.
     tags: Option<Vec<i32>>,
-    /// Why its program could not be read.
+    /// Reason why the program could not be read.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Failure>,
 }

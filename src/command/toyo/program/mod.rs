@@ -1,4 +1,4 @@
-//! `toyo program`: sequential programs, as files and step by step.
+//! `toyo program`: sequential programs as files and step by step.
 
 mod check;
 mod copy;
@@ -20,21 +20,21 @@ pub mod text;
 use crate::command::{Offline, commands};
 
 commands! {
-    /// What can be done with sequential programs.
+    /// Commands for sequential programs.
     pub enum Program {
         /// List tasks with the steps used and available
         List(list::List),
         /// Read a program as text
         Get(get::Get),
-        /// Write a program from a file, after checking it whole
+        /// Check a program file and write the program
         Put(put::Put),
         /// Compare a program in the controller with a file
         Diff(diff::Diff),
         /// Edit a program in your editor, and write it back
         Edit(edit::Edit),
-        /// Insert a step; those behind it move on
+        /// Insert a step; later steps move by one
         Insert(insert::Insert),
-        /// Delete steps; those behind them move up
+        /// Delete steps; later steps move up
         Delete(delete::Delete),
         /// Copy steps, also between tasks
         Copy(copy::Copy),
@@ -42,12 +42,12 @@ commands! {
         Search(search::Search),
         /// Show the current step of the program
         Show(show::Show),
-        /// Check program files; takes no robot
+        /// Check program files; needs no robot
         Check(Offline<check::Check>),
     }
 }
 
-/// A help text with why commands that write steps may switch to program mode and back.
+/// Adds to a help text that commands that write steps select program mode temporarily.
 fn and_mode(text: &str) -> String {
     format!("{text}\n\n{MODE}")
 }

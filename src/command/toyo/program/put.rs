@@ -35,47 +35,47 @@ use crate::output::Screen;
 use crate::output::csv::RowsOf;
 use crate::output::view::{Section, View};
 
-/// Writes a program from a text file.
+/// Write a program from a text file.
 #[derive(Debug, Args)]
 #[command(after_help = and_mode(HELP))]
 pub struct Put {
-    /// What `program get` wrote, or somebody with an editor; - is stdin
+    /// File from `program get` or an editor; - is stdin
     file: PathBuf,
-    /// Task, 1 to 4, instead of the current one
+    /// Task, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
-    /// Write a part of a program, with this as its first step; the other steps stay
+    /// Write a part of a program from this step on; other steps stay
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     at: Option<u16>,
-    /// Leave the steps behind the last one of the file as they are
+    /// Keep the steps after the last one of the file
     #[arg(long, conflicts_with = "at")]
     keep_rest: bool,
-    /// Go on with a put that was cut off; with a step, those before it are not even compared
+    /// Continue an interrupted put; with a step, earlier steps are not compared
     #[arg(long, value_name = "STEP", num_args = 0..=1, require_equals = true, default_missing_value = "1",
           value_parser = clap::value_parser!(u16).range(1..=5000))]
     resume: Option<u16>,
-    /// Read every step of the task, also where armctl wrote the program and left NOP behind it
+    /// Read every step of the task, even if armctl wrote the program and NOPs after it
     #[arg(long, conflicts_with_all = ["at", "keep_rest"])]
     read_all: bool,
-    /// What the controller has to hold for it to be written.
+    /// Program that the controller must have before the write.
     #[arg(skip)]
     expected: Option<Vec<Record>>,
 }
 
-const HELP: &str = "The whole file is checked before anything is sent. It is the program of the task: steps behind its \
-                    last one become NOP, as a tag in what is left of an older program would be there twice. With --at \
-                    it is a part of the program, and the other steps stay.\n\nThe steps of the file are read, and \
-                    those behind it; only what differs is written. Where the controller holds the program that armctl \
-                    put there last, the steps behind it are known to be NOP and are not read, unless the new one has \
-                    other tags or runs on behind its last step; --read-all reads them. \
-                    The text is kept on this machine, so that `program get` shows labels and comments again.\n\nNames \
+const HELP: &str = "The whole file is checked before anything is sent. The file is the program of the task: later \
+                    steps become NOP, so that no tag of an older program exists twice. With --at \
+                    it is a part of the program, and other steps stay.\n\nThe steps of the file are read, and \
+                    later steps; only different steps are written. If the controller has the program that armctl \
+                    wrote last, the later steps are NOP and are not read, unless the new program has \
+                    other tags or continues after its last step; --read-all reads them. \
+                    This computer stores the text, so that `program get` shows labels and comments again.\n\nNames \
                     of points, counters and timers (robots.toml) stand for their numbers: PT=pick.";
 
-/// A step that is to be written.
+/// A step to write.
 struct Edit {
     step: u16,
     instruction: Record,
-    /// What is there.
+    /// Present instruction.
     found: Record,
 }
 
@@ -92,7 +92,7 @@ impl Command for Put {
         let name = self.name();
         let bytes = files::read(&self.file)?;
         let names = names::of(robot, screen);
-        // Which tags are around a part is known later.
+        // The tags around a part are known later.
         let around = self.at.map(|at| part(at, None));
         let room = MOST_STEPS + 1 - usize::from(self.at.unwrap_or(1));
         let program = text::program(&name, check_named(&bytes, room, around.as_ref(), names), screen)?;
@@ -100,8 +100,8 @@ impl Command for Put {
         let last = last_of(first, &program);
         let from = self.resume.unwrap_or(first).max(first);
         if from > last {
-            return Err(Failure::usage(format!("--resume={from} is behind step {last}, the last one of the file"))
-                .hint("leave --resume away to write the whole file"));
+            return Err(Failure::usage(format!("--resume={from} is after step {last}, the last step of the file"))
+                .hint("remove --resume to write the whole file"));
         }
         if link.is_dry() {
             return self.dry_run(link, &program, from).await;
@@ -112,12 +112,12 @@ impl Command for Put {
 }
 
 impl Put {
-    /// A program that was edited, in the place of what it was.
+    /// A program that was edited, to replace the program that was read.
     pub fn edited(file: PathBuf, task: Option<u8>, expected: Vec<Record>) -> Self {
         Self { file, task, at: None, keep_rest: false, resume: None, read_all: true, expected: Some(expected) }
     }
 
-    /// What the text is called in messages.
+    /// Name of the text in messages.
     fn name(&self) -> String {
         if self.expected.is_some() { "edited".to_owned() } else { files::shown(&self.file) }
     }
@@ -139,7 +139,7 @@ impl Put {
                 let checked = check_named(bytes, room.into(), None, names);
                 text::program(&name, checked, &screen.silenced())?
             }
-            // Without a tag, those around it do not matter.
+            // A part without tags does not depend on the tags around it.
             Some(_) if !names_tags(program) => program.clone(),
             Some(at) => {
                 let tags = tags_around(link, screen, first, last, room).await?;
@@ -151,8 +151,8 @@ impl Put {
         let found = self.found((link, screen), task, &program, (from, last, end)).await?;
         let end = from.saturating_add(u16::try_from(found.len()).unwrap_or(u16::MAX)).saturating_sub(1).max(last);
         if self.expected.as_ref().is_some_and(|expected| *expected != found) {
-            return Err(Failure::new(Kind::Rejected, "the program was changed on the controller meanwhile")
-                .hint("edit it again, and put both together"));
+            return Err(Failure::new(Kind::Rejected, "another client changed the program on the controller")
+                .hint("edit the new program again"));
         }
         let wanted = program.steps.iter().map(|step| step.record.clone()).chain(std::iter::repeat_with(steps::nop));
         let wanted = (first..=end).zip(wanted).skip_while(|(step, _)| *step < from);
@@ -166,7 +166,7 @@ impl Put {
         if !changes.is_empty() {
             steps::open(link).await?;
             let mut progress = screen.items_progress("writing steps", changes.len() as u64);
-            // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+            // The caller also waits for Ctrl-C, but polls this work first. It therefore ends here, with the account.
             let outcome = interruptible(async {
                 for Edit { step, instruction, .. } in &changes {
                     link.overwrite(screen, &steps::cell(*step, instruction)?, &mut cells).await?;
@@ -202,9 +202,9 @@ impl Put {
         })
     }
 
-    /// The steps that are there, from the first that is compared on. Those behind the program are left out where the
-    /// controller holds what was put there last, and nothing but NOP was behind it: all but the first, where a program goes
-    /// on that was made longer on the pendant.
+    /// Present steps from the first compared step on. If the controller has the program that was written last with only
+    /// NOPs after it, later steps are not read. The first later step is read, because the pendant can have extended the
+    /// program there.
     async fn found(
         &self,
         (link, screen): (&mut Link, &Screen),
@@ -226,13 +226,13 @@ impl Put {
         Ok(found)
     }
 
-    /// Keeps the text, for a `get` to come.
+    /// Saves the text for a later `get`.
     fn keep(&self, link: &mut Link, screen: &Screen, (task, room): (u8, u16), bytes: &[u8], program: &Program) {
         let Ok(text) = std::str::from_utf8(bytes) else { return };
         let steps = records(program);
         link.sources.trust();
         if let Err(error) = link.sources.keep(task, (&self.name(), text), &steps, room) {
-            screen.detail(1, &format!("the text of the program was not kept: {error}"));
+            screen.detail(1, &format!("the text of the program was not saved: {error}"));
         }
     }
 
@@ -240,11 +240,11 @@ impl Put {
         let first = self.at.unwrap_or(1);
         let last = last_of(first, program);
         tasks::choose(link, self.task).await?;
-        link.plan(&steps::rooms_request(), "whether there is room");
+        link.plan(&steps::rooms_request(), "number of steps of the task");
         if let Some(at) = self.at.filter(|_| names_tags(program)) {
             let around = (1..at).chain(last.saturating_add(1)..=5000).next();
             if let Some(step) = around {
-                link.plan(&steps::read_request(step), "and so on, the steps around: their tags");
+                link.plan(&steps::read_request(step), "and so on: the tags of the other steps");
             }
         }
         let wanted = (first..).zip(&program.steps).filter(|(step, _)| *step >= from);
@@ -263,14 +263,14 @@ impl Put {
         if clears {
             let cell = steps::cell(last + 1, &steps::nop())?;
             link.plan_overwriting(&cell.read, &cell.write.text()).await?;
-            link.then("what is behind the last step of the file and no NOP becomes one, to the end of the task");
+            link.then("steps after the last step of the file become NOP, to the end of the task");
         }
         link.put_back().await?;
         Err(unknown())
     }
 }
 
-/// What is replaced, for a person to confirm.
+/// Change to confirm.
 fn replacing(edits: &[Edit], task: u8) -> Change {
     let lost = edits.iter().filter(|edit| edit.found != steps::nop());
     let lost: Vec<Replaced> = lost
@@ -279,7 +279,7 @@ fn replacing(edits: &[Edit], task: u8) -> Change {
     overwriting(["a step", "steps"], &lost, &format!(" of task {task}"))
 }
 
-/// Whether a step defines a tag or names one.
+/// Whether a step defines or uses a tag.
 fn names_tags(program: &Program) -> bool {
     let is_tag = |name: &str| matches!(name, "tag" | "then" | "else");
     program.steps.iter().any(|step| step.record.pairs().any(|(field, _)| is_tag(field.name)))
@@ -297,7 +297,7 @@ fn part(at: u16, tags: Option<BTreeSet<i32>>) -> Part {
     Part { first: at.into(), tags }
 }
 
-/// The tags of the steps before and behind a part.
+/// Tags of the steps before and after a part.
 async fn tags_around(
     link: &mut Link,
     screen: &Screen,
@@ -310,20 +310,20 @@ async fn tags_around(
     Ok(program::tags(&around, 1).into_keys().collect())
 }
 
-/// The failure that ended the writing at a step, with what is as in the file and how to go on.
+/// Failure of the write at a step, with the steps that are written and the hint to continue.
 fn account(failure: Failure, name: &str, first: u16, next: u16, left: usize) -> Failure {
     let rest = if left == 1 { "1 step is".to_owned() } else { format!("{left} steps are") };
     let state = match next - first {
-        0 => format!("no step is known to be as in {name}, {rest} still to be written"),
-        1 => format!("step {first} is as in {name}; {rest} still to be written"),
-        _ => format!("steps {first} to {} are as in {name}; {rest} still to be written", next - 1),
+        0 => format!("no step of {name} is known to be written, {rest} still to be written"),
+        1 => format!("step {first} equals {name}; {rest} still to be written"),
+        _ => format!("steps {first} to {} equal {name}; {rest} still to be written", next - 1),
     };
-    let again = format!("--resume={next} goes on there; without it, all is compared again and what differs is written");
+    let again = format!("use --resume={next} to continue there; without it, all steps are compared again");
     let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
     Failure { message: format!("{}; {state}", failure.message.trim_end_matches('.')), ..failure }.hint(hint)
 }
 
-/// A program that is on the controller now.
+/// Result of a put.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stored {
     /// The file with the program.
@@ -332,13 +332,13 @@ pub struct Stored {
     shown: String,
     task: u8,
     first_step: u16,
-    /// The last step of the file.
+    /// Last step of the file.
     last_step: u16,
-    /// Steps behind it that became NOP.
+    /// Later steps that became NOP.
     cleared_steps: usize,
-    /// Steps behind those that were not read: armctl put the program that was there, and left NOP behind it.
+    /// Later steps that were not read, because armctl wrote the previous program with NOPs after it.
     unread_steps: usize,
-    /// Labels with the tags they stand for.
+    /// Labels with their tags.
     labels: Vec<Labelled>,
     #[serde(flatten)]
     cells: Cells,
@@ -355,7 +355,7 @@ impl Report for Stored {
             ("result", cells.in_words().into()),
         ];
         if *unread_steps > 0 {
-            fields.push(("not read", format!("{unread_steps} steps behind, NOP since the last put").into()));
+            fields.push(("not read", format!("{unread_steps} later steps, NOP since the last put").into()));
         }
         fields.extend(labels.iter().map(|label| ("label", label.in_a_line().into())));
         View { sections: vec![Section::Fields(fields)] }

@@ -20,15 +20,15 @@ use crate::controller::toyo::table::{self, Op};
 use crate::failure::{Failure, Kind};
 use crate::output::view::View;
 
-/// Finds the step of a tag. The current step of the program goes there.
+/// Find the step of a tag. The search changes the current step of the program.
 #[derive(Debug, Args)]
-#[command(after_help = "The controller only says whether the tag is there. Its step is read as the current one after \
-                        the search, and told if it is that tag. `program get` tells all tags, and moves nothing.")]
+#[command(after_help = "The controller reports only whether the tag exists. armctl then reads the current step, and \
+                        reports its number if it is the tag. `program get` lists all tags and changes nothing.")]
 pub struct Search {
     /// Number of the tag
     #[arg(value_name = "TAG", value_parser = clap::value_parser!(u16).range(1..=999))]
     number: u16,
-    /// Task, 1 to 4, instead of the current one
+    /// Task, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }
@@ -45,7 +45,7 @@ impl Command for Search {
             tasks::choose(link, self.task).await?;
             link.plan(&status_page(0), "whether a program runs");
             link.ask(&self.order()).await?;
-            link.plan(&steps::read_request(0), "at which step it is");
+            link.plan(&steps::read_request(0), "the current step");
             link.put_back().await?;
             return Err(unknown());
         }
@@ -67,14 +67,12 @@ impl Search {
                 Kind::Rejected,
                 "a program runs or is paused; a search would move its current step",
             )
-            .hint("`toyo program get` tells all tags"));
+            .hint("use `toyo program get`, which lists all tags"));
         }
         if link.try_ask(&self.order()).await?.is_err() {
             let (tag, task) = (self.number, task);
-            return Err(Failure::new(Kind::Refused, format!("there is no tag {tag:03} in task {task} (@NG)"))
-                .hint(
-                    "`toyo program get` tells all tags; `toyo status` tells if something else keeps it from searching",
-                )
+            return Err(Failure::new(Kind::Refused, format!("task {task} has no tag {tag:03} (@NG)"))
+                .hint("`toyo program get` lists all tags; `toyo status` shows other reasons for a refusal")
                 .code("NG"));
         }
         let answer = steps::numbered(link, 0).await?.map_err(|Refusal(request)| refusal::of_question(&request))?;
@@ -88,12 +86,12 @@ impl Search {
     }
 }
 
-/// A tag that is there.
+/// Result of a search.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct TagReport {
     task: u8,
     tag: u16,
-    /// Its step; null if the controller did not go there (ambiguity C21).
+    /// Step of the tag; null if the controller did not go there (ambiguity C21).
     step: Option<i32>,
 }
 
@@ -102,7 +100,7 @@ impl Report for TagReport {
         let Self { task, tag, step } = self;
         View::text(match step {
             Some(step) => format!("tag {tag:03} is step {step} of task {task}"),
-            None => format!("tag {tag:03} is in task {task}; the controller does not tell at which step"),
+            None => format!("task {task} has tag {tag:03}; the controller did not report its step"),
         })
     }
 }

@@ -16,7 +16,7 @@ use crate::controller::toyo::table;
 use crate::failure::Failure;
 use crate::output::view::{Cell, View};
 
-/// Asks for the step at which the program of the current task stands.
+/// Show the current step of the program of the current task.
 #[derive(Debug, Args)]
 pub struct Show {}
 
@@ -29,8 +29,8 @@ impl Command for Show {
         let link = context.link;
         let (which, request) = (Request::bare(table::Command::Mtsk), steps::read_request(0));
         if link.is_dry() {
-            link.plan(&which, "which task is the current one");
-            link.plan(&request, "its current step");
+            link.plan(&which, "the current task");
+            link.plan(&request, "the current step");
             return Err(unknown());
         }
         let which = link.ask(&which).await?;
@@ -42,17 +42,17 @@ impl Command for Show {
     }
 }
 
-/// Where a program stands.
+/// Current step of a program.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Current(Program<Instruction>);
 
-/// The step in words.
+/// Additional keys of the step.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 struct Instruction {
-    /// The task whose program it is.
+    /// Task of the program.
     task: i32,
-    /// The instruction of the step.
+    /// Instruction of the step.
     instruction: Option<String>,
 }
 

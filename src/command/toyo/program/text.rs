@@ -1,4 +1,4 @@
-//! Program files: what is wrong with them in words.
+//! Findings in program files as text.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -12,13 +12,13 @@ use crate::output::view::{Cell, Tone};
 use crate::settings::inventory;
 use crate::settings::target::Family;
 
-/// A name on a command line that takes no robot: `pick=PT1`.
+/// Parses a name on a command line without a robot: `pick=PT1`.
 pub fn name(text: &str) -> Result<Name, String> {
-    let (name, address) = text.split_once('=').ok_or("write a name and what it stands for, such as pick=PT1")?;
+    let (name, address) = text.split_once('=').ok_or("type a name with its address, such as pick=PT1")?;
     inventory::named(Family::Toyo, name, address).map_err(|failure| failure.message)
 }
 
-/// The program in a text that was checked; warnings go to stderr, errors are a failure.
+/// Program of a checked text. Warnings go to stderr, errors are a failure.
 pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {
     let Some(program) = checked.program else {
         let errors: Vec<Finding> = checked.errors().cloned().collect();
@@ -37,20 +37,20 @@ fn in_a_line(name: &str, finding: &Finding) -> String {
     format!("{name}:{line}:{column}: {}: {message}{hint}", severity.name())
 }
 
-/// Something to say about a place of a file.
+/// A finding at a location in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Remark {
-    /// `error`, `warning` or `note`; only errors keep a file from being a program.
+    /// `error`, `warning` or `note`. A file with an error is not a program.
     pub severity: &'static str,
     /// From 1.
     pub line: usize,
     /// In characters, from 1.
     pub column: usize,
-    /// What is wrong, and what is expected.
+    /// Error, with the expected input.
     pub message: String,
-    /// What to do, or what may have been meant.
+    /// Remedy or suggestion.
     pub hint: Option<String>,
-    /// The line itself.
+    /// Text of the line.
     pub source: String,
 }
 
@@ -69,7 +69,7 @@ impl Remark {
         }
     }
 
-    /// As compilers show it: the message, the place, the line with a mark under it.
+    /// Lines in the form of a compiler: message, location, source line with a mark.
     pub fn lines(&self, name: &str) -> Vec<Cell> {
         let Self { severity, line, column, message, hint, source } = self;
         let tone = match *severity {
@@ -79,7 +79,7 @@ impl Remark {
         };
         let number = line.to_string();
         let margin = " ".repeat(number.len());
-        // A blank for each tab, so that the mark stands where it should.
+        // One blank per tab keeps the mark at its column.
         let source = source.replace('\t', " ");
         let mut lines = vec![
             Cell::from(format!("{severity}: {message}")).tone(tone),

@@ -1,4 +1,4 @@
-//! `toyo sim`: programs at the desk.
+//! `toyo sim`: offline run of programs.
 
 mod run;
 #[cfg(test)]
@@ -11,7 +11,7 @@ pub use self::trace::Stop;
 use crate::command::{Offline, commands};
 
 commands! {
-    /// What can be done with the simulator of a controller; `armctl sim toyo` serves it.
+    /// Commands of the offline simulator; `armctl sim toyo` is the server.
     pub enum Sim {
         /// Run a program file offline and print its timeline
         Run(Offline<run::Run>),

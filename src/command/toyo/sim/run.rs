@@ -20,48 +20,44 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::duration;
 
-/// Runs a program in the simulator, in virtual time, and prints steps, outputs and positions as they come.
+/// Run a program in the simulator in virtual time, and print steps, outputs and positions.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "The controller is a fresh one that knows its origin and stands at 0, with servo power on; --state, \
-                  --params and --points say what else is in it. Task 1 has the program and is started.\n\nThe run ends \
-                  at END or a STOP of task 1 (exit code 0), with an error of the controller, when every task waits for \
-                  something that never comes, or when --for is over (8). A faulty file is a wrong argument (2).\n\n  \
-                  armctl toyo sim run pick.txt --points points.csv --input 'at 2s 0/01/3 on'"
-)]
+#[command(after_help = "The controller is new, with known origin, position 0 and servo power on; --state, \
+                  --params and --points change its content. Task 1 runs the program.\n\nThe run ends \
+                  at END or a STOP of task 1 (exit code 0), with an error, when every task waits \
+                  without end, or after --for (8). A faulty file is a usage error (2).\n\n  \
+                  armctl toyo sim run pick.txt --points points.csv --input 'at 2s 0/01/3 on'")]
 pub struct Run {
     /// Program of task 1; - is stdin
     file: PathBuf,
-    /// Program of another task, such as 2=gate.txt; a TSTR starts it (repeatable)
+    /// Program of another task, such as 2=gate.txt, which a TSTR starts (repeatable)
     #[arg(long, value_name = "TASK=FILE", value_parser = other_task)]
     task: Vec<(usize, PathBuf)>,
-    /// Points (CSV), as `point dump` writes them; of another task than 1 with its number before: 2=gate.csv
-    /// (repeatable)
+    /// Points (CSV) from `point dump`, for another task than 1 with its number: 2=gate.csv (repeatable)
     #[arg(long, value_name = "[TASK=]FILE", value_parser = points_of)]
     points: Vec<(usize, PathBuf)>,
-    /// Parameters and tables (TOML), as `param dump` writes them
+    /// Parameters and tables (TOML) from `param dump`
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
     /// Start state of the simulator (TOML), as for `armctl sim toyo`
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Something that somebody does: "at 2s 0/01/3 on" sets a bit of an input port, "at 2s 0/01 00000100" all eight
-    /// (repeatable)
+    /// Input event: "at 2s 0/01/3 on" sets one bit of an input port, "at 2s 0/01 00000100" all eight (repeatable)
     #[arg(long, value_name = "EVENT", value_parser = input)]
     input: Vec<Input>,
-    /// A name that the programs have for a point, a counter or a timer, as robots.toml has it: pick=PT1 (repeatable)
+    /// Name of a point, a counter or a timer, as in robots.toml: pick=PT1 (repeatable)
     #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
     name: Vec<Name>,
-    /// Step to start at
+    /// First step
     #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
     from: u16,
-    /// End after so much time of the program, instead of 10 minutes
+    /// Time limit of the program [default: 10 minutes]
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse)]
     within: Option<Duration>,
-    /// Print the position every so often as well
+    /// Print the position at this interval as well
     #[arg(long = "trace-every", value_name = "TIME", value_parser = every)]
     every: Option<Duration>,
-    /// Most rows that are kept, the last ones
+    /// Limit of rows; the last ones are printed
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     rows: usize,
 }
@@ -70,31 +66,31 @@ pub struct Run {
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Input {
     at: Duration,
-    /// As the console of the simulator takes it: `0/01/3 on`.
+    /// Text for the console of the simulator: `0/01/3 on`.
     what: String,
 }
 
-/// Longest run if nobody says otherwise.
+/// Default time limit.
 const WITHIN: Duration = Duration::from_secs(600);
-/// How long a program is run that is only checked.
+/// Time limit of a run for a check.
 const REHEARSAL: Duration = Duration::from_secs(30);
-/// Less than this between two positions is too much to print.
+/// Minimum interval of printed positions.
 const FINEST: Duration = Duration::from_millis(1);
 
 fn every(text: &str) -> Result<Duration, String> {
     let every = duration::parse(text)?;
-    if every < FINEST { Err("it is at least 1ms".to_owned()) } else { Ok(every) }
+    if every < FINEST { Err("the minimum is 1ms".to_owned()) } else { Ok(every) }
 }
 
 fn other_task(text: &str) -> Result<(usize, PathBuf), String> {
     let parts = text.split_once('=').and_then(|(task, file)| Some((task.parse().ok()?, file)));
     match parts {
         Some((task, file)) if (2..=4).contains(&task) && !file.is_empty() => Ok((task, file.into())),
-        _ => Err("write a task from 2 to 4 and a file, such as 2=gate.txt".to_owned()),
+        _ => Err("type a task from 2 to 4 and a file, such as 2=gate.txt".to_owned()),
     }
 }
 
-#[expect(clippy::unnecessary_wraps, reason = "the parser of the command line wants it")]
+#[expect(clippy::unnecessary_wraps, reason = "internal error: the command line has no file")]
 fn points_of(text: &str) -> Result<(usize, PathBuf), String> {
     let task = text.split_once('=').and_then(|(task, file)| Some((task.parse().ok()?, file)));
     Ok(match task {
@@ -110,9 +106,9 @@ fn input(text: &str) -> Result<Input, String> {
         rest => (Duration::ZERO, rest),
     };
     let input = Input { at, what: rest.join(" ") };
-    // A controller with all ports tries it.
+    // A controller with all ports checks the text.
     let tried = Simulator::new(Start::default()).console(Duration::ZERO, &input.line());
-    tried.map(|_| input).map_err(|why| format!("{why}; write it like \"at 2s 0/01/3 on\""))
+    tried.map(|_| input).map_err(|why| format!("{why}; type an event such as \"at 2s 0/01/3 on\""))
 }
 
 impl Input {
@@ -130,8 +126,8 @@ impl OfflineCommand for Run {
         let mut sources = vec![source(screen, &names, 1, &self.file)?];
         for (task, file) in &self.task {
             if sources.iter().any(|source| source.task == *task) {
-                return Err(Failure::usage(format!("--task {task}= is there twice"))
-                    .hint("give every task one file; task 1 is the one without --task"));
+                return Err(Failure::usage(format!("--task {task}= appears twice"))
+                    .hint("use one file for each task; task 1 has no --task"));
             }
             sources.push(source(screen, &names, *task, file)?);
         }
@@ -141,7 +137,7 @@ impl OfflineCommand for Run {
     }
 }
 
-/// Where a controller that has these points stops a program with an error, if it does so within some seconds.
+/// Location at which a controller with these points stops the program with an error within some seconds.
 pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<Option<Stop>, Failure> {
     let run = Run {
         file: PathBuf::new(),
@@ -168,12 +164,12 @@ impl Run {
         simulator.record_trace(true);
         simulator.console(Duration::ZERO, &format!("start {}", self.from)).map_err(|why| {
             Failure::usage(format!("the program cannot be started: {why}"))
-                .hint("--from names the step; --state sets what the controller needs")
+                .hint("check the step of --from, and the state of --state")
         })?;
         Ok(self.watch(&mut simulator, Recorder::new(sources, self.rows)))
     }
 
-    /// The controller, with the programs in it.
+    /// The controller with the programs.
     fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
         let state = match &self.state {
             Some(path) => {
@@ -194,7 +190,7 @@ impl Run {
         if let Some(path) = &self.params {
             written.extend(writes(path, bulk::parameters::read(&files::read(path)?))?);
         }
-        // As what was there before power came on, so that parameter 2 is in force.
+        // These writes precede the power-on, so that parameter 2 is active.
         let mut document: toml::Table = state.parse().map_err(|error| {
             Failure::usage(format!("{error}")).hint("`armctl help simulator` shows the form of the file")
         })?;
@@ -217,7 +213,7 @@ impl Run {
         Start::parse(&document.to_string()).map_err(Failure::usage)
     }
 
-    /// Lets the program run, and writes down what happens.
+    /// Runs the program and records the events.
     fn watch(&self, simulator: &mut Simulator, mut recorder: Recorder) -> Trace {
         let mut inputs: Vec<&Input> = self.input.iter().collect();
         inputs.sort_by_key(|input| input.at);
@@ -260,7 +256,7 @@ impl Run {
             while let Some(input) = inputs.next_if(|input| input.at <= now) {
                 let line = input.line();
                 recorder.input(now, simulator.state().position, &line);
-                // The port was tried before.
+                // The port was checked before.
                 if let Err(why) = simulator.console(now, &line) {
                     recorder.input(now, simulator.state().position, &why);
                 }
@@ -269,7 +265,7 @@ impl Run {
     }
 }
 
-/// The commands that write the settings of a file, without `@`.
+/// Commands that write the settings of a file, without `@`.
 fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<String>, Failure> {
     let name = files::shown(path);
     let settings = read.map_err(|errors| files::faulty(&name, &errors))?;
@@ -277,18 +273,18 @@ fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<St
     let mut commands = Vec::with_capacity(settings.len());
     for (setting, line) in settings {
         let request = setting.write().map_err(|error| {
-            Failure::usage(format!("{name}:{line}: {error}")).hint("`toyo param dump` writes such a file")
+            Failure::usage(format!("{name}:{line}: {error}")).hint("`toyo param dump` writes a valid file")
         })?;
         let command = request.text().trim_start_matches('@').to_owned();
         start = start.with_written(&command).map_err(|why| {
-            Failure::usage(format!("{name}:{line}: {why}")).hint("`toyo param dump` writes such a file")
+            Failure::usage(format!("{name}:{line}: {why}")).hint("`toyo param dump` writes a valid file")
         })?;
         commands.push(command);
     }
     Ok(commands)
 }
 
-/// Puts a point into a start state.
+/// Adds a point to a start state.
 fn place(state: &mut toml::Table, task: usize, point: &Setting) {
     fn table(within: &mut toml::Table, key: String) -> Option<&mut toml::Table> {
         within.entry(key).or_insert_with(|| toml::Table::new().into()).as_table_mut()

@@ -4,11 +4,11 @@ use tempfile::TempDir;
 use crate::command::toyo::testing::{Bench, objection};
 use crate::failure::{Failure, Kind};
 
-/// The program of the manual's sample session (TO 3-1), and its point.
+/// Program of the manual's sample session (TO 3-1), with its point.
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
 const POINTS: &str = "name,x_mm,y_mm,z_mm,r_mm\n1,100,20,0,0\n";
 
-/// A folder with files, in which programs are run.
+/// A folder with program files.
 struct Desk {
     folder: TempDir,
 }
@@ -22,7 +22,7 @@ impl Desk {
         Self { folder }
     }
 
-    /// Runs `toyo sim run`; words that begin with ./ are files of the folder.
+    /// Runs `toyo sim run`. Words that begin with ./ are files of the folder.
     fn run(&self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let folder = format!("{}/", self.folder.path().display());
         let words: Vec<String> = words.iter().map(|word| word.replace("./", &folder)).collect();
@@ -47,7 +47,7 @@ impl Desk {
     }
 }
 
-/// What happened, in words.
+/// Events as text.
 fn words(data: &Value) -> Vec<&str> {
     data["trace"].as_array().unwrap().iter().map(|row| row["what"].as_str().unwrap()).collect()
 }

@@ -1,4 +1,4 @@
-//! What happened in the simulator, as a report.
+//! Report of the events in the simulator.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
@@ -24,57 +24,57 @@ use crate::output::view::{Cell, Table, Tone, View};
 pub struct Source {
     /// 1 to 4.
     pub task: usize,
-    /// What the file is called.
+    /// Name of the file.
     pub file: String,
-    /// What is in it.
+    /// Program.
     pub program: Program,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// At the END of every task that was started.
+    /// END of every started task.
     Ended,
-    /// At a STOP.
+    /// A STOP.
     Stopped,
-    /// With an error of the controller.
+    /// An error of the controller.
     Error(u8),
-    /// Every task waits for something that never comes.
+    /// Every task waits without end.
     Waits,
-    /// When the time was over.
+    /// The time limit.
     TimeUp,
 }
 
-/// Writes down what happens.
+/// Recorder of events.
 #[derive(Debug)]
 pub struct Recorder {
     sources: Vec<Source>,
     rows: VecDeque<Row>,
     most: usize,
     left_out: usize,
-    /// The step of each task that runs.
+    /// Current step of each running task.
     at: BTreeMap<usize, usize>,
     ports: BTreeMap<(usize, usize), u8>,
 }
 
-/// What happened, and how it ended.
+/// Events and end of a run.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Trace {
     /// `ended`, `stopped`, `error`, `waits` or `time_up`.
     end: &'static str,
-    /// The error that it ended with; null without one.
+    /// Alarm at the end; null if there is none.
     alarm: Option<Alarm>,
-    /// Time of the program until then.
+    /// Time of the program at the end.
     elapsed_s: f64,
-    /// Where the axes were then.
+    /// Position at the end.
     position: Coordinates,
-    /// Output ports of which a bit was on then.
+    /// Output ports with a bit that is on at the end.
     outputs: Vec<Port>,
-    /// The steps at which tasks were then; of one that has ended, none.
+    /// Current steps of the tasks that have not ended.
     steps: Vec<At>,
-    /// What happened, in its order.
+    /// Events in order.
     trace: VecDeque<Row>,
-    /// Rows before these that were left out.
+    /// Number of omitted earlier rows.
     rows_left_out: usize,
     #[serde(skip)]
     failure: Option<Failure>,
@@ -83,24 +83,24 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Where task 1 was when the controller stopped with an error, or everything waited.
+    /// Location of task 1 when the controller stopped with an error or every task waited.
     pub fn stop(&self) -> Option<&Stop> {
         self.stop.as_ref()
     }
 }
 
-/// Where a program stopped with an error, or waited for something that never came.
+/// Location of an error or of an endless wait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stop {
-    /// The error; `None` if the program waited.
+    /// Error code; `None` for a wait.
     pub code: Option<u8>,
-    /// Time of the program until then.
+    /// Time of the program.
     pub after_s: f64,
     /// Line of the file, from 1.
     pub line: usize,
 }
 
-/// A port of outputs.
+/// An output port.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct Port {
     /// 0 to 4.
@@ -110,7 +110,7 @@ struct Port {
     bits: String,
 }
 
-/// A step of a task, and where it stands in its file.
+/// A step of a task, with its location in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct At {
     task: usize,
@@ -118,35 +118,35 @@ struct At {
     file: String,
     /// Line of the file, from 1.
     line: usize,
-    /// The label that is this step, or that it names.
+    /// Label of this step, or label that it uses.
     label: Option<String>,
     instruction: String,
 }
 
-/// Something that happened.
+/// An event.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 struct Row {
     time_s: f64,
     /// `step`, `output`, `input`, `position`, `origin`, `stopped`, `error` or `ended`.
     event: &'static str,
-    /// In words.
+    /// Text.
     what: String,
-    /// The step that begins or ends.
+    /// Step that begins or ends.
     at: Option<At>,
-    /// The port of outputs that changed.
+    /// Output port that changed.
     port: Option<Port>,
     #[serde(flatten)]
     place: Coordinates,
 }
 
 impl Recorder {
-    /// With the programs, and the number of rows that are kept.
+    /// A recorder for these programs, with a limit of rows.
     pub fn new(sources: Vec<Source>, most: usize) -> Self {
         let (rows, at, ports) = (VecDeque::new(), BTreeMap::new(), BTreeMap::new());
         Self { sources, rows, most, left_out: 0, at, ports }
     }
 
-    /// What the simulator tells.
+    /// Records an event of the simulator.
     pub fn event(&mut self, event: &Event) {
         let mut row = Row::new(event.at, event.position, "step", String::new());
         match &event.what {
@@ -174,17 +174,17 @@ impl Recorder {
         self.add(row);
     }
 
-    /// What somebody does.
+    /// Records an input event.
     pub fn input(&mut self, at: Duration, position: [f64; 4], what: &str) {
         self.add(Row::new(at, position, "input", what.to_owned()));
     }
 
-    /// Where the axes are.
+    /// Records a position.
     pub fn position(&mut self, at: Duration, position: [f64; 4]) {
         self.add(Row::new(at, position, "position", "position".to_owned()));
     }
 
-    /// How it ended.
+    /// Completes the trace.
     pub fn ended(self, end: End, at: Duration, state: &State) -> Trace {
         let steps: Vec<At> = self.at.iter().filter_map(|(task, step)| self.find(*task, *step)).collect();
         let ports = self.ports.iter().filter(|(_, bits)| **bits != 0);
@@ -241,7 +241,7 @@ impl End {
         }
     }
 
-    /// Why that is no success.
+    /// Failure of a run.
     fn failure(self, at: Duration, steps: &[At]) -> Option<Failure> {
         let places: Vec<String> = steps.iter().map(At::in_a_line).collect();
         let places = places.join("; ");
@@ -257,12 +257,11 @@ impl End {
             }
             Self::Waits => {
                 let what = steps.iter().find_map(At::wanted).unwrap_or("something");
-                let hint =
-                    steps.iter().find_map(At::help).unwrap_or_else(|| "nothing else runs that could do it".into());
-                failed(format!("after {after:.3} s, everything waits for {what} that never comes: {places}")).hint(hint)
+                let hint = steps.iter().find_map(At::help).unwrap_or_else(|| "no other task runs".into());
+                failed(format!("after {after:.3} s, all tasks wait for {what} without end: {places}")).hint(hint)
             }
             Self::TimeUp => {
-                failed(format!("after {after:.3} s, it still runs: {places}")).hint("--for lets it run longer")
+                failed(format!("after {after:.3} s, it still runs: {places}")).hint("use --for to run longer")
             }
         })
     }
@@ -288,7 +287,7 @@ impl At {
         Instruction::named(self.instruction.split(' ').next()?).map(|row| row.op)
     }
 
-    /// What it waits for.
+    /// Condition that a step waits for.
     fn wanted(&self) -> Option<&'static str> {
         Some(match self.op()? {
             Op::In => "an input",
@@ -299,13 +298,13 @@ impl At {
         })
     }
 
-    /// What gives it that.
+    /// Hint to satisfy the condition.
     fn help(&self) -> Option<String> {
         let record = instruction(&self.instruction).ok().filter(|_| self.op() == Some(Op::In))?;
         let (station, port, mask) = (record.number("station")?, record.number("port")?, record.mask("data")?);
         let bit = (0..8).find(|bit| mask.care >> bit & 1 == 1)?;
         let state = if mask.bits >> bit & 1 == 1 { "on" } else { "off" };
-        Some(format!("--input \"at 2s {station}/{port:02}/{} {state}\" gives it", bit + 1))
+        Some(format!("set it with --input \"at 2s {station}/{port:02}/{} {state}\"", bit + 1))
     }
 }
 
@@ -327,13 +326,13 @@ impl Row {
 }
 
 impl Trace {
-    /// The end in a line.
+    /// The end in one line.
     pub fn summary(&self) -> String {
         let outputs: Vec<String> = self.outputs.iter().map(Port::in_words).collect();
         let outputs = if outputs.is_empty() { "no output on".to_owned() } else { outputs.join(", ") };
         let more = match self.rows_left_out {
             0 => String::new(),
-            rows => format!("; {rows} rows before these were left out, --rows keeps more"),
+            rows => format!("; {rows} earlier rows were omitted, --rows prints more"),
         };
         let end = match self.end {
             "ended" | "stopped" => format!("{} after {:.3} s: ", self.end, self.elapsed_s),
@@ -343,13 +342,13 @@ impl Trace {
     }
 }
 
-/// A column, and what stands there.
+/// A column with its axis.
 type Axis = (&'static str, usize);
 
 impl Report for Trace {
     const ROWS: RowsOf = RowsOf::List("trace");
 
-    /// Axes that stay at 0 have no column, nor has the task where there is one only.
+    /// Axes that stay at 0 have no column. A single task has no column.
     fn view(&self) -> View {
         let axes: [Axis; 4] = [("x (mm)", 0), ("y (mm)", 1), ("z (mm)", 2), ("r (mm)", 3)];
         let has_tasks = self.trace.iter().any(|row| row.at.as_ref().is_some_and(|at| at.task > 1));

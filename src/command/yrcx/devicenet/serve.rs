@@ -6,21 +6,21 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::simulated::{self, Controller, fault, faults, size};
+use super::simulated::{self, Controller, FAULTS, size};
 #[cfg(unix)]
 use crate::command::serve::terminal_link::TerminalLink;
 use crate::command::serve::{address, cannot_listen};
-use crate::command::yrcx::fieldbus::{Serve, Served};
+use crate::command::yrcx::fieldbus::{Operator, Serve, Served};
+use crate::command::yrcx::simulated::{faults, faults_of_option};
 use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::devicenet::SLCAN;
 use crate::transport::devicenet::can::Bitrate;
-use crate::transport::devicenet::device::{DeviceFault, Setup};
+use crate::transport::devicenet::device::Setup;
 use crate::transport::devicenet::hub::{Hub, Listen};
 use crate::transport::devicenet::wire::Mac;
-use crate::transport::fault::FaultSpec;
 
-/// SLCAN adapters and faults of the simulator.
+/// SLCAN adapters and node of the simulator.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
@@ -33,13 +33,6 @@ pub struct ServeArgs {
     /// DeviceNet: bit rate of the bus
     #[arg(long, value_name = "RATE", default_value = "500k", value_parser = bitrate)]
     bitrate: Bitrate,
-    /// DeviceNet: faults of frames, such as drop=1%,delay=0..5ms,seed=7
-    #[arg(long, value_name = "FAULTS", value_parser = faults)]
-    frame_fault: Option<FaultSpec>,
-    /// DeviceNet: fault of the controller's node: no-acknowledge, lost-fragment, wrong-count, other-size,
-    /// foreign-owner, duplicate-mac, silence, bus-off
-    #[arg(long, value_name = "WHAT", value_parser = fault)]
-    node_fault: Option<DeviceFault>,
 }
 
 fn listen(text: &str) -> Result<SocketAddr, String> {
@@ -56,14 +49,20 @@ impl Serve for ServeArgs {
         cfg!(unix)
     }
 
-    fn serve(&self, simulator: Option<&str>, start: Start, link: Option<&Path>) -> Result<Served, Failure> {
+    fn serve(
+        &self,
+        simulator: Option<&str>,
+        start: Start,
+        link: Option<&Path>,
+        faults: Option<&str>,
+    ) -> Result<Served, Failure> {
         let setup = Setup::stand_in(self.mac, self.bitrate, size(simulator));
         #[cfg(unix)]
         let terminal = link.map(|_| Listen::Pty);
         #[cfg(not(unix))]
         let terminal = None;
         let listen: Vec<Listen> = iter::once(Listen::Tcp(self.slcan_bind)).chain(terminal).collect();
-        let hub = simulated::serve(start, setup, &listen, self.frame_fault.clone(), self.node_fault);
+        let hub = simulated::serve(start, setup, &listen, faults_of_option(faults, &FAULTS)?);
         let hub = hub.map_err(|error| cannot_listen(&format!("TCP {}", self.slcan_bind), &error))?;
         let place = hub.places().first().map(String::as_str).unwrap_or_default();
         let address: Option<SocketAddr> = place.parse().ok();
@@ -72,41 +71,42 @@ impl Serve for ServeArgs {
             target.push_str(&format!("&bitrate={}", self.bitrate.name()));
         }
         let link = terminal_link(link, &hub)?;
-        Ok(Served {
-            target,
-            address,
-            console: Box::new(move |line| {
-                // The symbolic link exists as long as the console.
-                let _ = &link;
-                console(&hub, line)
-            }),
-        })
+        Ok(Served { target, address, operator: Box::new(Adapters { hub, _link: link }) })
     }
 }
 
 /// Creates the symbolic link to the pseudo-terminal, if requested.
 #[cfg(unix)]
-fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Option<TerminalLink>, Failure> {
+fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Link, Failure> {
     let (Some(path), Some(terminal)) = (path, hub.places().get(1)) else { return Ok(None) };
     TerminalLink::make(path, terminal).map(Some)
 }
 
 #[cfg(not(unix))]
-fn terminal_link(_path: Option<&Path>, _hub: &Hub<Controller>) -> Result<Option<()>, Failure> {
+fn terminal_link(_path: Option<&Path>, _hub: &Hub<Controller>) -> Result<Link, Failure> {
     Ok(None)
 }
 
-fn console(hub: &Hub<Controller>, line: &str) -> Result<String, String> {
-    let answer = hub.with(|device, now| match line.trim().strip_prefix("mischief ").map(str::trim) {
-        None => device.application().0.0.console(now, line),
-        Some("off") => {
-            device.misbehave(None);
-            Ok("the node works normally".to_owned())
-        }
-        Some(name) => {
-            device.misbehave(Some(fault(name)?));
-            Ok(format!("mischief: {name}"))
-        }
-    });
-    answer.unwrap_or_else(|| Err("no controller is connected".to_owned()))
+/// Symbolic link to the pseudo-terminal.
+#[cfg(unix)]
+type Link = Option<TerminalLink>;
+#[cfg(not(unix))]
+type Link = Option<()>;
+
+/// SLCAN adapters. The symbolic link is removed with them.
+struct Adapters {
+    hub: Hub<Controller>,
+    _link: Link,
+}
+
+impl Operator for Adapters {
+    fn console(&self, line: &str) -> Result<String, String> {
+        let result = self.hub.with(|device, now| device.application().0.0.console(now, line));
+        result.unwrap_or_else(|| Err("no controller is connected".to_owned()))
+    }
+
+    fn set_faults(&self, text: Option<&str>) -> Result<(), String> {
+        simulated::set_faults(&self.hub, faults(text, &FAULTS)?);
+        Ok(())
+    }
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::Context as _;
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{self, Simulated, fault_by_name, start, wrongs};
+use crate::command::yrcx::simulated::{Simulated, faults_of_url, start};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
@@ -16,7 +16,7 @@ use crate::transport::devicenet::can::Bitrate;
 use crate::transport::devicenet::device::{Application, Device, DeviceFault, Setup};
 use crate::transport::devicenet::hub::{Hub, Listen};
 use crate::transport::devicenet::wire::Mac;
-use crate::transport::fault::{FaultSpec, Faults};
+use crate::transport::fault::{self, FaultNames, FaultSpec, SimulatorFaults};
 use crate::transport::image::ImagePeer;
 
 /// Name of the four-byte size in `bus=` and `--bus`.
@@ -26,10 +26,10 @@ pub(super) const MAC: u8 = 5;
 
 /// Starts a simulator behind an SLCAN adapter on the loopback interface, with the faults of the URL.
 pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
-    let (faults, fault) = wrongs(sim, faults, fault)?;
+    let faults = faults_of_url(sim, &FAULTS)?;
     let setup = Setup::stand_in(Mac::new(MAC).unwrap_or_default(), Bitrate::K500, size(sim.bus));
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    let served = serve(start(sim.state.as_deref())?, setup, &[listen], faults, fault);
+    let served = serve(start(sim.state.as_deref())?, setup, &[listen], faults);
     Ok(served.context("the simulator on the loopback")?)
 }
 
@@ -44,28 +44,25 @@ pub fn size(simulator: Option<&str>) -> u16 {
 }
 
 /// Serves a controller as a slave.
-pub fn serve(
-    start: Start,
-    setup: Setup,
-    listen: &[Listen],
-    faults: Option<FaultSpec>,
-    fault: Option<DeviceFault>,
-) -> io::Result<Hub<Controller>> {
+pub fn serve(start: Start, setup: Setup, listen: &[Listen], faults: Faults) -> io::Result<Hub<Controller>> {
     let bitrate = setup.bitrate;
-    let mut device =
-        Device::on_line(setup, Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm))));
-    device.misbehave(fault);
-    Hub::start(bitrate, Some(device), listen, faults.map(Faults::pair))
+    let device = Device::on_line(setup, Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm))));
+    let hub = Hub::start(bitrate, Some(device), listen, None)?;
+    set_faults(&hub, faults);
+    Ok(hub)
 }
 
-/// Parses faults of frames.
-pub fn faults(text: &str) -> Result<FaultSpec, String> {
-    simulated::faults_of_frames(text, "CAN")
-}
+/// Faults of frames and of the slave.
+type Faults = SimulatorFaults<FaultSpec, DeviceFault>;
 
-/// Finds a fault of the slave by name.
-pub fn fault(text: &str) -> Result<DeviceFault, String> {
-    fault_by_name(&DeviceFault::ALL, text)
+/// Faults by name. Frames with a checksum are lost and not corrupted.
+pub const FAULTS: FaultNames<DeviceFault> =
+    FaultNames { link: &["drop", "dup", "delay", "reorder", "seed"], device: &DeviceFault::ALL };
+
+/// Sets the faults of frames and of the slave.
+pub fn set_faults(hub: &Hub<Controller>, faults: Faults) {
+    hub.set_faults(faults.link.map(fault::Faults::pair));
+    hub.with(|device, _| device.set_fault(faults.device));
 }
 
 /// A simulated controller behind its node.

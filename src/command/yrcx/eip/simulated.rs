@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::Context as _;
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{Simulated, fault_by_name, faults, start, wrongs};
+use crate::command::yrcx::simulated::{Simulated, faults_of_url, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -17,18 +17,23 @@ use crate::transport::eip::adapter::server::{Listen, Server};
 use crate::transport::eip::adapter::{AdapterFault, Application, Event, Setup};
 use crate::transport::eip::settings::Role;
 use crate::transport::eip::wire::{Identity, Revision};
-use crate::transport::fault::{FaultSpec, Faults};
+use crate::transport::fault::{self, FaultNames, FaultSpec, SimulatorFaults};
 use crate::transport::image::ImagePeer;
 
 /// Starts a simulator as an adapter on the loopback interface, with the faults of the URL.
 pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
-    let (faults, mischief) = wrongs(sim, faults, mischief)?;
+    let faults = faults_of_url(sim, &FAULTS)?;
     let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
     let server = serve(start(sim.state.as_deref())?, listen, faults);
-    let server = server.context("the simulator on the loopback")?;
-    server.with(|adapter, _| adapter.misbehave(mischief));
-    Ok(server)
+    Ok(server.context("the simulator on the loopback")?)
 }
+
+/// Faults of images and of the adapter.
+type Faults = SimulatorFaults<FaultSpec, AdapterFault>;
+
+/// Faults by name.
+pub const FAULTS: FaultNames<AdapterFault> =
+    FaultNames { link: &["drop", "dup", "delay", "reorder", "corrupt", "seed"], device: &AdapterFault::ALL };
 
 /// Input, output and configuration assembly: the numbers of an older controller of the manufacturer.
 const INPUT: u32 = 100;
@@ -36,15 +41,19 @@ const OUTPUT: u32 = 150;
 const CONFIGURATION: u32 = 1;
 
 /// Serves a controller as an adapter.
-pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Result<Server<Controller>> {
+pub fn serve(start: Start, listen: Listen, faults: Faults) -> io::Result<Server<Controller>> {
     let size = u16::try_from(Image::BYTES).map_err(io::Error::other)?;
     let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
-    Server::start(
-        setup,
-        Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm))),
-        listen,
-        faults.map(Faults::pair),
-    )
+    let controller = Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)));
+    let server = Server::start(setup, controller, listen, None)?;
+    set_faults(&server, faults);
+    Ok(server)
+}
+
+/// Sets the faults of images and of the adapter.
+pub fn set_faults(server: &Server<Controller>, faults: Faults) {
+    server.set_faults(faults.link.map(fault::Faults::pair));
+    server.with(|adapter, _| adapter.set_fault(faults.device));
 }
 
 /// State "operational" (volume 2, 2-4.2.2).
@@ -62,11 +71,6 @@ fn identity() -> Identity {
         name: "YRCX simulator of armctl".to_owned(),
         state: Some(OPERATIONAL),
     }
-}
-
-/// Finds a fault of the adapter by name.
-pub fn mischief(text: &str) -> Result<AdapterFault, String> {
-    fault_by_name(&AdapterFault::ALL, text)
 }
 
 /// A simulated controller behind its adapter.

@@ -4,16 +4,15 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::simulated::{self, Options, Server, mischief};
+use super::simulated::{self, FAULTS, Options, Server};
 use crate::command::serve::terminal_link::TerminalLink;
-use crate::command::yrcx::fieldbus::{self, Served};
+use crate::command::yrcx::fieldbus::{self, Operator, Served};
+use crate::command::yrcx::simulated::{faults, faults_of_option};
 use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
-use crate::transport::fault::LineFaultSpec;
 use crate::transport::profibus::rates::{RATES, Rate};
-use crate::transport::profibus::slave::SlaveFault;
 
-/// Options and faults of the simulated slave.
+/// Options of the simulated slave.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
@@ -26,13 +25,6 @@ pub struct ServeArgs {
     /// PROFIBUS: bit rate, which sets the character time: 9.6k, 19.2k, 45.45k, 93.75k, 187.5k, 500k, 1.5M
     #[arg(long, value_name = "RATE", default_value = "500k", value_parser = rate)]
     baud: Rate,
-    /// PROFIBUS: faults of characters, such as noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,echo,seed=7
-    #[arg(long, value_name = "FAULTS")]
-    line_fault: Option<LineFaultSpec>,
-    /// PROFIBUS: fault of the slave: mute, lose, bad-fcs, locked, other-ident, other-size, no-configuration,
-    /// no-parameters, not-ready, wrong-size, inactive, master, diagnosis, token
-    #[arg(long, value_name = "WHAT", value_parser = mischief)]
-    slave_fault: Option<SlaveFault>,
 }
 
 fn ident(text: &str) -> Result<u16, String> {
@@ -49,13 +41,18 @@ impl fieldbus::Serve for ServeArgs {
         true
     }
 
-    fn serve(&self, _simulator: Option<&str>, start: Start, link: Option<&Path>) -> Result<Served, Failure> {
+    fn serve(
+        &self,
+        _simulator: Option<&str>,
+        start: Start,
+        link: Option<&Path>,
+        faults: Option<&str>,
+    ) -> Result<Served, Failure> {
         let options = Options {
             station: self.station,
             ident: self.ident,
             rate: self.baud,
-            faults: self.line_fault.clone(),
-            mischief: self.slave_fault,
+            faults: faults_of_option(faults, &FAULTS)?,
         };
         let server = simulated::serve(start, options)?;
         // From here on, Ctrl-C must remove the symbolic link.
@@ -65,31 +62,31 @@ impl fieldbus::Serve for ServeArgs {
         Ok(Served {
             target: server.url(name.as_deref()),
             address: None,
-            console: Box::new(move |line| {
-                // The symbolic link is removed with the server.
-                let _ = &link;
-                console(&server, line)
-            }),
+            operator: Box::new(Terminal { server, _link: link }),
         })
     }
 }
 
-fn console(server: &Server, line: &str) -> Result<String, String> {
-    server.with(|slave, now| match line.trim() {
-        "restart" => {
-            slave.restart(now);
-            Ok("the slave was switched off and on".to_owned())
-        }
-        "mischief off" => {
-            slave.misbehave(None);
-            Ok("the slave works normally".to_owned())
-        }
-        line => match line.strip_prefix("mischief ").map(str::trim) {
-            None => slave.peer_mut().0.console(now, line),
-            Some(name) => {
-                slave.misbehave(Some(mischief(name)?));
-                Ok(format!("mischief: {name}"))
+/// A slave on a pseudo-terminal. The symbolic link is removed with the server.
+#[derive(Debug)]
+struct Terminal {
+    server: Server,
+    _link: Option<TerminalLink>,
+}
+
+impl Operator for Terminal {
+    fn console(&self, line: &str) -> Result<String, String> {
+        self.server.with(|slave, now| match line.trim() {
+            "restart" => {
+                slave.restart(now);
+                Ok("the slave was switched off and on".to_owned())
             }
-        },
-    })
+            line => slave.peer_mut().0.console(now, line),
+        })
+    }
+
+    fn set_faults(&self, text: Option<&str>) -> Result<(), String> {
+        self.server.set_faults(faults(text, &FAULTS)?);
+        Ok(())
+    }
 }

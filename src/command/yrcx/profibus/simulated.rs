@@ -6,15 +6,15 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use tokio::runtime::Builder;
-use tokio::sync::oneshot;
+use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{Simulated, fault_by_name, start, wrongs};
+use crate::command::yrcx::simulated::{Simulated, faults_of_url, start};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::{Failure, plain};
 use crate::settings::target::Sim;
 use crate::settings::target::profibus::SCHEME;
-use crate::transport::fault::LineFaultSpec;
+use crate::transport::fault::{FaultNames, LineFaultSpec, SimulatorFaults};
 use crate::transport::profibus::rates::{RATES, Rate};
 use crate::transport::profibus::slave::{Setup, Slave, SlaveFault};
 use crate::transport::sim::locked;
@@ -29,31 +29,30 @@ pub struct Options {
     pub ident: u16,
     /// Bit rate.
     pub rate: Rate,
-    /// Faults of characters.
-    pub faults: Option<LineFaultSpec>,
-    /// Fault of the slave.
-    pub mischief: Option<SlaveFault>,
+    /// Faults of characters and of the slave.
+    pub faults: Faults,
 }
 
 impl Default for Options {
     fn default() -> Self {
         let rate = Rate::from_name("500k").unwrap_or(RATES[0]);
         let Setup { station, ident, .. } = Setup::stand_in(rate);
-        Self { station, ident, rate, faults: None, mischief: None }
+        Self { station, ident, rate, faults: Faults::default() }
     }
 }
 
 /// Starts a simulator with the faults of the URL.
 pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
-    let faults = |text: &str| text.parse::<LineFaultSpec>().map_err(|error| error.to_string());
-    let (faults, mischief) = wrongs(sim, faults, mischief)?;
-    serve(start(sim.state.as_deref())?, Options { faults, mischief, ..Options::default() })
+    let faults = faults_of_url(sim, &FAULTS)?;
+    serve(start(sim.state.as_deref())?, Options { faults, ..Options::default() })
 }
 
-/// Finds a fault of the slave by name.
-pub fn mischief(text: &str) -> Result<SlaveFault, String> {
-    fault_by_name(&SlaveFault::ALL, text)
-}
+/// Faults of characters and of the slave.
+type Faults = SimulatorFaults<LineFaultSpec, SlaveFault>;
+
+/// Faults by name.
+pub const FAULTS: FaultNames<SlaveFault> =
+    FaultNames { link: &["noise", "parity", "drop", "dup", "delay", "echo", "seed"], device: &SlaveFault::ALL };
 
 /// A running slave. It stops when it is dropped.
 #[derive(Debug)]
@@ -62,7 +61,8 @@ pub struct Server {
     port: String,
     options: Options,
     clock: tokio::time::Instant,
-    quit: Option<oneshot::Sender<()>>,
+    /// New faults of characters. The thread ends when it is dropped.
+    faults: Option<UnboundedSender<Option<LineFaultSpec>>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -71,23 +71,23 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
     let failed = |error: io::Error| Failure::local(format!("cannot create a pseudo-terminal: {}", plain(&error)));
     let setup = Setup { station: options.station, ident: options.ident, ..Setup::stand_in(options.rate) };
     let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)));
-    slave.misbehave(options.mischief);
+    slave.set_fault(options.faults.device);
     let slave = Arc::new(Mutex::new(slave));
     let runtime = Builder::new_current_thread().enable_all().build().map_err(failed)?;
     let (mut server, port) = {
         let _guard = runtime.enter();
-        StreamServer::pseudo_terminal(Some(options.rate.pace()), options.faults.clone()).map_err(failed)?
+        StreamServer::pseudo_terminal(Some(options.rate.pace()), options.faults.link.clone()).map_err(failed)?
     };
-    let (quit, quits) = oneshot::channel();
+    let (faults, changed) = unbounded_channel();
     let mut peer = Arc::clone(&slave);
     let clock = tokio::time::Instant::now();
     let serve = move || {
-        runtime.block_on(server.run(&mut peer, quits));
+        runtime.block_on(server.run(&mut peer, changed));
         // A read of the terminal can still block.
         runtime.shutdown_background();
     };
     let thread = std::thread::Builder::new().name("profibus-slave".to_owned()).spawn(serve).map_err(failed)?;
-    Ok(Server { slave, port, options, clock, quit: Some(quit), thread: Some(thread) })
+    Ok(Server { slave, port, options, clock, faults: Some(faults), thread: Some(thread) })
 }
 
 impl Server {
@@ -105,6 +105,15 @@ impl Server {
         format!("{scheme}://{port}?station={station}&baud={baud}&slot={slot}ms")
     }
 
+    /// Sets the faults of characters and of the slave.
+    pub fn set_faults(&self, faults: Faults) {
+        if let Some(changed) = &self.faults {
+            // If the thread has ended, no line can have faults.
+            let _ = changed.send(faults.link);
+        }
+        self.with(|slave, _| slave.set_fault(faults.device));
+    }
+
     /// Calls `act` with the slave.
     pub fn with<T>(&self, act: impl FnOnce(&mut Slave<Simulated>, Duration) -> T) -> T {
         act(&mut locked(&self.slave), self.clock.elapsed())
@@ -116,7 +125,7 @@ const SLOT: Duration = Duration::from_millis(60);
 
 impl Drop for Server {
     fn drop(&mut self) {
-        drop(self.quit.take());
+        drop(self.faults.take());
         if let Some(thread) = self.thread.take() {
             // A panic of the thread was already printed.
             let _ = thread.join();

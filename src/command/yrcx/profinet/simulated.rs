@@ -3,11 +3,12 @@
 use std::time::Duration;
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{Simulated, fault_by_name, faults_of_frames, start, wrongs};
+use crate::command::yrcx::simulated::{Simulated, faults_of_url, start};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
 use crate::settings::target::profinet::SCHEME;
+use crate::transport::fault::{FaultNames, FaultSpec, SimulatorFaults};
 use crate::transport::image::ImagePeer;
 use crate::transport::profinet::device::{Application, Device, Event, Fault, Setup};
 use crate::transport::profinet::layout::Layout;
@@ -23,16 +24,20 @@ const MODULES: (u32, u32) = (0x101, 0x102);
 
 /// In-process network with a simulator, with the faults of the URL.
 pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
-    let (faults, fault) = wrongs(sim, |text| faults_of_frames(text, "Ethernet"), fault)?;
+    let faults: SimulatorFaults<FaultSpec, Fault> = faults_of_url(sim, &FAULTS)?;
     let controller = controller(start(sim.state.as_deref())?);
     let device = |mac, ip| {
         let setup = Setup { mac, ip: Some(ip), takes_ip: true, ..setup(NAME, layout()) };
         let mut device = Device::new(setup, controller);
-        device.set_fault(fault);
+        device.set_fault(faults.device);
         device
     };
-    Ok(Network::new(device, faults))
+    Ok(Network::new(device, faults.link))
 }
+
+/// Faults by name. Frames with a checksum are lost and not corrupted.
+const FAULTS: FaultNames<Fault> =
+    FaultNames { link: &["drop", "dup", "delay", "reorder", "seed"], device: &Fault::ALL };
 
 /// URL of a simulated station on an interface.
 pub fn target(interface: &str) -> String {
@@ -70,11 +75,6 @@ pub fn setup(name: &str, layout: Layout) -> Setup {
 /// Application of a device: a simulated controller.
 pub fn controller(start: Start) -> Controller {
     Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)))
-}
-
-/// Finds a fault of the device by name.
-pub fn fault(text: &str) -> Result<Fault, String> {
-    fault_by_name(&Fault::ALL, text)
 }
 
 /// A simulated controller behind its device.

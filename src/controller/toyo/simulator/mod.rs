@@ -182,6 +182,11 @@ impl Simulator {
         [self.answers.due(), self.world.next()].into_iter().flatten().min()
     }
 
+    /// Changes the share of requests that it refuses with `@NG`, 0.0 to 1.0.
+    pub fn set_busy(&mut self, share: f64) {
+        self.busy.set_share(share);
+    }
+
     /// Executes a console line: `input 0/01/3 on`, `start`, `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);

@@ -284,9 +284,9 @@ commands! {
             "RPLD {} {} PR={} PC1={} PN1={} PC2={} PN2={} PC3={} PN3={} TAG={} STP={}",
             &[
                 MODE, words("state", STATES, "what is executed"), PALLET,
-                pieces("done1", "pieces under way in direction 1"), pieces("pieces1", "pieces in direction 1"),
-                pieces("done2", "pieces under way in direction 2"), pieces("pieces2", "pieces in direction 2"),
-                pieces("done3", "pieces under way in direction 3"), pieces("pieces3", "pieces in direction 3"),
+                pieces("done1", "current piece in direction 1"), pieces("pieces1", "pieces in direction 1"),
+                pieces("done2", "current piece in direction 2"), pieces("pieces2", "pieces in direction 2"),
+                pieces("done3", "current piece in direction 3"), pieces("pieces3", "pieces in direction 3"),
                 digits("tag", 3, 0, 999, "tag of the hand program"), digits("step", 4, 0, 5000, "step being executed"),
             ],
         )]);

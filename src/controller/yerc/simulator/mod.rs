@@ -121,6 +121,11 @@ impl Simulator {
         [self.answers.due(), self.world.wake(), self.files.wake()].into_iter().flatten().min()
     }
 
+    /// Changes the share of requests that it refuses as busy (D8FA), 0.0 to 1.0.
+    pub fn set_busy(&mut self, share: f64) {
+        self.busy.set_share(share);
+    }
+
     /// Executes a console line: `alarm 4315 3 1`, `remote off`, `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);

@@ -19,7 +19,7 @@ pub enum DeviceFault {
     /// The slave answers every duplicate MAC check.
     DuplicateMac,
     /// The slave does not answer.
-    Silence,
+    Mute,
     /// The adapters on the bus are bus-off.
     BusOff,
 }
@@ -33,7 +33,7 @@ impl DeviceFault {
         ("other-size", Self::OtherSize),
         ("foreign-owner", Self::ForeignOwner),
         ("duplicate-mac", Self::DuplicateMac),
-        ("silence", Self::Silence),
+        ("mute", Self::Mute),
         ("bus-off", Self::BusOff),
     ];
 }

@@ -135,7 +135,7 @@ impl<A: Application> Device<A> {
     }
 
     /// Activates a fault, or none.
-    pub const fn misbehave(&mut self, fault: Option<DeviceFault>) {
+    pub const fn set_fault(&mut self, fault: Option<DeviceFault>) {
         self.fault = fault;
     }
 
@@ -166,7 +166,7 @@ impl<A: Application> Device<A> {
         }
         self.expire(now);
         self.outbox.extend(self.messages.poll(now));
-        if self.fault == Some(DeviceFault::Silence) {
+        if self.fault == Some(DeviceFault::Mute) {
             self.outbox.clear();
         }
         self.outbox.pop_front()

@@ -107,7 +107,7 @@ fn refused(device: Device<Mirror>) -> Error {
 fn what_hinders_a_connection_is_told() {
     let with = |fault| {
         let mut device = Device::on_line(setup(5, 48), Mirror::default());
-        device.misbehave(Some(fault));
+        device.set_fault(Some(fault));
         device
     };
     assert_eq!(refused(with(DeviceFault::ForeignOwner)), Error::Owned { mac: mac(5) });
@@ -119,7 +119,7 @@ fn what_hinders_a_connection_is_told() {
         is_bus_alive: false,
         state: BusState::Active,
     };
-    assert_eq!(refused(with(DeviceFault::Silence)), silent);
+    assert_eq!(refused(with(DeviceFault::Mute)), silent);
     // Another node is present, but not this one.
     let other = refused(Device::on_line(setup(6, 48), Mirror::default()));
     assert!(matches!(other, Error::Silent { .. }), "{other}");
@@ -186,7 +186,7 @@ fn a_lost_link_begins_again_at_rest() {
 #[test]
 fn a_slave_that_was_switched_off_is_found_again() {
     let mut world = World::linked(4, 1);
-    world.devices[0].misbehave(Some(DeviceFault::Silence));
+    world.devices[0].set_fault(Some(DeviceFault::Mute));
     world.until(SECOND, |world| world.view().state == State::Lost);
     world.run(SECOND * 20);
     let now = world.now;

@@ -179,7 +179,7 @@ async fn a_wrong_bit_rate_and_bus_off_are_told() {
     drop(network);
     let network = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
     let mut connection = network.connect(images(5)).await.unwrap();
-    hub.with(|device, _| device.misbehave(Some(DeviceFault::BusOff)));
+    hub.with(|device, _| device.set_fault(Some(DeviceFault::BusOff)));
     let view = connection.until(|view| view.state == State::Lost).await;
     assert!(matches!(view.trouble, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.trouble);
 }

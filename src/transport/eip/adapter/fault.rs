@@ -6,7 +6,7 @@ use super::super::wire::Cyclic;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AdapterFault {
     /// Sends only every other image.
-    Drop,
+    HalfRate,
     /// Sends no images.
     Stall,
     /// Sends every image with the sequence numbers of the previous one.
@@ -43,7 +43,7 @@ pub(super) const TRAILING: [u8; 20] = [0x01, 0x80, 16, 0, 0, 2, 0x08, 0xAE, 0, 0
 impl AdapterFault {
     /// All faults with their names.
     pub const ALL: [(&'static str, Self); 15] = [
-        ("drop", Self::Drop),
+        ("half-rate", Self::HalfRate),
         ("stall", Self::Stall),
         ("stale", Self::Stale),
         ("double", Self::Double),
@@ -62,15 +62,15 @@ impl AdapterFault {
 }
 
 /// Applies a fault to image number `number`.
-pub(super) fn images(mischief: Option<AdapterFault>, number: u64, bytes: Vec<u8>) -> Vec<Vec<u8>> {
-    let Some(mischief) = mischief else { return vec![bytes] };
+pub(super) fn images(fault: Option<AdapterFault>, number: u64, bytes: Vec<u8>) -> Vec<Vec<u8>> {
+    let Some(fault) = fault else { return vec![bytes] };
     let changed = |change: fn(&mut Cyclic<'_>)| {
         let Ok(mut datagram) = Cyclic::parse(&bytes) else { return Vec::new() };
         change(&mut datagram);
         vec![datagram.emit(None)]
     };
-    match mischief {
-        AdapterFault::Drop if number.is_multiple_of(2) => Vec::new(),
+    match fault {
+        AdapterFault::HalfRate if number.is_multiple_of(2) => Vec::new(),
         AdapterFault::Stall => Vec::new(),
         AdapterFault::Stale => changed(|datagram| {
             // The first image is correct, because there is no previous one.
@@ -83,7 +83,7 @@ pub(super) fn images(mischief: Option<AdapterFault>, number: u64, bytes: Vec<u8>
         AdapterFault::WrongSize => {
             changed(|datagram| datagram.body = &datagram.body[..datagram.body.len().saturating_sub(1)])
         }
-        AdapterFault::Drop
+        AdapterFault::HalfRate
         | AdapterFault::Frozen
         | AdapterFault::Unreadable
         | AdapterFault::Reset

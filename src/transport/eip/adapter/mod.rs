@@ -166,7 +166,7 @@ pub struct Adapter<A> {
     held: Vec<Held>,
     last_session: u32,
     last_id: u32,
-    mischief: Option<AdapterFault>,
+    fault: Option<AdapterFault>,
     outputs: VecDeque<Output>,
 }
 
@@ -182,7 +182,7 @@ impl<A: Application> Adapter<A> {
             held: Vec::new(),
             last_session: 0,
             last_id: fastrand::u32(..),
-            mischief: None,
+            fault: None,
             outputs: VecDeque::new(),
         }
     }
@@ -199,8 +199,8 @@ impl<A: Application> Adapter<A> {
     }
 
     /// Activates a fault, or none.
-    pub const fn misbehave(&mut self, mischief: Option<AdapterFault>) {
-        self.mischief = mischief;
+    pub const fn set_fault(&mut self, fault: Option<AdapterFault>) {
+        self.fault = fault;
     }
 
     /// Originators of the open connections.
@@ -224,7 +224,7 @@ impl<A: Application> Adapter<A> {
         state.frames.push(bytes);
         while let Some(bytes) = self.clients.get_mut(&client).and_then(|state| state.frames.pop()) {
             let Ok(frame) = Frame::parse(&bytes) else { return };
-            match self.mischief {
+            match self.fault {
                 Some(AdapterFault::Mute) => {}
                 Some(AdapterFault::Reset) if frame.command == Command::SEND_RR_DATA => {
                     self.outputs.push_back(Output::HangUp(client));
@@ -242,7 +242,7 @@ impl<A: Application> Adapter<A> {
     /// Handles a datagram on the ListIdentity port.
     pub fn discovered(&mut self, from: SocketAddrV4, bytes: &[u8]) {
         let Ok(frame) = Frame::parse(bytes) else { return };
-        if self.mischief == Some(AdapterFault::Mute) {
+        if self.fault == Some(AdapterFault::Mute) {
             return;
         }
         if let Some(data) = self.listed(frame.command) {
@@ -297,11 +297,11 @@ impl<A: Application> Adapter<A> {
             let Some(producer) = held.producer.as_mut().filter(|producer| now >= producer.due()) else { continue };
             let instance = held.peer.input;
             let Some(image) = self.images.get_mut(&instance) else { continue };
-            if self.mischief != Some(AdapterFault::Frozen) || producer.sent == 0 {
+            if self.fault != Some(AdapterFault::Frozen) || producer.sent == 0 {
                 self.application.image_in(now, instance, image);
             }
             let datagram = producer.produce(now, None, image);
-            for bytes in fault::images(self.mischief, producer.sent, datagram) {
+            for bytes in fault::images(self.fault, producer.sent, datagram) {
                 self.outputs.push_back(Output::Datagram(held.destination, bytes));
             }
         }
@@ -385,7 +385,7 @@ impl<A: Application> Adapter<A> {
     /// Identity with the current status (volume 1, 5-2.2.1.5).
     fn identity(&self) -> Identity {
         let is_owned = self.held.iter().any(|held| held.peer.role == Role::ExclusiveOwner);
-        let is_owned = is_owned && self.mischief != Some(AdapterFault::Unowned);
+        let is_owned = is_owned && self.fault != Some(AdapterFault::Unowned);
         let extended = match (self.held.is_empty(), self.held.iter().any(|held| held.run)) {
             (true, _) => 3,
             (false, true) => 6,
@@ -426,7 +426,7 @@ impl<A: Application> Adapter<A> {
         };
         let reply = Reply { service: request.service, status, data: &data }.emit();
         let mut answer = RrData { o_t: addresses.0, t_o: addresses.1, ..RrData::new(&reply) }.emit();
-        if self.mischief == Some(AdapterFault::Trailing) && request.service == service::FORWARD_OPEN {
+        if self.fault == Some(AdapterFault::Trailing) && request.service == service::FORWARD_OPEN {
             answer.extend(fault::TRAILING);
         }
         answer

@@ -100,7 +100,7 @@ impl<A: Application> Adapter<A> {
 
     /// Instance attributes: data and size.
     fn assembly_attribute(&mut self, now: Now, instance: u32, attribute: u32) -> Result<Vec<u8>, u8> {
-        if self.mischief == Some(AdapterFault::Unreadable) {
+        if self.fault == Some(AdapterFault::Unreadable) {
             return Err(UNKNOWN_ATTRIBUTE);
         }
         let is_input = self.setup.assembly(instance, Purpose::Input).is_some();

@@ -76,7 +76,7 @@ impl<A: Application> Adapter<A> {
         let points = points(open)?;
         // Some boards check the owner before the sizes.
         let is_owned = self.held.iter().any(|held| held.peer.output == Some(points.output));
-        if self.mischief == Some(AdapterFault::Unowned) && is_owned {
+        if self.fault == Some(AdapterFault::Unowned) && is_owned {
             return Err(Status::connection(OWNED, &[]));
         }
         let role = self.setup.allows(open, &points)?;

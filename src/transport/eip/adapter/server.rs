@@ -127,6 +127,11 @@ impl<A: Application> Server<A> {
         self.io_port
     }
 
+    /// Changes the faults of images: to the adapter, from the adapter.
+    pub fn set_faults(&self, faults: Option<(Faults, Faults)>) {
+        self.inner.state().faults = faults;
+    }
+
     /// Calls `look` with the adapter.
     pub fn with<T>(&self, look: impl FnOnce(&mut Adapter<A>, Now) -> T) -> T {
         let result = look(&mut self.inner.state().adapter, self.inner.start.elapsed());

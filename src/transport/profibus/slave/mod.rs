@@ -138,7 +138,7 @@ impl<P: ImagePeer> Slave<P> {
     }
 
     /// Activates a fault, or none.
-    pub const fn misbehave(&mut self, fault: Option<SlaveFault>) {
+    pub const fn set_fault(&mut self, fault: Option<SlaveFault>) {
         self.fault = fault;
     }
 

@@ -134,7 +134,7 @@ impl World {
 #[test]
 fn a_start_is_the_one_that_others_have_seen_working() {
     let mut world = World::new("500k", "");
-    world.slave.misbehave(None);
+    world.slave.set_fault(None);
     world.open();
     // Get_Cfg is included, so from there on the frame count bit is inverted.
     let expected = [
@@ -194,7 +194,7 @@ fn every_fault_of_a_slave_has_a_message_of_its_own() {
     ] {
         let settings = Settings { ident: Some(0x1234), ..Settings::new(5, RATES[5], resting()) };
         let mut world = World::with(settings, "");
-        world.slave.misbehave(Some(fault));
+        world.slave.set_fault(Some(fault));
         let error = world.fails();
         assert!(error.contains(message), "{fault:?}: {error}");
         assert_eq!(world.slave.peer().history.iter().flatten().find(|shown| **shown != resting()), None, "{fault:?}");
@@ -210,7 +210,7 @@ fn every_fault_of_a_slave_has_a_message_of_its_own() {
 fn faults_that_repetitions_heal_do_no_harm() {
     for fault in [SlaveFault::Lose, SlaveFault::BadFcs, SlaveFault::Diagnosis] {
         let mut world = World::new("500k", "");
-        world.slave.misbehave(Some(fault));
+        world.slave.set_fault(Some(fault));
         let view = world.open();
         let change = world.master.set_image(view.generation, &image(1)).unwrap();
         let view = world.run(SEC, |view| view.sent >= change);
@@ -256,10 +256,10 @@ fn a_slave_lets_go_when_its_master_dies() {
 fn a_silent_slave_is_lost_and_found_again() {
     let mut world = World::new("500k", "");
     let view = world.open();
-    world.slave.misbehave(Some(SlaveFault::Mute));
+    world.slave.set_fault(Some(SlaveFault::Mute));
     let lost = world.run(SEC, |view| view.state == State::Lost);
     assert!(lost.trouble.unwrap().to_string().contains("to Data_Exchange (4 attempts"));
-    world.slave.misbehave(None);
+    world.slave.set_fault(None);
     let again = world.run(5 * SEC, |view| view.state == State::Open);
     assert_eq!((again.state, again.generation), (State::Open, view.generation + 1));
     assert_eq!(world.slave.peer().history.last(), Some(&Some(resting())));
@@ -311,7 +311,7 @@ fn adapters_that_hand_back_what_is_sent_do_no_harm() {
     assert_eq!((view.statistics.repeated, view.statistics.noise, view.statistics.unexpected), (0, 0, 0));
     // With crossed wires or a dead slave, the echo is not taken for an answer.
     let mut world = World::new("500k", "echo");
-    world.slave.misbehave(Some(SlaveFault::Mute));
+    world.slave.set_fault(Some(SlaveFault::Mute));
     assert!(world.fails().contains("only the echo of the adapter received"));
 }
 

@@ -84,7 +84,7 @@ fn drive(time: Duration, ident: u16, fault: Option<SlaveFault>) -> (Option<Vec<u
     let mut station = fdl::FdlActiveStation::new(parameters);
     let rate = rate();
     let mut slave = Slave::new(Setup::stand_in(rate), Echo::default());
-    slave.misbehave(fault);
+    slave.set_fault(fault);
     let wire = Wire::new(Some(rate.pace()), None);
     let mut phy = Phy { now: Duration::ZERO, sent_until: Duration::ZERO, wire, slave, received: Vec::new() };
     station.set_online();

@@ -57,7 +57,7 @@ fn a_slave_that_has_a_master_keeps_it_and_shows_its_images() {
 #[test]
 fn nobody_is_asked_beside_another_master() {
     let mut world = World::new("500k", "");
-    world.slave.misbehave(Some(SlaveFault::Token));
+    world.slave.set_fault(Some(SlaveFault::Token));
     // The token of another master arrives with the first answers.
     let error = survey(&mut world, 0..=125).unwrap_err();
     assert!(matches!(error, ProfibusError::OtherMaster { master: 9, .. }), "{error}");
@@ -68,7 +68,7 @@ fn nobody_is_asked_beside_another_master() {
 #[test]
 fn masters_are_found_and_not_asked_further() {
     let mut world = World::new("500k", "");
-    world.slave.misbehave(Some(SlaveFault::Master));
+    world.slave.set_fault(Some(SlaveFault::Master));
     let found = survey(&mut world, 4..=6).unwrap();
     assert_eq!((found[0].kind, &found[0].diagnosis), (Station::MasterInRing, &Err(Unknown::NotAsked)));
 }

@@ -175,7 +175,7 @@ impl<A: Application> Device<A> {
         };
         let payload = Cyclic { data: &data, counter: ar.counter, status, transfer: 0 }.emit();
         let (mac, frame_id) = (ar.mac, ar.input.frame_id);
-        if fault == Some(Fault::Silent) {
+        if fault == Some(Fault::Stall) {
             return;
         }
         let frame = self.frame_to(mac, Some(TAG_HIGH), frame_id, &payload);

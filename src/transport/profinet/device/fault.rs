@@ -8,7 +8,7 @@ pub enum Fault {
     /// Has another module in slot 1 than its layout, and runs anyway.
     WrongModule,
     /// Sends no cyclic frames.
-    Silent,
+    Stall,
     /// Repeats the cycle counter of the previous frame.
     Stale,
     /// Sends every cyclic frame twice.
@@ -44,7 +44,7 @@ impl Fault {
     pub const ALL: [(&'static str, Self); 17] = [
         ("never-ready", Self::NeverReady),
         ("wrong-module", Self::WrongModule),
-        ("silent", Self::Silent),
+        ("stall", Self::Stall),
         ("stale", Self::Stale),
         ("double", Self::Double),
         ("bad-provider", Self::BadProvider),

@@ -77,7 +77,7 @@ fn a_device_that_goes_silent_is_lost_and_told() {
     let mut world = World::open(setup(), settings(), "");
     world.controller.set_image(1, &image(5)).unwrap();
     world.run(100 * MS);
-    world.device.set_fault(Some(Fault::Silent));
+    world.device.set_fault(Some(Fault::Stall));
     let from = world.now;
     world.until(1000 * MS, |world| world.view().state == State::Lost);
     assert_eq!(world.view().trouble, Some(ProfinetError::Silent { after: 320 * MS }));

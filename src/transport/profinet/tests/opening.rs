@@ -244,7 +244,7 @@ fn what_a_device_does_wrong_has_a_name() {
             let mismatch = ModuleMismatch { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x101) };
             *why == ProfinetError::Modules(vec![mismatch])
         }),
-        (Fault::Silent, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Missing, .. })),
+        (Fault::Stall, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Missing, .. })),
         (Fault::BadProvider, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Provider(1, 1), .. })),
         (Fault::BadConsumer, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Consumer(2, 1), .. })),
         (Fault::Stop, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Status(0x25, 0), .. })),
