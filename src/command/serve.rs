@@ -93,12 +93,12 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     loop {
         let turn = interruptible(async {
             tokio::select! {
-                turned = server.turn() => turned.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
+                native_order = server.turn() => native_order.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
                 line = next_line(&mut console) => line.map(Some),
             }
         });
         let line = match turn.await {
-            Ok(turned) => turned?,
+            Ok(native_order) => native_order?,
             // Ctrl-C is the normal end of a server.
             Err(_) => return Ok(()),
         };

@@ -74,7 +74,7 @@ impl StreamServer {
     pub async fn run(&mut self, peer: &mut impl Peer, mut quits: oneshot::Receiver<()>) {
         loop {
             tokio::select! {
-                turned = self.turn(peer) => if turned.is_err() { return },
+                native_order = self.turn(peer) => if native_order.is_err() { return },
                 _ = &mut quits => return,
             }
         }
@@ -215,7 +215,7 @@ mod tests {
         loop {
             tokio::select! {
                 done = &mut clients => return done,
-                turned = server.turn(peer) => turned.unwrap(),
+                native_order = server.turn(peer) => native_order.unwrap(),
             }
         }
     }

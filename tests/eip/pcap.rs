@@ -1,6 +1,6 @@
 //! A capture file of what passed, with made-up IP, UDP and TCP headers (link type RAW).
 
-use armctl::transport::eip::tap::Passed;
+use armctl::transport::eip::tap::Passage;
 use std::collections::HashMap;
 use std::net::SocketAddrV4;
 

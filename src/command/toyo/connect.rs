@@ -8,7 +8,7 @@ use super::link::Toyo;
 use super::overview::overview;
 use super::simulated;
 use crate::client::toyo::{Client, Endpoint, Error, Line, Options};
-use crate::command::frame::attach::{Turn, turn};
+use crate::command::frame::attach::{LockResult, lock_soon};
 use crate::command::frame::trace::locked;
 use crate::command::{Access, Family as _};
 use crate::failure::Failure;
@@ -17,8 +17,8 @@ use crate::settings::target::{self, Place};
 use crate::settings::{Robot, Sessions};
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::serial;
-use crate::transport::session::host::held;
-use crate::transport::session::place::Claim;
+use crate::transport::session::host::shared_link;
+use crate::transport::session::location::Claim;
 use crate::transport::stream::Stream;
 
 /// What a robot's target names.
@@ -52,7 +52,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
 
 /// How a robot's client asks.
 pub fn options(robot: &Robot, access: &Access) -> Options {
-    Options { granted: access.granted.clone(), timeout: robot.timeout.value, retries: robot.retries.value }
+    Options { grant: access.grant.clone(), timeout: robot.timeout.value, retries: robot.retries.value }
 }
 
 /// Connects in the way that a robot's target names.
@@ -89,9 +89,9 @@ impl Way {
     async fn open(&self) -> Result<Line, Failure> {
         let Self { endpoint, robot, access, screen, claim } = self;
         if locked(claim).is_none() {
-            match turn(robot, access, screen).await? {
-                Turn::Session(attached) => return Ok(Stream::Session(attached)),
-                Turn::Own(own) => *locked(claim) = own,
+            match lock_soon(robot, access, screen).await? {
+                LockResult::Session(attached) => return Ok(Stream::Session(attached)),
+                LockResult::Own(own) => *locked(claim) = own,
             }
         }
         endpoint.open(robot.timeout.value).await.map_err(|error| failure(&robot.label(), error))
@@ -100,14 +100,14 @@ impl Way {
 
 /// Opens it for a session to hold, which opens it again when it is gone. The controller is asked something first: a line
 /// says nothing by itself.
-pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<held::Line, Failure> {
+pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<shared_link::Line, Failure> {
     let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;
     // Over the same connection: a device server may take another one only after a while.
     let open = link.into_line().ok_or_else(|| Failure::local("a dry run holds no line"))?;
     let (endpoint, timeout, label) = (endpoint(&robot)?, robot.timeout.value, robot.label());
-    Ok(held::Line::new(open, move || {
+    Ok(shared_link::Line::new(open, move || {
         let (endpoint, label) = (endpoint.clone(), label.clone());
         Box::pin(async move { endpoint.open(timeout).await.map_err(|error| failure(&label, error).message) })
     }))

@@ -117,7 +117,7 @@ async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
 
 /// A failure to see the end.
 fn accepted(failure: Failure) -> Failure {
-    if failure.kind == Kind::NotKnown {
+    if failure.kind == Kind::DryRun {
         return failure;
     }
     let message = format!("the controller accepted it, but whether it is done is unknown: {}", failure.message);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 /// A recorded item.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Passed {
+pub enum Passage {
     /// A datagram.
     Datagram {
         /// Sender.
@@ -29,7 +29,7 @@ pub enum Passed {
     Frame(Vec<u8>),
 }
 
-type Look = dyn Fn(Passed) + Send + Sync;
+type Look = dyn Fn(Passage) + Send + Sync;
 
 /// Called with all traffic, on the threads that move it. It must not block.
 #[derive(Clone, Default)]
@@ -37,7 +37,7 @@ pub struct Tap(Option<Arc<Look>>);
 
 impl Tap {
     /// Creates a tap that calls this function.
-    pub fn new(tap: impl Fn(Passed) + Send + Sync + 'static) -> Self {
+    pub fn new(tap: impl Fn(Passage) + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(tap)))
     }
 
@@ -47,7 +47,7 @@ impl Tap {
     }
 
     /// Records an item. `passed` is only called if the tap is open.
-    pub fn pass(&self, passed: impl FnOnce() -> Passed) {
+    pub fn pass(&self, passed: impl FnOnce() -> Passage) {
         if let Some(tap) = &self.0 {
             tap(passed());
         }

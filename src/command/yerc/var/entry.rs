@@ -8,7 +8,7 @@ use super::in_form;
 use super::position::{self, PositionData};
 use crate::command::frame::items::ItemError;
 use crate::command::frame::names;
-use crate::command::yerc::each::{Denied, Outcome};
+use crate::command::yerc::each::{Outcome, ReadError};
 use crate::controller::names::{Kind, Names};
 use crate::controller::text::Encoding;
 use crate::controller::text::hex;
@@ -92,8 +92,8 @@ pub enum Data {
 const UNDEFINED: [u32; 2] = [0xB005, 0xB001];
 
 /// Whether a refusal to read one variable means that it is undefined.
-pub fn is_undefined(denied: &Denied) -> bool {
-    matches!(denied, Denied::Refused(refusal) if UNDEFINED.contains(&refusal.status.added))
+pub fn is_undefined(denied: &ReadError) -> bool {
+    matches!(denied, ReadError::Refused(refusal) if UNDEFINED.contains(&refusal.status.added))
 }
 
 impl Entry {
@@ -345,7 +345,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::command::yerc::link::{Asked, Refusal};
+    use crate::command::yerc::link::{Refusal, RefusedRequest};
     use crate::controller::yerc::wire::Status;
 
     const READING: Reading = Reading { model: Model::Dx200, encoding: Encoding::ShiftJis };
@@ -414,8 +414,8 @@ mod tests {
     #[test]
     fn refusals_say_whether_there_is_nothing_to_read() {
         let p = Reference::new(VariableKind::P, 3);
-        let to = Asked::Robot { command: 0x7F, instance: 3 };
-        let refused = |code| Err(Denied::Refused(Refusal { status: Status::refused(code), to }));
+        let to = RefusedRequest::Robot { command: 0x7F, instance: 3 };
+        let refused = |code| Err(ReadError::Refused(Refusal { status: Status::refused(code), to }));
         let undefined = Entry::new(p, &refused(0xB005), READING.encoding);
         assert_eq!((undefined.shown().as_str(), undefined.error()), ("undefined", None));
         let json = serde_json::to_value(&undefined).unwrap();

@@ -7,7 +7,7 @@ use super::read::Answers;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Known as _;
 use crate::command::frame::orders::{BEFORE, unwritten};
-use crate::command::yerc::each::Denied;
+use crate::command::yerc::each::ReadError;
 use crate::command::yerc::link::Link;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::payload::{Axes, Position};
@@ -23,8 +23,8 @@ pub async fn read_taught(link: &mut Link, positions: &[Reference]) -> Result<Ans
     let mut answers = HashMap::new();
     for reference in positions {
         let question = ReadVariable::new(reference.kind, reference.number);
-        let answer = link.is_for(BEFORE).try_ask(&question).await.known().map_err(unwritten)?;
-        answers.extend(answer.map(|outcome| (*reference, outcome.map_err(Denied::Refused))));
+        let answer = link.for_purpose(BEFORE).try_ask(&question).await.known().map_err(unwritten)?;
+        answers.extend(answer.map(|outcome| (*reference, outcome.map_err(ReadError::Refused))));
     }
     Ok(answers)
 }

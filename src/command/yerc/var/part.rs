@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::command::frame::dry_run::Reason;
-use crate::command::yerc::each::Denied;
+use crate::command::yerc::each::ReadError;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::var::entry::is_undefined;
@@ -102,7 +102,7 @@ async fn read(link: &mut Link, reference: Reference) -> Result<Position, Failure
         Ok(Value::Position(position)) => Ok(position),
         Ok(_) => Err(wrong(Failure::new(Kind::Malformed, "the answer is not a position"))),
         Err(refusal) => {
-            let is_undefined = is_undefined(&Denied::Refused(refusal));
+            let is_undefined = is_undefined(&ReadError::Refused(refusal));
             let failure = wrong(refusal.into());
             Err(if is_undefined {
                 failure.hint(format!("the position is undefined: write all of it, {reference}=pulse:…"))
