@@ -14,7 +14,7 @@ use armctl::controller::toyo::request::Request;
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> Result<(), Box<dyn Error>> {
     // Without a grant a client reads.
-    let options = Options::default().granting(Risk::Motion);
+    let options = Options::default().with_risk(Risk::Motion);
     let mut robot = Client::connect(Endpoint::simulator(), options).await?;
 
     let status = robot.status().await?;

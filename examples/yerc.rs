@@ -17,7 +17,7 @@ use armctl::controller::yerc::query::{Coordinates, MoveKind, MovePulse, ReadPosi
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> anyhow::Result<()> {
     // Without a grant a client reads.
-    let options = Options::new(Dx200).granting(Risk::Motion);
+    let options = Options::new(Dx200).with_risk(Risk::Motion);
     let mut robot = Client::connect(Endpoint::simulator(Dx200), options).await.context("connect")?;
 
     let status = robot.ask(&ReadStatus).await?;

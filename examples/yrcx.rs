@@ -15,7 +15,7 @@ use armctl::controller::yrcx::value::Key;
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> Result<(), Box<dyn Error>> {
     // Without a grant a client reads.
-    let mut robot = Client::simulated(Start::default(), Options::default().granting(Risk::Motion)).await?;
+    let mut robot = Client::simulated(Start::default(), Options::default().with_risk(Risk::Motion)).await?;
 
     let shown = robot.look().await?;
     println!("servo on: {}, alarm: {}", output::SERVO_ON.is_on(&shown), output::ALARM.is_on(&shown));

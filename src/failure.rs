@@ -36,7 +36,7 @@ pub enum Kind {
     Halted(u8),
     /// The answer to a question that a dry run does not ask. It ends a command there, and is never shown.
     #[serde(skip)]
-    NotKnown,
+    DryRun,
 }
 
 impl Kind {

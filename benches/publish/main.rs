@@ -185,7 +185,7 @@ async fn controller(
     let mut controller = yerc::simulated::Simulated(yerc_controller::simulator::Simulator::new(start));
     while !*go.borrow_and_update() {
         tokio::select! {
-            turned = server.turn(&mut controller) => turned?,
+            outcome = server.turn(&mut controller) => outcome?,
             begun = go.changed() => begun?,
         }
     }
@@ -195,7 +195,7 @@ async fn controller(
     let mut left = changes;
     loop {
         tokio::select! {
-            turned = server.turn(&mut controller) => turned?,
+            outcome = server.turn(&mut controller) => outcome?,
             _ = ticks.tick(), if left > 0 => {
                 let is_held = (changes - left).is_multiple_of(2);
                 let line = if is_held { "hold external on" } else { "hold external off" };

@@ -371,7 +371,7 @@ fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Suggestion> {
         families.iter().flat_map(|family| find(family)).collect::<Vec<_>>()
     };
     [
-        all(&|family| turned(family, &words)),
+        all(&|family| reversed(family, &words)),
         said_otherwise(&words, family),
         all(&|family| other_verb(family, &words)),
         all(&|family| below(family, word)),
@@ -395,7 +395,7 @@ fn for_all(lines: Vec<Suggestion>, whole: &Command) -> Vec<Suggestion> {
 }
 
 /// Suggestion for a verb before its noun.
-fn turned(family: &Command, words: &[&str]) -> Vec<Suggestion> {
+fn reversed(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [verb, noun, ..] = words else { return Vec::new() };
     let exists = family.find_subcommand(noun).is_some_and(|noun| noun.find_subcommand(verb).is_some());
     if exists { vec![Suggestion::new(format!("{} {noun} {verb}", family.get_name()))] } else { Vec::new() }

@@ -10,11 +10,11 @@ use thiserror::Error;
 /// The highest risk that a client may send. Clones share one limit: raising one raises all. The client checks the
 /// limit before every request.
 #[derive(Debug, Clone)]
-pub struct Grant(Arc<Granted>);
+pub struct Grant(Arc<GrantState>);
 
 #[derive(Debug)]
-struct Granted {
-    most: AtomicU8,
+struct GrantState {
+    highest: AtomicU8,
     /// Called before each motion is sent.
     on_motion: OnceLock<Hook>,
 }
@@ -41,19 +41,19 @@ const RISKS: [Risk; 4] = [Risk::Read, Risk::Write, Risk::Destroy, Risk::Motion];
 
 impl Grant {
     /// Authorizes this risk and everything below it.
-    pub fn of(risk: Risk) -> Self {
-        Self(Arc::new(Granted { most: AtomicU8::new(risk as u8), on_motion: OnceLock::new() }))
+    pub fn up_to(risk: Risk) -> Self {
+        Self(Arc::new(GrantState { highest: AtomicU8::new(risk as u8), on_motion: OnceLock::new() }))
     }
 
     /// The highest authorized risk.
     pub fn get(&self) -> Risk {
         // `raise` and `of` are the only writers, and both store the number of a risk.
-        RISKS[usize::from(self.0.most.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
+        RISKS[usize::from(self.0.highest.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
     }
 
     /// Raises the limit; it is never lowered.
     pub fn raise(&self, risk: Risk) {
-        self.0.most.fetch_max(risk as u8, Ordering::Relaxed);
+        self.0.highest.fetch_max(risk as u8, Ordering::Relaxed);
     }
 
     /// Checks one request, as the last step before it is sent. Calls the motion hook if it is an authorized motion.
@@ -76,7 +76,7 @@ impl Grant {
 impl Default for Grant {
     /// Read only.
     fn default() -> Self {
-        Self::of(Risk::Read)
+        Self::up_to(Risk::Read)
     }
 }
 

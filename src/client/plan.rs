@@ -37,20 +37,20 @@ impl<'a> Reason<'a> {
 }
 
 /// Name and readable value of a field of a motion request: `("speed", "50.0 mm/s")`.
-pub type FieldInWords = (String, String);
+pub type ReadableField = (String, String);
 
 /// Adds the readable fields, if there are any, to a frame.
-pub fn with_fields(mut frame: Value, fields: &[FieldInWords]) -> Value {
+pub fn with_fields(mut frame: Value, fields: &[ReadableField]) -> Value {
     if let Some(frame) = frame.as_object_mut().filter(|_| !fields.is_empty()) {
-        let field = |(name, value): &FieldInWords| json!({ "name": name, "value": value });
+        let field = |(name, value): &ReadableField| json!({ "name": name, "value": value });
         frame.insert("fields".to_owned(), fields.iter().map(field).collect());
     }
     frame
 }
 
 /// Merges the fields of two variants of a request: a value that differs becomes `?`.
-pub fn in_common(one: Vec<FieldInWords>, other: &[FieldInWords]) -> Vec<FieldInWords> {
-    let of = |(index, (name, value)): (usize, FieldInWords)| {
+pub fn merge_fields(one: Vec<ReadableField>, other: &[ReadableField]) -> Vec<ReadableField> {
+    let of = |(index, (name, value)): (usize, ReadableField)| {
         let is_same = other.get(index).is_some_and(|(_, other)| *other == value);
         (name, if is_same { value } else { "?".to_owned() })
     };

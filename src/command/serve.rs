@@ -96,12 +96,12 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     loop {
         let turn = interruptible(async {
             tokio::select! {
-                turned = server.turn() => turned.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
+                outcome = server.turn() => outcome.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
                 line = next_line(&mut console) => line.map(Some),
             }
         });
         let line = match turn.await {
-            Ok(turned) => turned?,
+            Ok(outcome) => outcome?,
             // Ctrl-C is the normal end of a server.
             Err(_) => return Ok(()),
         };

@@ -30,7 +30,7 @@ impl<P: Peer> Stream<P> {
     /// [`SessionBusy`], in a session.
     pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
         match self {
-            Self::Session(attached) => attached.take(until).await,
+            Self::Session(attached) => attached.acquire(until).await,
             Self::Serial(_) | Self::Tcp(_) | Self::InProcess(_) => Ok(()),
         }
     }
@@ -38,7 +38,7 @@ impl<P: Peer> Stream<P> {
     /// Gives up exclusive use.
     pub fn give(&mut self) {
         if let Self::Session(attached) = self {
-            attached.over();
+            attached.release();
         }
     }
 

@@ -79,7 +79,7 @@ impl StreamServer {
     pub async fn run(&mut self, peer: &mut impl Peer, mut faults: UnboundedReceiver<Option<LineFaultSpec>>) {
         loop {
             tokio::select! {
-                turned = self.turn(peer) => if turned.is_err() { return },
+                end = self.turn(peer) => if end.is_err() { return },
                 changed = faults.recv() => match changed {
                     Some(faults) => self.set_faults(faults),
                     None => return,
@@ -223,7 +223,7 @@ mod tests {
         loop {
             tokio::select! {
                 done = &mut clients => return done,
-                turned = server.turn(peer) => turned.unwrap(),
+                outcome = server.turn(peer) => outcome.unwrap(),
             }
         }
     }

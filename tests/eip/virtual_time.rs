@@ -16,7 +16,7 @@ fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
 }
 
-fn turned(image: &[u8]) -> Vec<u8> {
+fn native_order(image: &[u8]) -> Vec<u8> {
     image.iter().map(|byte| !byte).collect()
 }
 
@@ -36,7 +36,7 @@ fn images_travel_both_ways() {
     let change = world.originator.set_image(generation, &image(3)).unwrap();
     let run = world.originator.set_run(generation, true).unwrap();
     assert!(change < run && world.view().sent < change);
-    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *turned(&image(3))));
+    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(3))));
     assert_eq!(world.view().sent, run);
     assert!(world.adapter.application().run);
 }
@@ -87,7 +87,7 @@ fn a_bad_network_is_survived() {
         for mark in 1..100 {
             world.originator.set_image(generation, &image(mark)).unwrap();
             world.until(5000 * MS, |world| {
-                world.view().input.is_some_and(|input| *input.image == *turned(&image(mark)))
+                world.view().input.is_some_and(|input| *input.image == *native_order(&image(mark)))
             });
         }
         // Never an old image after a newer one, although the network mixes them up.
@@ -424,7 +424,7 @@ fn objects_answer() {
     let cases = [
         (Message::get(4, 100, 4), Ok(size)),
         (Message::get(4, 150, 3), Ok(resting())),
-        (Message::get(4, 100, 3), Ok(turned(&resting()))),
+        (Message::get(4, 100, 3), Ok(native_order(&resting()))),
         (Message::get(4, 0, 2), Ok(vec![150, 0])),
         (Message::get(4, 0, 3), Ok(vec![3, 0])),
         (Message::get(1, 1, 7), Ok(b"\x03RCX".to_vec())),

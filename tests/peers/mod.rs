@@ -30,7 +30,7 @@ async fn connect_with(url: &str, timeout: Option<std::time::Duration>) -> Link {
     let mut sources = Sources { selection, ..Sources::default() };
     sources.flags.timeout = timeout;
     let robots = sources.robots(Some(Family::Yerc)).unwrap();
-    let access = Access { granted: armctl::gate::Grant::of(Risk::Motion), ..Access::reading(ConnectMode::Control) };
+    let access = Access { grant: armctl::gate::Grant::up_to(Risk::Motion), ..Access::reading(ConnectMode::Control) };
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Yerc::connect(&robots[0], access, &screen).await.unwrap()
 }

@@ -337,7 +337,7 @@ fn our_controller() {
         let mut link = ImageLink::over(Link::open("pc0", settings(), Tap::default()).await.unwrap());
         let mut image = settings().resting;
         image[0] = 0x55;
-        link.show(&image).unwrap();
+        link.set_output(&image).unwrap();
         let mut events = Vec::new();
         while !events.iter().any(|event| matches!(event, LinkEvent::Reopened)) {
             let event = link.next(soon()).await;

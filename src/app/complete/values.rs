@@ -19,7 +19,7 @@ use crate::command::frame::names;
 use crate::command::{Candidate, ValueKind};
 use crate::settings::Sources;
 use crate::settings::inventory::{Inventory, Location};
-use crate::transport::session::place::{Place, Spot};
+use crate::transport::session::location::{SessionFolder, SessionPath};
 
 /// Robots and settings from the rest of the line.
 #[derive(Debug)]
@@ -150,6 +150,6 @@ fn backups() -> Vec<Candidate> {
 
 /// Robots with an open session.
 fn sessions() -> Vec<Candidate> {
-    let spots = Place::find().ok().flatten().and_then(|place| place.spots().ok()).unwrap_or_default();
-    spots.iter().filter_map(Spot::owner).map(|info| Candidate::new(info.robot, info.target)).collect()
+    let spots = SessionFolder::find().ok().flatten().and_then(|place| place.locations().ok()).unwrap_or_default();
+    spots.iter().filter_map(SessionPath::owner).map(|info| Candidate::new(info.robot, info.target)).collect()
 }

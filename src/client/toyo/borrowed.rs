@@ -29,12 +29,12 @@ impl Client {
     /// # Errors
     /// [`Error::PendantOn`] if the teach pendant is ON.
     pub async fn take_host(&mut self) -> Result<(), Error> {
-        let granted = self.granted.clone();
-        self.take_host_by(&granted).await
+        let grant = self.grant.clone();
+        self.take_host_by(&grant).await
     }
 
     /// [`Self::take_host`] with another grant.
-    pub(super) async fn take_host_by(&mut self, granted: &Grant) -> Result<(), Error> {
+    pub(super) async fn take_host_by(&mut self, grant: &Grant) -> Result<(), Error> {
         if self.is_dry() {
             self.plan_to_take_host(None);
             return Ok(());
@@ -51,7 +51,7 @@ impl Client {
             return Err(Error::PendantOn);
         }
         let order = Request::bare(Command::Hson);
-        granted.check(order.risk(), &order.text())?;
+        grant.check(order.risk(), &order.text())?;
         self.watcher.event(Event::TakesHost(true));
         let answer = match self.transact(&order, false).await {
             // The host status shows whether the order was carried out.

@@ -119,7 +119,7 @@ pub enum Error {
     },
     /// A dry run sends nothing and has no answer.
     #[error("a dry run has no answer")]
-    NotKnown,
+    DryRun,
 }
 
 const fn stop_answer(is_refused: bool) -> &'static str {

@@ -35,7 +35,7 @@ pub use self::letters::{Letters, letters_request};
 pub use self::simulated::Simulated;
 pub use self::stop::Moving;
 pub use self::transport::{BAUD, BITS, Endpoint, Line, Opening};
-use self::transport::{Opener, Transport, no_ends};
+use self::transport::{Opener, Transport, no_addresses};
 use crate::{Ends, Grant, NotAuthorized, Plan, Reason, Watcher};
 
 /// A connection to one controller.
@@ -49,7 +49,7 @@ pub struct Client {
     /// The policy of the options, and the current one.
     usual: Policy,
     policy: Policy,
-    granted: Grant,
+    grant: Grant,
     /// The motion that this client started.
     moving: Option<Moving>,
     host: Host,
@@ -76,7 +76,7 @@ pub struct Client {
 #[derive(Debug, Clone)]
 pub struct Options {
     /// The highest risk that may be sent.
-    pub granted: Grant,
+    pub grant: Grant,
     /// Time limit of one attempt, from the last character sent to the answer; 1 s in the manual (TO 1-3).
     pub timeout: Duration,
     /// Retries, after a timeout, of a request that changes nothing.
@@ -86,15 +86,15 @@ pub struct Options {
 impl Default for Options {
     /// Read only, 1 s time limit, 3 retries.
     fn default() -> Self {
-        Self { granted: Grant::default(), timeout: Duration::from_secs(1), retries: 3 }
+        Self { grant: Grant::default(), timeout: Duration::from_secs(1), retries: 3 }
     }
 }
 
 impl Options {
     /// Authorizes this risk and everything below it.
     #[must_use]
-    pub fn granting(self, risk: Risk) -> Self {
-        Self { granted: Grant::of(risk), ..self }
+    pub fn with_risk(self, risk: Risk) -> Self {
+        Self { grant: Grant::up_to(risk), ..self }
     }
 }
 
@@ -157,9 +157,9 @@ impl Client {
     }
 
     /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
-    /// returns [`Error::NotKnown`].
+    /// returns [`Error::DryRun`].
     pub fn dry_run(options: Options) -> Self {
-        Self::with(Transport::Notes(Plan::default()), Duration::ZERO, options)
+        Self::with(Transport::DryRun(Plan::default()), Duration::ZERO, options)
     }
 
     fn with(transport: Transport, character: Duration, options: Options) -> Self {
@@ -170,7 +170,7 @@ impl Client {
             session: LineSession::new(policy),
             usual: policy,
             policy,
-            granted: options.granted,
+            grant: options.grant,
             moving: None,
             host: Host::Unknown,
             borrowed: Vec::new(),
@@ -197,8 +197,8 @@ impl Client {
     }
 
     /// Sets the grant for all further requests.
-    pub fn grant(&mut self, granted: Grant) {
-        self.granted = granted;
+    pub fn grant(&mut self, grant: Grant) {
+        self.grant = grant;
     }
 
     /// Local and remote address of a TCP connection.
@@ -213,7 +213,7 @@ impl Client {
     }
 
     /// Sends one request; a refusal is an answer. Switches the host ON first if an order requires it. In a dry run,
-    /// orders count as carried out and a read returns [`Error::NotKnown`].
+    /// orders count as carried out and a read returns [`Error::DryRun`].
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
         if wants_host(request) {
             match self.take_host().await {
@@ -234,7 +234,7 @@ impl Client {
         if self.is_dry() {
             self.authorize(request.risk(), &request.text())?;
             self.note(request, Reason::default());
-            return if request.row().is_order() { Ok(Ok(done())) } else { Err(Error::NotKnown) };
+            return if request.row().is_order() { Ok(Ok(done())) } else { Err(Error::DryRun) };
         }
         let record = match self.transact_fenced(request).await? {
             Answer::Refused => return Ok(Err(Refusal(request.clone()))),
@@ -268,7 +268,7 @@ impl Client {
         self.fence().await?;
         if self.is_dry() {
             self.note_text(block, Reason::default());
-            return Err(Error::NotKnown);
+            return Err(Error::DryRun);
         }
         self.acquire(Risk::Motion).await?;
         self.is_fenced = false;
@@ -347,7 +347,7 @@ impl Client {
     pub fn into_line(self) -> Option<Line> {
         match self.transport {
             Transport::Line(line) => Some(*line),
-            Transport::Notes(_) => None,
+            Transport::DryRun(_) => None,
         }
     }
 
@@ -383,7 +383,7 @@ impl Client {
     }
 
     fn authorize(&self, risk: Risk, block: &str) -> Result<(), NotAuthorized> {
-        self.granted.check(risk, block)
+        self.grant.check(risk, block)
     }
 
     /// Authorizes and sends one request. Only a read is repeated after a timeout.
@@ -474,7 +474,7 @@ impl Client {
 
     async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         let Some(line) = self.transport.line() else { return Ok(()) };
-        self.watcher.frame(Direction::Sent, self.ends.unwrap_or_else(no_ends), bytes);
+        self.watcher.frame(Direction::Sent, self.ends.unwrap_or_else(no_addresses), bytes);
         line.send(bytes).await
     }
 
@@ -483,7 +483,7 @@ impl Client {
         let Some(line) = self.transport.line() else { return Ok(0) };
         let received = line.receive(buffer, until).await?.unwrap_or(0);
         if received > 0 {
-            self.watcher.frame(Direction::Received, self.ends.unwrap_or_else(no_ends), &buffer[..received]);
+            self.watcher.frame(Direction::Received, self.ends.unwrap_or_else(no_addresses), &buffer[..received]);
         }
         Ok(received)
     }

@@ -13,7 +13,7 @@ use crate::{Plan, Reason};
 impl Client {
     /// Whether this is a dry run.
     pub fn is_dry(&self) -> bool {
-        matches!(self.transport, Transport::Notes(_))
+        matches!(self.transport, Transport::DryRun(_))
     }
 
     /// Takes the plan so far, with what is sent when the client ends.
@@ -30,7 +30,7 @@ impl Client {
         for request in requests {
             self.note(request, Reason::default());
         }
-        Err(Error::NotKnown)
+        Err(Error::DryRun)
     }
 
     /// Dry run: plans a request with its purpose.

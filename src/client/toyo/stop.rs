@@ -66,7 +66,7 @@ impl Client {
                 self.plan_to_take_host(Some(on));
                 self.plan_if(&Moving::Jog.stop(), on);
             }
-            return Err(Error::NotKnown);
+            return Err(Error::DryRun);
         }
         self.set_policy(Policy { timeout: STOP_EVERY, retries: REPETITIONS, ..self.usual });
         let mut why = None;
@@ -144,7 +144,7 @@ impl Client {
 
     /// Takes host control without a check of the grant: a stop is always allowed.
     async fn take_host_to_stop(&mut self) -> Result<(), Error> {
-        self.take_host_by(&Grant::of(Risk::Write)).await
+        self.take_host_by(&Grant::up_to(Risk::Write)).await
     }
 
     /// Stops the jog of all axes, and takes host control if required. The next attempt shows any error.

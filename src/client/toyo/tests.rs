@@ -11,7 +11,7 @@ async fn connected(risk: Risk, state: &str, faults: Option<&str>) -> Client {
     let faults = faults.map(|text| text.parse().unwrap());
     let start = Box::new(Start::parse(state).unwrap());
     let endpoint = Endpoint::Simulator { start, baud: Some(BAUD), faults };
-    Client::connect(endpoint, Options::default().granting(risk)).await.unwrap()
+    Client::connect(endpoint, Options::default().with_risk(risk)).await.unwrap()
 }
 
 fn counter(number: i32, value: i32) -> Request {
@@ -69,9 +69,9 @@ async fn silence_after_an_order_is_not_silence_after_a_question() {
 
 #[tokio::test(start_paused = true)]
 async fn a_dry_run_notes_orders_and_knows_no_answers() {
-    let mut client = Client::dry_run(Options::default().granting(Risk::Motion));
+    let mut client = Client::dry_run(Options::default().with_risk(Risk::Motion));
     client.ask(&counter(1, 2)).await.unwrap();
-    assert!(matches!(client.status_of(&[3]).await, Err(Error::NotKnown)));
+    assert!(matches!(client.status_of(&[3]).await, Err(Error::DryRun)));
     let plan = client.take_plan();
     let blocks: Vec<_> = plan.frames.iter().filter_map(|frame| frame["text"].as_str()).collect();
     assert_eq!(blocks, ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@MCST CN01=0002", "@STAS SNO=3", "@HSOF"]);

@@ -142,7 +142,7 @@ pub(super) enum Transport {
     /// Over a line.
     Line(Box<Line>),
     /// A dry run: requests are only planned.
-    Notes(Plan),
+    DryRun(Plan),
 }
 
 impl Transport {
@@ -150,19 +150,19 @@ impl Transport {
     pub(super) fn line(&mut self) -> Option<&mut Line> {
         match self {
             Self::Line(line) => Some(line),
-            Self::Notes(_) => None,
+            Self::DryRun(_) => None,
         }
     }
 
     pub(super) fn notes(&mut self) -> Option<&mut Plan> {
         match self {
-            Self::Notes(plan) => Some(plan),
+            Self::DryRun(plan) => Some(plan),
             Self::Line(_) => None,
         }
     }
 
     pub(super) fn has_notes(&self) -> bool {
-        matches!(self, Self::Notes(plan) if !plan.frames.is_empty())
+        matches!(self, Self::DryRun(plan) if !plan.frames.is_empty())
     }
 
     /// Whether a session holds the line, so that others may use it too.
@@ -177,12 +177,12 @@ impl Transport {
                 Stream::Tcp(tcp) => tcp.ends().ok(),
                 Stream::Serial(_) | Stream::InProcess(_) | Stream::Session(_) => None,
             },
-            Self::Notes(_) => None,
+            Self::DryRun(_) => None,
         }
     }
 }
 
-pub(super) fn no_ends() -> Ends {
+pub(super) fn no_addresses() -> Ends {
     let nowhere = SocketAddr::from(([0, 0, 0, 0], 0));
     (nowhere, nowhere)
 }

@@ -10,12 +10,12 @@ use crate::Reason;
 
 /// Set of existing axes, one bit per axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Fitted(u8);
+pub struct AxisSet(u8);
 
 /// Added status while a pendant screen is open during which axis names cannot be read (DX 3.3.5).
 const CONVERTING: u32 = 0x2150;
 
-impl Fitted {
+impl AxisSet {
     /// All axes in the answer.
     pub const ALL: Self = Self(u8::MAX);
 
@@ -34,7 +34,7 @@ impl Fitted {
     }
 
     /// The values up to the last existing axis; 0 for missing axes before it.
-    fn of(self, axes: Axes) -> Axes {
+    fn trim(self, axes: Axes) -> Axes {
         let count = (0..axes.as_slice().len()).rev().find(|axis| self.has(*axis)).map_or(0, |last| last + 1);
         let values = axes.as_slice().iter().enumerate().take(count);
         let values: Vec<i32> = values.map(|(axis, value)| if self.has(axis) { *value } else { 0 }).collect();
@@ -44,40 +44,40 @@ impl Fitted {
 
 impl Client {
     /// The values of the existing axes of a group, out of those in the answer.
-    pub async fn fit(&mut self, group: Group, coordinates: Coordinates, axes: Axes) -> (Axes, Fitted) {
+    pub async fn existing_axes(&mut self, group: Group, coordinates: Coordinates, axes: Axes) -> (Axes, AxisSet) {
         if axes.as_slice().len() < MAX_AXES {
             // No group has eight axes, so a shorter answer contains only existing axes.
-            return (axes, Fitted::ALL);
+            return (axes, AxisSet::ALL);
         }
-        let fitted = self.fitted(group, coordinates).await;
-        (fitted.of(axes), fitted)
+        let axis_set = self.read_axis_set(group, coordinates).await;
+        (axis_set.trim(axes), axis_set)
     }
 
-    /// Dry run: plans the read of the axis configuration by [`Client::fit`].
-    pub fn plan_fit(&mut self, group: Group, coordinates: Coordinates) {
-        let is_noted = self.fitted.iter().any(|known| (known.0, known.1) == (group, coordinates));
-        let Ok(question) = ReadAxes::new(self.model_to_show(), group, coordinates) else { return };
-        if !is_noted {
+    /// Dry run: plans the read of the axis configuration by [`Client::existing_axes`].
+    pub fn plan_existing_axes(&mut self, group: Group, coordinates: Coordinates) {
+        let is_planned = self.axis_sets.iter().any(|known| (known.0, known.1) == (group, coordinates));
+        let Ok(query) = ReadAxes::new(self.model_for_display(), group, coordinates) else { return };
+        if !is_planned {
             let reason = Reason::about("which axes exist, if the answer has all eight");
-            self.plan_if(&question.request(), reason.depending_on("the number of axes in the answer before"));
-            self.fitted.push((group, coordinates, Fitted::ALL));
+            self.plan_if(&query.request(), reason.depending_on("the number of axes in the answer before"));
+            self.axis_sets.push((group, coordinates, AxisSet::ALL));
         }
     }
 
-    async fn fitted(&mut self, group: Group, coordinates: Coordinates) -> Fitted {
-        let known = self.fitted.iter().find(|known| (known.0, known.1) == (group, coordinates));
-        if let Some((.., fitted)) = known {
-            return *fitted;
+    async fn read_axis_set(&mut self, group: Group, coordinates: Coordinates) -> AxisSet {
+        let known = self.axis_sets.iter().find(|known| (known.0, known.1) == (group, coordinates));
+        if let Some((.., axis_set)) = known {
+            return *axis_set;
         }
-        let Ok(question) = ReadAxes::new(self.model_to_show(), group, coordinates) else { return Fitted::ALL };
-        let fitted = match self.try_ask(&question).await {
-            Ok(Ok(names)) => Fitted::from_names(&names),
+        let Ok(query) = ReadAxes::new(self.model_for_display(), group, coordinates) else { return AxisSet::ALL };
+        let axis_set = match self.try_ask(&query).await {
+            Ok(Ok(names)) => AxisSet::from_names(&names),
             // Not stored: the screen may be closed at the next read.
-            Ok(Err(refusal)) if refusal.status.added == CONVERTING => return Fitted::ALL,
-            Ok(Err(_)) | Err(_) => Fitted::ALL,
+            Ok(Err(refusal)) if refusal.status.added == CONVERTING => return AxisSet::ALL,
+            Ok(Err(_)) | Err(_) => AxisSet::ALL,
         };
-        self.fitted.push((group, coordinates, fitted));
-        fitted
+        self.axis_sets.push((group, coordinates, axis_set));
+        axis_set
     }
 }
 
@@ -90,14 +90,14 @@ mod tests {
     #[test]
     fn axes_without_a_name_do_not_exist() {
         let mut names = AxisNames::default();
-        assert_eq!(Fitted::from_names(&names), Fitted::ALL);
+        assert_eq!(AxisSet::from_names(&names), AxisSet::ALL);
         for (axis, name) in [(0, "S"), (1, "L"), (2, "U"), (5, "T"), (6, "  ")] {
             names.names[axis] = Text::cut(name.as_bytes());
         }
-        let fitted = Fitted::from_names(&names);
-        assert!(fitted.has(5) && !fitted.has(3) && !fitted.has(6) && !fitted.has(8));
+        let axis_set = AxisSet::from_names(&names);
+        assert!(axis_set.has(5) && !axis_set.has(3) && !axis_set.has(6) && !axis_set.has(8));
         let axes = Axes::full([1, 2, 3, 4, 5, 6, 7, 8]);
-        assert_eq!(fitted.of(axes).as_slice(), [1, 2, 3, 0, 0, 6]);
-        assert_eq!(Fitted::ALL.of(axes), axes);
+        assert_eq!(axis_set.trim(axes).as_slice(), [1, 2, 3, 0, 0, 6]);
+        assert_eq!(AxisSet::ALL.trim(axes), axes);
     }
 }

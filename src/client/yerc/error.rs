@@ -110,7 +110,7 @@ pub enum Error {
     },
     /// A dry run sends nothing and has no answer.
     #[error("a dry run has no answer")]
-    NotKnown,
+    DryRun,
 }
 
 impl Error {
@@ -136,19 +136,19 @@ pub struct Refusal {
     /// Error status.
     pub status: Status,
     /// The refused request.
-    pub to: Asked,
+    pub to: RefusedRequest,
 }
 
 impl Refusal {
     /// A refusal of a file request.
     pub const fn of_file(service: u8, status: Status) -> Self {
-        Self { status, to: Asked::File(service) }
+        Self { status, to: RefusedRequest::File(service) }
     }
 }
 
 /// Identification of a refused request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asked {
+pub enum RefusedRequest {
     /// A request to the robot server.
     Robot {
         /// Command number.
@@ -160,7 +160,7 @@ pub enum Asked {
     File(u8),
 }
 
-impl From<&Request> for Asked {
+impl From<&Request> for RefusedRequest {
     fn from(request: &Request) -> Self {
         match request.division() {
             Division::Robot => Self::Robot { command: request.command, instance: request.instance },
@@ -169,7 +169,7 @@ impl From<&Request> for Asked {
     }
 }
 
-impl fmt::Display for Asked {
+impl fmt::Display for RefusedRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Robot { command, instance } => write!(f, "0x{command:02X} (instance {instance})"),
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn errors_are_a_sentence() {
         let request = Request { command: 0x7A, instance: 300, attribute: 1, service: 0x0E, data: Vec::new() };
-        let refused = Error::from(Refusal { status: Status::refused(0xA001), to: Asked::from(&request) });
+        let refused = Error::from(Refusal { status: Status::refused(0xA001), to: RefusedRequest::from(&request) });
         assert!(refused.to_string().starts_with("the controller refused 0x7A (instance 300): "), "{refused}");
         let waited = Duration::from_secs(3);
         let unknown = Error::OutcomeUnknown { request: request.clone(), waited, counters: Counters::default() };

@@ -1,7 +1,7 @@
 //! Yaskawa client (FS100, DX100, DX200, YRC1000): drives the sessions over datagrams.
 
 mod axes;
-mod each;
+mod batch;
 mod error;
 mod model;
 mod plan;
@@ -30,11 +30,11 @@ use armctl_transport::session::client::{Attached, SessionBusy};
 use armctl_transport::tap::Direction;
 use tokio::time::{Instant, sleep, timeout_at};
 
-pub use self::axes::Fitted;
-pub use self::each::{Denied, Outcome, Round};
-pub use self::error::{Asked, Cause, Error, Refusal, TransferError};
+pub use self::axes::AxisSet;
+pub use self::batch::{Batch, Outcome, ReadError};
+pub use self::error::{Cause, Error, Refusal, RefusedRequest, TransferError};
 pub use self::model::Identity;
-use self::model::Known;
+use self::model::ModelSource;
 pub use self::simulated::Simulated;
 use self::simulated::channel;
 use self::transport::Transport;
@@ -50,26 +50,26 @@ pub struct Client {
     transport: Transport,
     policy: Policy,
     ids: Ids,
-    granted: Grant,
+    grant: Grant,
     has_moved: bool,
     /// The model, as far as known; number ranges and layouts depend on it.
-    known: Known,
+    model_source: ModelSource,
     /// Model and software version that the controller reported.
     identity: Option<Identity>,
     /// Dry run: the model that the plan is shown for, if the frames depend on an unknown one.
-    shown_for: Option<Model>,
+    plan_model: Option<Model>,
     started: Instant,
     buffer: Box<[u8; BUFFER]>,
     watcher: Box<dyn Watcher<Event>>,
     totals: Totals,
     /// The last download, kept because its final ACK may be lost.
-    finished: Option<Download>,
+    last_download: Option<Download>,
     /// The session that ends an open or aborted transfer at the controller.
     open: Option<Abandon>,
     /// Dry run: purpose of the next request.
     purpose: Option<&'static str>,
     /// Existing axes of the groups read so far.
-    fitted: Vec<(Group, Coordinates, Fitted)>,
+    axis_sets: Vec<(Group, Coordinates, AxisSet)>,
 }
 
 /// Settings of a client.
@@ -78,7 +78,7 @@ pub struct Options {
     /// Model of the controller; without one, it is read when a request depends on it. A simulator has its own model.
     pub model: Option<Model>,
     /// The highest risk that may be sent.
-    pub granted: Grant,
+    pub grant: Grant,
     /// Time limit of one attempt.
     pub timeout: Duration,
     /// Retries, after a timeout, of a request that changes nothing, and of a file block.
@@ -94,13 +94,13 @@ impl Options {
     /// The same, with a model that the controller has to report.
     pub fn auto() -> Self {
         let Policy { timeout, retries, .. } = Policy::default();
-        Self { model: None, granted: Grant::default(), timeout, retries }
+        Self { model: None, grant: Grant::default(), timeout, retries }
     }
 
     /// Authorizes this risk and everything below it.
     #[must_use]
-    pub fn granting(self, risk: Risk) -> Self {
-        Self { granted: Grant::of(risk), ..self }
+    pub fn with_risk(self, risk: Risk) -> Self {
+        Self { grant: Grant::up_to(risk), ..self }
     }
 }
 
@@ -109,9 +109,9 @@ impl Options {
 #[non_exhaustive]
 pub enum Event {
     /// An exchange or transfer ended, and there was other traffic than the request and its answer.
-    Disturbed(Counters),
+    UnexpectedTraffic(Counters),
     /// A transfer was aborted, and the controller did not confirm its end. It may stay busy until its timer expires.
-    LeftOpen,
+    TransferLeftOpen,
 }
 
 /// Traffic of a client.
@@ -136,9 +136,9 @@ const BUFFER: usize = 2048;
 const MAX_FILE: u64 = 1 << 30;
 
 /// Request of a session to the caller's function that reads or writes the file.
-enum Want<'a, S> {
+enum FileRequest<'a, S> {
     /// A received piece.
-    Take(&'a [u8]),
+    Received(&'a [u8]),
     /// An upload session that needs the next piece.
     Feed(&'a mut S),
 }
@@ -151,39 +151,39 @@ impl Client {
     /// [`Error::HostNotFound`].
     pub async fn connect(endpoint: Endpoint, options: Options) -> Result<Self, Error> {
         let model = endpoint.model().or(options.model);
-        Ok(Self::over(endpoint.open().await?, Options { model, ..options }))
+        Ok(Self::release(endpoint.open().await?, Options { model, ..options }))
     }
 
     /// Uses a session that holds the link and shares it with other clients.
-    pub fn through(session: Box<Attached>, options: Options) -> Self {
-        Self::over(Transport::Session(session), options)
+    pub fn in_session(session: Box<Attached>, options: Options) -> Self {
+        Self::release(Transport::Session(session), options)
     }
 
     /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
-    /// returns [`Error::NotKnown`].
+    /// returns [`Error::DryRun`].
     pub fn dry_run(options: Options) -> Self {
-        Self::over(Transport::Notes(Plan::default()), options)
+        Self::release(Transport::DryRun(Plan::default()), options)
     }
 
-    fn over(transport: Transport, options: Options) -> Self {
-        let Options { model, granted, timeout, retries } = options;
+    fn release(transport: Transport, options: Options) -> Self {
+        let Options { model, grant, timeout, retries } = options;
         Self {
             transport,
             policy: Policy::default().with(timeout, retries),
             ids: Ids::default(),
-            granted,
+            grant,
             has_moved: false,
-            known: Known::from_named(model),
+            model_source: ModelSource::from_settings(model),
             identity: None,
-            shown_for: None,
+            plan_model: None,
             started: Instant::now(),
             buffer: Box::new([0; BUFFER]),
             watcher: Box::new(()),
             totals: Totals::default(),
-            finished: None,
+            last_download: None,
             open: None,
             purpose: None,
-            fitted: Vec::new(),
+            axis_sets: Vec::new(),
         }
     }
 
@@ -198,18 +198,18 @@ impl Client {
     }
 
     /// Sends one request; a refusal is an answer. In a dry run, orders count as carried out and a read returns
-    /// [`Error::NotKnown`].
+    /// [`Error::DryRun`].
     pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Error> {
         let request = query.request();
         if self.is_dry() && request.risk() > Risk::Read {
             self.plan_next(&request)?;
             // An accepted order has no data.
-            return query.decode(&[]).map(Ok).map_err(|_| Error::NotKnown);
+            return query.decode(&[]).map(Ok).map_err(|_| Error::DryRun);
         }
         let Reply { status, data, .. } = self.raw(&request).await?;
         if !status.is_ok() {
-            self.doubt(&request, status).await?;
-            return Ok(Err(Refusal { status, to: Asked::from(&request) }));
+            self.check_remembered_model(&request, status).await?;
+            return Ok(Err(Refusal { status, to: RefusedRequest::from(&request) }));
         }
         Ok(Ok(query.decode(&data)?))
     }
@@ -218,7 +218,7 @@ impl Client {
     pub async fn raw(&mut self, request: &Request) -> Result<Reply, Error> {
         self.prepare(request).await?;
         let reply = self.transact(request, request.risk() == Risk::Read).await?;
-        self.hear(request, &reply);
+        self.learn_model(request, &reply);
         Ok(reply)
     }
 
@@ -232,11 +232,11 @@ impl Client {
         if self.is_dry() {
             return Ok(self.plan_next(&request)?);
         }
-        let usual = self.policy;
+        let normal_policy = self.policy;
         self.policy = Policy { timeout: STOP_EVERY, attempt: STOP_EVERY, doubles: false, retries: STOP_TRIES - 1 };
         let mut lost = None;
         let until = Instant::now() + STOP_WITHIN;
-        let trying = async {
+        let attempts = async {
             loop {
                 match self.transact(&request, true).await {
                     Err(error @ Error::Io { .. }) => lost = Some(error),
@@ -246,15 +246,15 @@ impl Client {
                 sleep(STOP_EVERY).await;
             }
         };
-        let reply = match timeout_at(until, trying).await {
+        let reply = match timeout_at(until, attempts).await {
             Ok(Err(Error::NoAnswer { .. } | Error::Garbage { .. })) => Err(Error::Unconfirmed { waited: STOP_WITHIN }),
             Ok(reply) => reply,
             Err(_) => Err(lost.unwrap_or(Error::Unconfirmed { waited: STOP_WITHIN })),
         };
-        self.policy = usual;
+        self.policy = normal_policy;
         match reply?.status {
             status if status.is_ok() => Ok(()),
-            status => Err(Refusal { status, to: Asked::from(&request) }.into()),
+            status => Err(Refusal { status, to: RefusedRequest::from(&request) }.into()),
         }
     }
 
@@ -294,7 +294,7 @@ impl Client {
     ) -> Result<DownloadEnd, TransferError<E>> {
         if self.is_dry() {
             self.plan_download(request, crate::Reason::default())?;
-            return Err(Error::NotKnown.into());
+            return Err(Error::DryRun.into());
         }
         self.prepare(request).await?;
         self.abandon().await;
@@ -304,24 +304,24 @@ impl Client {
             session = session.with_first_wait(wait);
         }
         let mut bytes = 0;
-        let driven = self.drive(Division::File, &mut session, |want| match want {
-            Want::Take(piece) => {
+        let result = self.drive(Division::File, &mut session, |file_request| match file_request {
+            FileRequest::Received(piece) => {
                 bytes += piece.len() as u64;
                 take(piece)
             }
-            Want::Feed(_) => Ok(()),
+            FileRequest::Feed(_) => Ok(()),
         });
-        let end = match driven.await {
+        let end = match result.await {
             Ok(end) => end,
-            Err(cause) => return Err(TransferError { bytes, cause: self.cut_short(cause, request, before) }),
+            Err(cause) => return Err(TransferError { bytes, cause: self.cut_short_error(cause, request, before) }),
         };
-        self.exchanged(session.counters());
+        self.count_exchange(session.counters());
         match &end {
             DownloadEnd::Complete { .. } | DownloadEnd::Finished | DownloadEnd::Nothing(_) => self.open = None,
             DownloadEnd::Refused { status, .. } if !is_busy(*status) => self.open = None,
             _ => {}
         }
-        self.finished = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
+        self.last_download = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
         match end {
             // The batch backup is the only download that changes something, and the only one with a long first wait.
             DownloadEnd::NoAnswer { bytes: 0, counters } if request.risk() > Risk::Read => {
@@ -329,7 +329,7 @@ impl Client {
                 Err(Error::OutcomeUnknown { request: request.clone(), waited, counters }.into())
             }
             DownloadEnd::NoAnswer { bytes, counters } => {
-                Err(TransferError { bytes, cause: Cause::Client(self.silence(counters)) })
+                Err(TransferError { bytes, cause: Cause::Client(self.silence_error(counters)) })
             }
             end => Ok(end),
         }
@@ -346,7 +346,7 @@ impl Client {
             self.plan_upload(request, crate::Reason::default(), || {
                 give().map_err(|error| TransferError { bytes: 0, cause: Cause::Caller(error) })
             })?;
-            return Err(Error::NotKnown.into());
+            return Err(Error::DryRun.into());
         }
         self.prepare(request).await?;
         self.abandon().await;
@@ -354,23 +354,23 @@ impl Client {
         // A controller that does not check ids could add a late block of the last upload to this one. A new port
         // prevents that.
         self.transport.renew(channel(Division::File));
-        self.finished = None;
+        self.last_download = None;
         let mut session = Upload::new(&request.into(), self.policy, &self.ids);
-        let driven = self.drive(Division::File, &mut session, |want| {
-            if let Want::Feed(session) = want {
+        let result = self.drive(Division::File, &mut session, |file_request| {
+            if let FileRequest::Feed(session) = file_request {
                 let piece = give()?;
                 session.feed(&piece, piece.is_empty());
             }
             Ok(())
         });
-        let end = match driven.await {
+        let end = match result.await {
             Ok(end) => end,
             Err(cause) => {
-                let cause = self.cut_short(cause, request, before);
+                let cause = self.cut_short_error(cause, request, before);
                 return Err(TransferError { bytes: session.sent(), cause });
             }
         };
-        self.exchanged(session.counters());
+        self.count_exchange(session.counters());
         match &end {
             UploadEnd::Complete { .. } | UploadEnd::Unnumbered { .. } | UploadEnd::Empty => self.open = None,
             UploadEnd::Refused { status, .. } if !is_busy(*status) => self.open = None,
@@ -400,14 +400,14 @@ impl Client {
         let ended = self.drive(Division::File, &mut abandon, |_| Ok::<(), Infallible>(())).await;
         self.open = None;
         if !matches!(ended, Ok(true)) {
-            self.watcher.event(Event::LeftOpen);
+            self.watcher.event(Event::TransferLeftOpen);
         }
     }
 
     /// On a lossy link, waits briefly for a repeat of the last block: a repeat means that the final ACK was lost.
     /// Without the ACK the controller keeps the transfer open.
     async fn linger(&mut self) -> Result<(), Error> {
-        let Some(mut last) = self.finished.take().filter(|last| last.counters() != Counters::default()) else {
+        let Some(mut last) = self.last_download.take().filter(|last| last.counters() != Counters::default()) else {
             return Ok(());
         };
         self.acquire(Division::File).await?;
@@ -428,7 +428,7 @@ impl Client {
         self.authorize(request)?;
         if self.is_dry() {
             self.plan_next(request)?;
-            return Err(Error::NotKnown);
+            return Err(Error::DryRun);
         }
         if request.risk() == Risk::Motion {
             if let Some(session) = self.transport.session() {
@@ -440,7 +440,7 @@ impl Client {
     }
 
     fn authorize(&self, request: &Request) -> Result<(), NotAuthorized> {
-        self.granted.check(request.risk(), &format!("request {:#04x}", request.command))
+        self.grant.check(request.risk(), &format!("request {:#04x}", request.command))
     }
 
     /// Sends one request and waits for its reply.
@@ -450,12 +450,12 @@ impl Client {
         }
         let mut session = Exchange::new(&request.into(), is_repeatable, self.policy, &self.ids);
         let before = self.totals.sent;
-        let driven = self.drive(request.division(), &mut session, |_| Ok::<(), Infallible>(())).await;
-        let ended = driven.map_err(|cause| Error::from(self.cut_short(cause, request, before)))?;
-        self.exchanged(session.counters());
+        let result = self.drive(request.division(), &mut session, |_| Ok::<(), Infallible>(())).await;
+        let ended = result.map_err(|cause| Error::from(self.cut_short_error(cause, request, before)))?;
+        self.count_exchange(session.counters());
         match ended {
             Ended::Answered(reply) => Ok(reply),
-            Ended::NoAnswer(counters) => Err(self.silence(counters)),
+            Ended::NoAnswer(counters) => Err(self.silence_error(counters)),
             Ended::OutcomeUnknown(counters) => {
                 Err(Error::OutcomeUnknown { request: request.clone(), waited: self.policy.timeout, counters })
             }
@@ -467,27 +467,27 @@ impl Client {
         &mut self,
         division: Division,
         session: &mut S,
-        serve: impl FnMut(Want<'_, S>) -> Result<(), E>,
+        serve: impl FnMut(FileRequest<'_, S>) -> Result<(), E>,
     ) -> Result<S::Outcome, Cause<E>> {
         self.acquire(division).await?;
-        let driven = self.drive_alone(division, session, serve).await;
+        let result = self.drive_alone(division, session, serve).await;
         if let Some(session) = self.transport.session() {
-            session.over();
+            session.release();
         }
-        driven
+        result
     }
 
     async fn acquire(&mut self, division: Division) -> Result<(), Error> {
         let Some(session) = self.transport.session() else { return Ok(()) };
         let until = Instant::now() + self.policy.timeout;
-        session.take_for(transport::number(channel(division)), until).await.map_err(Error::Session)
+        session.acquire_channel(transport::number(channel(division)), until).await.map_err(Error::Session)
     }
 
     async fn drive_alone<S: Session, E>(
         &mut self,
         division: Division,
         session: &mut S,
-        mut serve: impl FnMut(Want<'_, S>) -> Result<(), E>,
+        mut serve: impl FnMut(FileRequest<'_, S>) -> Result<(), E>,
     ) -> Result<S::Outcome, Cause<E>> {
         let channel = channel(division);
         let began = self.started.elapsed();
@@ -497,11 +497,11 @@ impl Client {
             match session.poll(now) {
                 Step::Send(bytes) => self.send(channel, &bytes).await?,
                 Step::Data(piece) => {
-                    serve(Want::Take(&piece)).map_err(Cause::Caller)?;
+                    serve(FileRequest::Received(&piece)).map_err(Cause::Caller)?;
                     now = self.started.elapsed();
                 }
                 Step::Feed => {
-                    serve(Want::Feed(session)).map_err(Cause::Caller)?;
+                    serve(FileRequest::Feed(session)).map_err(Cause::Caller)?;
                     now = self.started.elapsed();
                 }
                 Step::Wait(until) => {
@@ -514,7 +514,7 @@ impl Client {
                     {
                         open.answered();
                     }
-                    let again = self.finished.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
+                    let again = self.last_download.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
                     match again {
                         Some(ack) => self.send(channel, &ack).await?,
                         None => session.handle(now, &self.buffer[..len]),
@@ -529,7 +529,7 @@ impl Client {
     }
 
     async fn send(&mut self, channel: usize, bytes: &[u8]) -> Result<(), Error> {
-        self.transport.send(channel, bytes).await.map_err(|error| self.broken(channel, error))?;
+        self.transport.send(channel, bytes).await.map_err(|error| self.io_error(channel, error))?;
         self.totals.sent += 1;
         if channel == simulated::channel(Division::File) {
             self.open = Abandon::after(bytes);
@@ -541,30 +541,30 @@ impl Client {
     /// Receives a datagram into the buffer; `None` at the deadline.
     async fn receive(&mut self, channel: usize, until: Instant) -> Result<Option<usize>, Error> {
         let received = self.transport.receive(channel, &mut self.buffer[..], until).await;
-        let Some(len) = received.map_err(|error| self.broken(channel, error))? else { return Ok(None) };
+        let Some(len) = received.map_err(|error| self.io_error(channel, error))? else { return Ok(None) };
         self.totals.received += 1;
         self.watcher.frame(Direction::Received, self.transport.ends(channel), &self.buffer[..len]);
         Ok(Some(len))
     }
 
     /// Counts a completed exchange or transfer, and reports other traffic.
-    fn exchanged(&mut self, counters: Counters) {
+    fn count_exchange(&mut self, counters: Counters) {
         self.totals.exchanges += 1;
         self.totals.disturbances += counters.total();
         if counters != Counters::default() {
-            self.watcher.event(Event::Disturbed(counters));
+            self.watcher.event(Event::UnexpectedTraffic(counters));
         }
     }
 
     /// The error of an unanswered read.
-    fn silence(&self, counters: Counters) -> Error {
+    fn silence_error(&self, counters: Counters) -> Error {
         let waited = self.policy.patience();
         if counters.is_garbage() { Error::Garbage { waited, counters } } else { Error::NoAnswer { waited, counters } }
     }
 
     /// The error of a change whose session ended before the answer. `before` is the count of sent frames before the
     /// request.
-    fn cut_short<E>(&self, cause: Cause<E>, request: &Request, before: u64) -> Cause<E> {
+    fn cut_short_error<E>(&self, cause: Cause<E>, request: &Request, before: u64) -> Cause<E> {
         let (Some(why), Cause::Client(error)) = (self.transport.ended(), &cause) else { return cause };
         if request.risk() == Risk::Read {
             return cause;
@@ -577,7 +577,7 @@ impl Client {
     }
 
     /// The error of a failed socket.
-    fn broken(&self, channel: usize, error: io::Error) -> Error {
+    fn io_error(&self, channel: usize, error: io::Error) -> Error {
         match (self.transport.ended(), SessionBusy::of(&error)) {
             (Some(why), _) => Error::Session(SessionBusy::Ended(why.to_owned())),
             (None, Some(busy)) => Error::Session(busy),

@@ -13,7 +13,7 @@ use armctl_controller::yerc::session::Reply;
 use armctl_controller::yerc::table::{Availability, service};
 use armctl_controller::yerc::wire::Status;
 
-use super::{Asked, Client, Error, Refusal};
+use super::{Client, Error, Refusal, RefusedRequest};
 use crate::Reason;
 
 /// Length of a version in bytes.
@@ -21,7 +21,7 @@ const VERSION: usize = 24;
 /// The command that reads it.
 const SYSTEM_INFO: u16 = 0x89;
 /// The model for requests that are the same for all models.
-const USUAL: Model = Model::Dx200;
+const DEFAULT_MODEL: Model = Model::Dx200;
 
 /// Identification of a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,28 +34,28 @@ pub struct Identity {
 
 /// The known model, and its source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Known {
+pub(super) enum ModelSource {
     /// Unknown.
     Nothing,
     /// From the settings; never read.
-    Named(Model),
+    Configured(Model),
     /// From an earlier connection.
     Remembered(Model),
     /// Reported by the controller on this connection.
-    Told(Model),
+    Reported(Model),
     /// Assumed in a dry run.
     Assumed,
 }
 
-impl Known {
-    pub(super) fn from_named(model: Option<Model>) -> Self {
-        model.map_or(Self::Nothing, Self::Named)
+impl ModelSource {
+    pub(super) fn from_settings(model: Option<Model>) -> Self {
+        model.map_or(Self::Nothing, Self::Configured)
     }
 
     const fn model(self) -> Option<Model> {
         match self {
             Self::Nothing | Self::Assumed => None,
-            Self::Named(model) | Self::Remembered(model) | Self::Told(model) => Some(model),
+            Self::Configured(model) | Self::Remembered(model) | Self::Reported(model) => Some(model),
         }
     }
 }
@@ -63,19 +63,19 @@ impl Known {
 impl Client {
     /// The model, as far as known without a request.
     pub fn known_model(&self) -> Option<Model> {
-        self.known.model()
+        self.model_source.model()
     }
 
     /// The known model, or a default, for display only.
-    pub fn model_to_show(&self) -> Model {
-        self.known_model().unwrap_or(USUAL)
+    pub fn model_for_display(&self) -> Model {
+        self.known_model().unwrap_or(DEFAULT_MODEL)
     }
 
     /// Sets the model of an earlier connection, until the controller reports another one. No effect if the model is set
     /// or reported.
     pub fn remember(&mut self, model: Model) {
-        if self.known == Known::Nothing {
-            self.known = Known::Remembered(model);
+        if self.model_source == ModelSource::Nothing {
+            self.model_source = ModelSource::Remembered(model);
         }
     }
 
@@ -89,61 +89,62 @@ impl Client {
     /// # Errors
     /// [`Error::ModelRefused`], [`Error::UnknownSoftware`], and errors of the link.
     pub async fn model(&mut self) -> Result<Model, Error> {
-        match self.known {
-            Known::Nothing => self.ask_model().await,
-            Known::Assumed => {
-                self.shown_for = Some(USUAL);
-                Ok(USUAL)
+        match self.model_source {
+            ModelSource::Nothing => self.ask_model().await,
+            ModelSource::Assumed => {
+                self.plan_model = Some(DEFAULT_MODEL);
+                Ok(DEFAULT_MODEL)
             }
-            Known::Named(model) | Known::Remembered(model) | Known::Told(model) => Ok(model),
+            ModelSource::Configured(model) | ModelSource::Remembered(model) | ModelSource::Reported(model) => Ok(model),
         }
     }
 
     /// The model for `make`: the known one, or any if all models have the same result or all fail. Otherwise it is read
     /// first. A remembered model is read again if `make` fails for it, but not for all models.
     pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Error> {
-        let can = || Model::ALL.iter().any(|model| make(*model).is_ok());
-        match self.known {
-            Known::Named(model) | Known::Told(model) => Ok(model),
-            Known::Remembered(model) if self.is_dry() || make(model).is_ok() || !can() => Ok(model),
-            Known::Remembered(_) => self.ask_model().await,
-            Known::Nothing | Known::Assumed => {
-                let first = make(USUAL);
+        let is_supported = || Model::ALL.iter().any(|model| make(*model).is_ok());
+        match self.model_source {
+            ModelSource::Configured(model) | ModelSource::Reported(model) => Ok(model),
+            ModelSource::Remembered(model) if self.is_dry() || make(model).is_ok() || !is_supported() => Ok(model),
+            ModelSource::Remembered(_) => self.ask_model().await,
+            ModelSource::Nothing | ModelSource::Assumed => {
+                let first = make(DEFAULT_MODEL);
                 let mut all = Model::ALL.into_iter().map(&make);
                 let is_open = match &first {
                     Ok(first) => !all.all(|made| made.is_ok_and(|made| made == *first)),
-                    Err(_) => can(),
+                    Err(_) => is_supported(),
                 };
-                self.shown_for = None;
+                self.plan_model = None;
                 if !is_open {
-                    return Ok(USUAL);
+                    return Ok(DEFAULT_MODEL);
                 }
-                let told = self.model().await?;
+                let reported = self.model().await?;
                 if self.is_dry() && first.is_err() {
                     // A dry run cannot read the model: the plan is shown for one that supports the request.
-                    self.shown_for = Model::ALL.into_iter().find(|model| make(*model).is_ok());
+                    self.plan_model = Model::ALL.into_iter().find(|model| make(*model).is_ok());
                 }
-                Ok(self.shown_for.unwrap_or(told))
+                Ok(self.plan_model.unwrap_or(reported))
             }
         }
     }
 
     /// Reads the identification.
     async fn ask_model(&mut self) -> Result<Model, Error> {
-        let question = ReadSystemInfo::new(USUAL, SystemPart::Group(Group::R1)).expect("every model has a first robot");
-        let request = question.request();
+        let query =
+            ReadSystemInfo::new(DEFAULT_MODEL, SystemPart::Group(Group::R1)).expect("every model has a first robot");
+        let request = query.request();
         if self.is_dry() {
             let purpose = self.purpose.take();
             self.plan_if(&request, Reason::about("which model the controller is"));
             self.purpose = purpose;
-            (self.known, self.shown_for) = (Known::Assumed, Some(USUAL));
-            return Ok(USUAL);
+            (self.model_source, self.plan_model) = (ModelSource::Assumed, Some(DEFAULT_MODEL));
+            return Ok(DEFAULT_MODEL);
         }
         let reply = self.raw(&request).await?;
         if !reply.status.is_ok() {
-            return Err(Error::ModelRefused(Refusal { status: reply.status, to: Asked::from(&request) }));
+            return Err(Error::ModelRefused(Refusal { status: reply.status, to: RefusedRequest::from(&request) }));
         }
-        question.decode(&reply.data)?;
+        query.decode(&reply.data)?;
         match self.identity() {
             Some(Identity { model: Some(model), .. }) => Ok(*model),
             Some(Identity { software, .. }) => {
@@ -154,16 +155,16 @@ impl Client {
     }
 
     /// Stores the software version of any reply that contains it.
-    pub(super) fn hear(&mut self, request: &Request, reply: &Reply) {
-        let tells_all = request.service == service::GET_ALL;
-        let tells_version = tells_all || request.service == service::GET_SINGLE && request.attribute == 1;
-        if request.command != SYSTEM_INFO || !tells_version || !reply.status.is_ok() || reply.data.len() < VERSION {
+    pub(super) fn learn_model(&mut self, request: &Request, reply: &Reply) {
+        let has_all_attributes = request.service == service::GET_ALL;
+        let has_version = has_all_attributes || request.service == service::GET_SINGLE && request.attribute == 1;
+        if request.command != SYSTEM_INFO || !has_version || !reply.status.is_ok() || reply.data.len() < VERSION {
             return;
         }
         let software = Text::cut(&reply.data[..VERSION]);
         let model = Model::from_software(software.as_bytes());
-        if let (Some(model), false) = (model, matches!(self.known, Known::Named(_))) {
-            self.known = Known::Told(model);
+        if let (Some(model), false) = (model, matches!(self.model_source, ModelSource::Configured(_))) {
+            self.model_source = ModelSource::Reported(model);
         }
         self.identity = Some(Identity { model, software });
     }
@@ -172,8 +173,8 @@ impl Client {
     ///
     /// # Errors
     /// [`Error::AnotherModel`] if the controller is another model.
-    pub(super) async fn doubt(&mut self, request: &Request, status: Status) -> Result<(), Error> {
-        let Known::Remembered(model) = self.known else { return Ok(()) };
+    pub(super) async fn check_remembered_model(&mut self, request: &Request, status: Status) -> Result<(), Error> {
+        let ModelSource::Remembered(model) = self.model_source else { return Ok(()) };
         // An FS100 with older software refuses these requests too.
         if request.row().is_some_and(|row| row.availability == Availability::Fs114) {
             return Ok(());
@@ -184,8 +185,8 @@ impl Client {
         }
         // The original refusal is reported, whatever the result of this read.
         let found = self.ask_model().await.unwrap_or(model);
-        if self.known == Known::Remembered(model) {
-            self.known = Known::Told(model);
+        if self.model_source == ModelSource::Remembered(model) {
+            self.model_source = ModelSource::Reported(model);
         }
         if found == model { Ok(()) } else { Err(Error::AnotherModel { remembered: model, found }) }
     }
@@ -215,7 +216,7 @@ mod tests {
         let start = Start::parse(start, |_| Err("there are no files".to_owned())).unwrap();
         let endpoint = Endpoint::Simulator { start: Box::new(start), faults: None };
         let mut client = Client::connect(endpoint, Options::auto()).await.unwrap();
-        client.known = Known::Nothing;
+        client.model_source = ModelSource::Nothing;
         client
     }
 
@@ -298,7 +299,7 @@ mod tests {
     #[tokio::test(start_paused = true)]
     async fn what_is_read_anyway_tells_the_model_too() {
         let mut client = unknown("model = \"yrc1000\"").await;
-        client.ask(&ReadSystemInfo::new(USUAL, SystemPart::Application(1)).unwrap()).await.unwrap();
+        client.ask(&ReadSystemInfo::new(DEFAULT_MODEL, SystemPart::Application(1)).unwrap()).await.unwrap();
         assert_eq!((client.known_model(), client.totals.exchanges), (Some(Model::Yrc1000), 1));
     }
 

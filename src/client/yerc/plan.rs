@@ -10,13 +10,13 @@ use armctl_controller::yerc::wire::{HEADER_LEN, LAST_BLOCK, MAX_DATA};
 use serde_json::{Value, json};
 
 use super::{Client, Error, Transport};
-use crate::plan::{FieldInWords, in_common, with_fields};
+use crate::plan::{ReadableField, merge_fields, with_fields};
 use crate::{NotAuthorized, Plan, Reason};
 
 impl Client {
     /// Whether this is a dry run.
     pub fn is_dry(&self) -> bool {
-        matches!(self.transport, Transport::Notes(_))
+        matches!(self.transport, Transport::DryRun(_))
     }
 
     /// Takes the plan so far.
@@ -25,7 +25,7 @@ impl Client {
     }
 
     /// Dry run: sets the purpose of the next request.
-    pub fn is_for(&mut self, purpose: &'static str) -> &mut Self {
+    pub fn for_purpose(&mut self, purpose: &'static str) -> &mut Self {
         self.purpose = self.is_dry().then_some(purpose);
         self
     }
@@ -41,24 +41,24 @@ impl Client {
             return Ok(());
         }
         queries.iter().try_for_each(|query| self.plan_next(&query.request()))?;
-        Err(Error::NotKnown)
+        Err(Error::DryRun)
     }
 
     /// Dry run: plans a request that does not depend on earlier answers.
     pub fn plan_next(&mut self, request: &Request) -> Result<(), NotAuthorized> {
         self.authorize(request)?;
-        self.note(request, Reason::default());
+        self.plan_request(request, Reason::default());
         Ok(())
     }
 
     /// Dry run: plans a request that is sent after an answer, with its purpose.
     pub fn plan(&mut self, request: &Request, about: &str) {
-        self.note(request, Reason::about(about));
+        self.plan_request(request, Reason::about(about));
     }
 
     /// Dry run: plans a request that is sent only after a certain answer.
     pub fn plan_if(&mut self, request: &Request, reason: Reason<'_>) {
-        self.note(request, reason);
+        self.plan_request(request, reason);
     }
 
     /// Dry run: plans a request that depends on an earlier answer. `other` is the request after another answer: bytes
@@ -66,11 +66,11 @@ impl Client {
     pub fn plan_depending(&mut self, request: &Request, other: &Request, reason: Reason<'_>) {
         let id = self.ids.next_id();
         let (frame, other_frame) = (request.frame(id), other.frame(id));
-        let fields = in_common(fields(request, &frame), &fields(other, &other_frame));
+        let fields = merge_fields(fields(request, &frame), &fields(other, &other_frame));
         let depends_on = self.depends_on(reason);
         let reason = Reason { depends_on: depends_on.as_deref(), ..reason };
         if let Some(plan) = self.transport.notes() {
-            plan.note(with_fields(json!({ "hex": masked(&frame, &other_frame) }), &fields), reason);
+            plan.note(with_fields(json!({ "hex": mask_differences(&frame, &other_frame) }), &fields), reason);
         }
     }
 
@@ -92,12 +92,12 @@ impl Client {
     /// and the first block may be the last or have number 0.
     pub fn plan_download(&mut self, request: &Request, reason: Reason<'_>) -> Result<(), NotAuthorized> {
         self.authorize(request)?;
-        let id = self.note(request, reason);
-        let answered = "the received blocks";
-        let depends_on = reason.depends_on.map_or(answered.to_owned(), |before| format!("{before}, and {answered}"));
+        let id = self.plan_request(request, reason);
+        let blocks = "the received blocks";
+        let depends_on = reason.depends_on.map_or(blocks.to_owned(), |before| format!("{before}, and {blocks}"));
         let reason = Reason::about("acknowledges block 1; likewise for each block until the last one");
         let [first, last] = [1, LAST_BLOCK].map(|block| ack_frame(id, request.service, block));
-        self.note_masked(&first, &last, reason.depending_on(&depends_on));
+        self.plan_masked(&first, &last, reason.depending_on(&depends_on));
         Ok(())
     }
 
@@ -109,7 +109,7 @@ impl Client {
         mut give: impl FnMut() -> Result<Vec<u8>, E>,
     ) -> Result<(), E> {
         self.authorize(request)?;
-        let id = self.note(request, reason);
+        let id = self.plan_request(request, reason);
         let mut content = Vec::new();
         loop {
             let piece = give()?;
@@ -118,11 +118,11 @@ impl Client {
             }
             content.extend(piece);
         }
-        self.note_blocks(id, reason.depends_on, &content);
+        self.plan_blocks(id, reason.depends_on, &content);
         Ok(())
     }
 
-    fn note(&mut self, request: &Request, reason: Reason<'_>) -> u8 {
+    fn plan_request(&mut self, request: &Request, reason: Reason<'_>) -> u8 {
         let id = self.ids.next_id();
         let depends_on = self.depends_on(reason);
         let reason = Reason { about: reason.about.or(self.purpose.take()), depends_on: depends_on.as_deref() };
@@ -135,7 +135,7 @@ impl Client {
 
     /// The dependency of a frame, with the model if that is unknown.
     fn depends_on(&self, reason: Reason<'_>) -> Option<String> {
-        let model = self.shown_for.map(|model| format!("the model of the controller; shown for a {model}"));
+        let model = self.plan_model.map(|model| format!("the model of the controller; shown for a {model}"));
         match (reason.depends_on, model) {
             (Some(before), Some(model)) => Some(format!("{before}, and {model}")),
             (before, model) => model.or(before.map(ToOwned::to_owned)),
@@ -143,13 +143,13 @@ impl Client {
     }
 
     /// Plans a frame with two variants: bytes that differ are unknown.
-    fn note_masked(&mut self, frame: &[u8], other: &[u8], reason: Reason<'_>) {
+    fn plan_masked(&mut self, frame: &[u8], other: &[u8], reason: Reason<'_>) {
         if let Some(plan) = self.transport.notes() {
-            plan.note(json!({ "hex": masked(frame, other) }), reason);
+            plan.note(json!({ "hex": mask_differences(frame, other) }), reason);
         }
     }
 
-    fn note_blocks(&mut self, id: u8, depends_on: Option<&str>, content: &[u8]) {
+    fn plan_blocks(&mut self, id: u8, depends_on: Option<&str>, content: &[u8]) {
         let Some(plan) = self.transport.notes() else { return };
         let blocks: Vec<&[u8]> = content.chunks(MAX_DATA).collect();
         for (number, block) in (1u32..).zip(&blocks) {
@@ -163,18 +163,18 @@ impl Client {
 }
 
 /// Readable instance and data of a motion request, without reserved fields.
-fn fields(request: &Request, frame: &[u8]) -> Vec<FieldInWords> {
+fn fields(request: &Request, frame: &[u8]) -> Vec<ReadableField> {
     const INSTANCE: usize = 26;
     if request.risk() < Risk::Motion {
         return Vec::new();
     }
     let notes = describe(frame, Sender::Client, None).fields.into_iter();
-    let told = notes.filter(|note| note.offset == INSTANCE || note.offset >= HEADER_LEN);
-    told.filter(|note| !note.meaning.starts_with("reserved")).map(|note| (note.name, note.meaning)).collect()
+    let fields = notes.filter(|note| note.offset == INSTANCE || note.offset >= HEADER_LEN);
+    fields.filter(|note| !note.meaning.starts_with("reserved")).map(|note| (note.name, note.meaning)).collect()
 }
 
 /// Hexadecimal digits, with `??` where two frames differ.
-fn masked(one: &[u8], other: &[u8]) -> String {
+fn mask_differences(one: &[u8], other: &[u8]) -> String {
     let differs = |index: usize| other.get(index) != one.get(index);
     let digits = one.iter().enumerate().map(|(index, byte)| if differs(index) { "??".into() } else { hex(&[*byte]) });
     digits.collect::<Vec<String>>().concat()

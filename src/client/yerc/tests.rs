@@ -17,7 +17,7 @@ async fn simulated(risk: Risk) -> Client {
 async fn connected(risk: Risk, faults: Option<&str>) -> Client {
     let faults = faults.map(|text| text.parse().unwrap());
     let endpoint = Endpoint::Simulator { start: Box::new(Start::for_model(MODEL)), faults };
-    Client::connect(endpoint, Options::new(MODEL).granting(risk)).await.unwrap()
+    Client::connect(endpoint, Options::new(MODEL).with_risk(risk)).await.unwrap()
 }
 
 #[test]
@@ -46,11 +46,11 @@ async fn a_refusal_is_an_answer_or_an_error() {
     let mut client = simulated(Risk::Write).await;
     let select = SelectJob::new(MODEL, b"NOSUCH", Selection::Execute { line: 0 }).unwrap();
     let refusal = client.try_ask(&select).await.unwrap().unwrap_err();
-    assert_eq!(refusal.to, Asked::Robot { command: 0x87, instance: 1 });
+    assert_eq!(refusal.to, RefusedRequest::Robot { command: 0x87, instance: 1 });
     let error = client.ask(&select).await.unwrap_err();
     assert!(matches!(error, Error::Refused(again) if again == refusal));
     let missing = client.read_file(&FileName::new("NOSUCH.JBI").unwrap()).await.unwrap_err();
-    assert!(matches!(missing, Error::Refused(Refusal { to: Asked::File(service::SAVE), .. })), "{missing}");
+    assert!(matches!(missing, Error::Refused(Refusal { to: RefusedRequest::File(service::SAVE), .. })), "{missing}");
     let exists = client.read_file(&FileName::new("TESTJOB.JBI").unwrap()).await.unwrap();
     assert!(exists.starts_with(b"/JOB"));
     assert_eq!(client.close().await.unwrap().exchanges, 4);
@@ -71,9 +71,9 @@ async fn silence_after_a_change_is_not_silence_after_a_question() {
 
 #[tokio::test(start_paused = true)]
 async fn a_dry_run_notes_orders_and_knows_no_answers() {
-    let mut client = Client::dry_run(Options::new(MODEL).granting(Risk::Motion));
-    client.is_for("power for the move").ask(&Servo(true)).await.unwrap();
-    assert!(matches!(client.ask(&ReadStatus).await, Err(Error::NotKnown)));
+    let mut client = Client::dry_run(Options::new(MODEL).with_risk(Risk::Motion));
+    client.for_purpose("power for the move").ask(&Servo(true)).await.unwrap();
+    assert!(matches!(client.ask(&ReadStatus).await, Err(Error::DryRun)));
     let plan = client.take_plan();
     let abouts: Vec<_> = plan.frames.iter().map(|frame| frame["about"].as_str()).collect();
     assert_eq!(abouts, [Some("power for the move"), None]);
@@ -120,7 +120,7 @@ async fn a_watcher_is_told_frames_and_what_else_was_on_the_line() {
     let told = told.lock().unwrap();
     assert_eq!(told.0, [Direction::Sent; 4]);
     let repeated = Counters { repeats: 3, ..Counters::default() };
-    assert_eq!(told.1, [Event::Disturbed(repeated)]);
+    assert_eq!(told.1, [Event::UnexpectedTraffic(repeated)]);
 }
 
 /// Callers match errors, send them between threads and print them.

@@ -7,7 +7,7 @@ use armctl_controller::yerc::Model;
 use armctl_controller::yerc::simulator::{Simulator, Start};
 use armctl_transport::fault::{FaultSpec, Faults};
 use armctl_transport::session::client::Attached;
-use armctl_transport::session::host::held::Datagrams;
+use armctl_transport::session::host::shared_link::Datagrams;
 use armctl_transport::sim::{InProcess, Peer};
 use armctl_transport::udp::Udp;
 use tokio::time::{Instant, timeout_at};
@@ -91,7 +91,7 @@ pub(super) enum Transport {
     /// A session that holds the link.
     Session(Box<Attached>),
     /// A dry run: requests are only planned.
-    Notes(Plan),
+    DryRun(Plan),
 }
 
 impl Transport {
@@ -100,7 +100,7 @@ impl Transport {
         let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
         match self {
             Self::Udp(udp) => (udp.local(channel).unwrap_or(loopback(0)), udp.peer(channel)),
-            Self::Sim(_) | Self::Session(_) | Self::Notes(_) => (loopback(40000), loopback(PORTS[channel.min(1)])),
+            Self::Sim(_) | Self::Session(_) | Self::DryRun(_) => (loopback(40000), loopback(PORTS[channel.min(1)])),
         }
     }
 
@@ -108,27 +108,27 @@ impl Transport {
     pub(super) fn port(&self, channel: usize) -> Option<u16> {
         match self {
             Self::Udp(udp) => Some(udp.peer(channel).port()),
-            Self::Sim(_) | Self::Session(_) | Self::Notes(_) => None,
+            Self::Sim(_) | Self::Session(_) | Self::DryRun(_) => None,
         }
     }
 
     pub(super) fn session(&mut self) -> Option<&mut Attached> {
         match self {
             Self::Session(session) => Some(session),
-            Self::Udp(_) | Self::Sim(_) | Self::Notes(_) => None,
+            Self::Udp(_) | Self::Sim(_) | Self::DryRun(_) => None,
         }
     }
 
     pub(super) fn ended(&self) -> Option<&str> {
         match self {
             Self::Session(session) => session.ended(),
-            Self::Udp(_) | Self::Sim(_) | Self::Notes(_) => None,
+            Self::Udp(_) | Self::Sim(_) | Self::DryRun(_) => None,
         }
     }
 
     pub(super) fn notes(&mut self) -> Option<&mut Plan> {
         match self {
-            Self::Notes(plan) => Some(plan),
+            Self::DryRun(plan) => Some(plan),
             Self::Udp(_) | Self::Sim(_) | Self::Session(_) => None,
         }
     }
@@ -138,7 +138,7 @@ impl Transport {
         match self {
             Self::Udp(udp) => udp.renew(channel),
             Self::Session(session) => session.renew(number(channel)),
-            Self::Sim(_) | Self::Notes(_) => {}
+            Self::Sim(_) | Self::DryRun(_) => {}
         }
     }
 
@@ -150,7 +150,7 @@ impl Transport {
                 sim.send(channel, bytes);
                 Ok(())
             }
-            Self::Notes(_) => Ok(()),
+            Self::DryRun(_) => Ok(()),
         }
     }
 
@@ -165,7 +165,7 @@ impl Transport {
             Self::Udp(udp) => udp.receive(channel, buffer, until).await,
             Self::Session(session) => session.receive(number(channel), buffer, until).await,
             Self::Sim(sim) => Ok(timeout_at(until, sim.receive(channel, buffer)).await.ok()),
-            Self::Notes(_) => Ok(None),
+            Self::DryRun(_) => Ok(None),
         }
     }
 }

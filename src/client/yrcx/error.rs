@@ -77,31 +77,31 @@ pub enum Error {
     },
     /// An earlier command of this client still runs; the controller takes one at a time.
     #[error("{} still runs", .command.row().id)]
-    UnderWay {
+    CommandRunning {
         /// The command.
         command: Command,
     },
     /// An earlier command of another client of the session still runs.
     #[error("a command of another client still runs")]
-    OthersUnderWay {
+    OtherClientRunning {
         /// Its words WI0 to WI15.
         words: Box<Words>,
     },
     /// Another signal procedure still runs.
     #[error("another procedure is switching signals")]
-    SignalsUnderWay,
+    ProcedureRunning,
     /// Words were not sent in time.
     #[error("the words were not sent in time")]
     WordsNotSent,
     /// The fieldbus carries only signals, not the words of remote commands.
     #[error("{} is a remote command, but this fieldbus connection carries only signals", .command.row().id)]
-    SignalsAlone {
+    SignalsOnly {
         /// The command.
         command: Command,
     },
     /// A monitoring client cannot command the controller ([`Options::commands`](super::Options::commands)).
     #[error("{what} needs a connection that commands the controller")]
-    NotCommanding {
+    MonitorOnly {
         /// The refused action.
         what: String,
     },
@@ -129,7 +129,7 @@ pub enum Error {
     Session(SessionBusy),
     /// A dry run sends nothing and has no answer.
     #[error("a dry run has no answer")]
-    NotKnown,
+    DryRun,
     /// An internal error: an exchange ended without an outcome.
     #[error("internal error: {what} ended without a result")]
     NoReport {

@@ -13,14 +13,14 @@ use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
 use super::error::Error;
-use super::turns::LONG;
+use super::event_loop::NO_DEADLINE;
 use super::{Client, Done, Transport};
 use crate::Reason;
 
 /// Limit of link faults while a jog is stopped.
 const MOST_FAULTS: u32 = 100;
 
-pub(super) struct Seen {
+pub(super) struct JogOutcome {
     pub(super) outcome: Outcome,
     /// Whether the jog was still running when it was stopped.
     is_stopped: bool,
@@ -38,13 +38,13 @@ impl Client {
     pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Error> {
         self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {
-            self.note(order, Reason::default());
+            self.plan_order(order, Reason::default());
             for procedure in [false, true].into_iter().filter_map(|on| Procedure::set(input::STOP, on)) {
-                self.note_steps(&procedure);
+                self.plan_steps(&procedure);
             }
             return Ok(Done::default());
         }
-        let Seen { outcome, is_stopped, cut } = self.see_through(order, time).await?;
+        let JogOutcome { outcome, is_stopped, cut } = self.run_jog(order, time).await?;
         let done = self.reply(outcome).and_then(|reply| match reply.answer {
             Answer::Refused { alarm: STOP_INPUT, positions } if is_stopped => {
                 Ok(Done { values: positions, elapsed: reply.elapsed })
@@ -57,10 +57,10 @@ impl Client {
     }
 
     /// Jogs and stops. The stop input stays off if the exchange does not end normally.
-    pub(super) async fn see_through(&mut self, order: &Order, time: Option<Duration>) -> Result<Seen, Error> {
+    pub(super) async fn run_jog(&mut self, order: &Order, time: Option<Duration>) -> Result<JogOutcome, Error> {
         self.start(order).await?;
-        self.bequeath_stop(true);
-        let cut = self.go_on(time).await.err();
+        self.set_stop_last_will(true);
+        let cut = self.run_for(time).await.err();
         let (now, is_stopped) = (self.now(), self.exchange.is_some());
         if let Some(exchange) = &mut self.exchange {
             exchange.interrupt(now);
@@ -73,20 +73,20 @@ impl Client {
             return Err(match cut {
                 // The session did not send the jog, so there is nothing to stop.
                 Some(denied @ Error::Session(SessionBusy::ReadOnly)) if self.exchange.is_none() => {
-                    self.bequeath_stop(false);
+                    self.set_stop_last_will(false);
                     denied
                 }
                 cut => Error::StillMoving { cut: cut.map(Box::new) },
             });
         };
         self.await_link(&outcome, None).await;
-        self.bequeath_stop(false);
+        self.set_stop_last_will(false);
         self.count(order, &outcome);
-        Ok(Seen { outcome, is_stopped, cut })
+        Ok(JogOutcome { outcome, is_stopped, cut })
     }
 
     /// Sets or clears the last will of the session: it switches the stop input off if this process is killed.
-    fn bequeath_stop(&mut self, on: bool) {
+    fn set_stop_last_will(&mut self, on: bool) {
         let Transport::Image(link) = &mut self.transport else { return };
         let mut mask = Image::default();
         input::STOP.set(&mut mask, true);
@@ -95,11 +95,11 @@ impl Client {
     }
 
     /// Runs until the jog reaches its time or ends.
-    async fn go_on(&mut self, time: Option<Duration>) -> Result<(), Error> {
+    async fn run_for(&mut self, time: Option<Duration>) -> Result<(), Error> {
         while let Some(exchange) = &self.exchange {
             let until = match time.zip(exchange.sent()) {
                 Some((time, sent)) => self.started + sent + time,
-                None => Instant::now() + LONG,
+                None => Instant::now() + NO_DEADLINE,
             };
             if Instant::now() >= until {
                 break;

@@ -7,20 +7,20 @@
 //!
 //! Any [`ImageLink`] works: EtherNet/IP, DeviceNet, PROFIBUS, a session, or a simulator in this process.
 
+mod continuous_output;
 mod error;
-mod hold;
+mod event_loop;
+mod exchange;
+mod general_words;
 mod jog;
-mod order;
-mod output;
 mod plan;
+mod session_rules;
 mod shared;
 mod signals;
 mod simulated;
 mod stop;
 #[cfg(test)]
 mod tests;
-mod turns;
-mod words;
 
 use std::time::Duration;
 
@@ -37,11 +37,11 @@ use armctl_transport::image::{ImageLink, LinkError, Traffic};
 use tokio::time::Instant;
 
 pub use self::error::{Error, Refusal};
-pub use self::hold::hold;
-pub use self::order::{Done, Reply};
+pub use self::exchange::{Done, Reply};
 pub use self::plan::hex;
+pub use self::session_rules::hold;
 pub use self::simulated::Simulated;
-pub use self::stop::Stopped;
+pub use self::stop::StopResult;
 use crate::{Grant, Plan, STOP_WITHIN, Watcher};
 
 /// A connection to one controller. It belongs to one thread, as fieldbus links do.
@@ -56,7 +56,7 @@ pub struct Client {
     /// The output image to send.
     output: Output,
     /// The output image last passed to the transport.
-    shown: Option<Image>,
+    last_output: Option<Image>,
     /// Whether the transport has not sent it yet. No newer image is passed until then: a command must not overtake its
     /// data.
     in_flight: bool,
@@ -71,10 +71,10 @@ pub struct Client {
     finished: Option<sequence::Outcome>,
     policy: Policy,
     /// Time limit of a procedure for one output signal.
-    patience: Duration,
+    procedure_timeout: Duration,
     timeout: Duration,
     retries: u32,
-    granted: Grant,
+    grant: Grant,
     /// Whether a program, or a motion by signals, was started that continues by itself.
     has_started: bool,
     /// General-purpose words before a remote command, which are restored after it.
@@ -84,7 +84,7 @@ pub struct Client {
     /// Whether a session holds the link, so that others may use it too.
     is_shared: bool,
     /// Whether a remote command has ended, so that another client may send the next one.
-    is_over: bool,
+    is_turn_over: bool,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,
     totals: Totals,
@@ -94,7 +94,7 @@ pub struct Client {
 enum Transport {
     Image(Box<ImageLink>),
     /// A dry run: requests are only planned.
-    Notes(Plan),
+    DryRun(Plan),
     /// No transport.
     Nothing,
 }
@@ -108,7 +108,7 @@ pub struct Options {
     /// its connection ends.
     pub is_held: bool,
     /// The highest risk that may be sent.
-    pub granted: Grant,
+    pub grant: Grant,
     /// Time limit of one attempt: until the controller is ready, takes a command, or sends an image. Execution has its
     /// own limits: at least 10 s, 30 s for motor power, none for motions.
     pub timeout: Duration,
@@ -119,21 +119,15 @@ pub struct Options {
 impl Default for Options {
     /// Read only, on a connection that commands the controller, with the default limits: 3 s, 3 retries.
     fn default() -> Self {
-        Self {
-            commands: true,
-            is_held: false,
-            granted: Grant::default(),
-            timeout: Policy::default().accept,
-            retries: 3,
-        }
+        Self { commands: true, is_held: false, grant: Grant::default(), timeout: Policy::default().accept, retries: 3 }
     }
 }
 
 impl Options {
     /// Authorizes this risk and everything below it.
     #[must_use]
-    pub fn granting(self, risk: Risk) -> Self {
-        Self { granted: Grant::of(risk), ..self }
+    pub fn with_risk(self, risk: Risk) -> Self {
+        Self { grant: Grant::up_to(risk), ..self }
     }
 }
 
@@ -142,9 +136,9 @@ impl Options {
 #[non_exhaustive]
 pub enum Event {
     /// This image was sent to the controller.
-    Shown(Image),
+    ImageSent(Image),
     /// This image was received from the controller.
-    Seen(Image),
+    ImageReceived(Image),
     /// CPU OK (SO(01)) is off in the first image of a monitoring connection: the controller is not working, or the data
     /// does not come from a controller.
     CpuNotOk,
@@ -161,15 +155,15 @@ pub enum Event {
         stop: Option<bool>,
     },
     /// The controller had this status before the command; it is reset first.
-    Leftover(Command, Status),
+    StatusReset(Command, Status),
     /// The command has ended, and the controller is not ready again.
     NotReleased(Command),
     /// A command that ran on without a caller was refused or aborted.
-    BrokenOff(Command, Alarm),
+    Aborted(Command, Alarm),
     /// A command that ran on without a caller ended without an answer.
     Unanswered(Error),
     /// A command that another client of the session had left running has ended.
-    LeftByOthers {
+    OtherCommandEnded {
         /// WI0 to WI15.
         words: Words,
         /// WO0 to WO15.
@@ -191,8 +185,8 @@ pub struct Totals {
 }
 
 /// Minimum time limit where the manual gives none.
-const QUICK: Duration = Duration::from_secs(10);
-const POWER: Duration = Duration::from_secs(30);
+const QUICK_WITHIN: Duration = Duration::from_secs(10);
+const POWER_WITHIN: Duration = Duration::from_secs(30);
 
 impl Client {
     /// Takes over a link and waits for the first image of the controller: [`over`](Self::over) and
@@ -231,26 +225,26 @@ impl Client {
     }
 
     /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
-    /// returns [`Error::NotKnown`].
+    /// returns [`Error::DryRun`].
     pub fn dry_run(options: Options) -> Self {
-        Self::new(Transport::Notes(Plan::default()), Image::BYTES, options)
+        Self::new(Transport::DryRun(Plan::default()), Image::BYTES, options)
     }
 
     /// A client without a link, for requests to the fieldbus device only. A request to the controller returns
     /// [`Error::Silent`].
-    pub fn apart(options: Options) -> Self {
+    pub fn without_link(options: Options) -> Self {
         Self::new(Transport::Nothing, Image::BYTES, Options { commands: false, ..options })
     }
 
     fn new(transport: Transport, size: usize, options: Options) -> Self {
-        let Options { commands, is_held, granted, timeout, retries } = options;
+        let Options { commands, is_held, grant, timeout, retries } = options;
         let policy = Policy {
             ready: timeout,
             accept: timeout,
             release: timeout,
             stop: STOP_WITHIN,
-            quick: timeout.max(QUICK),
-            power: timeout.max(POWER),
+            quick: timeout.max(QUICK_WITHIN),
+            power: timeout.max(POWER_WITHIN),
             ..Policy::default()
         };
         Self {
@@ -258,7 +252,7 @@ impl Client {
             size,
             is_owner: commands,
             output: Output::new(resting()),
-            shown: None,
+            last_output: None,
             in_flight: false,
             input: None,
             is_up: true,
@@ -267,15 +261,15 @@ impl Client {
             sequence: None,
             finished: None,
             policy,
-            patience: timeout.max(QUICK),
+            procedure_timeout: timeout.max(QUICK_WITHIN),
             timeout,
             retries,
-            granted,
+            grant,
             has_started: false,
             words: Words::default(),
             is_held,
             is_shared: false,
-            is_over: false,
+            is_turn_over: false,
             started: Instant::now(),
             watcher: Box::new(()),
             totals: Totals::default(),
@@ -288,8 +282,8 @@ impl Client {
     }
 
     /// Sets the grant for all further requests.
-    pub fn grant(&mut self, granted: Grant) {
-        self.granted = granted;
+    pub fn grant(&mut self, grant: Grant) {
+        self.grant = grant;
     }
 
     /// Checks one request, as the last step before it is sent.
@@ -297,7 +291,7 @@ impl Client {
     /// # Errors
     /// [`Error::NotAuthorized`].
     pub fn authorize(&self, what: &str, risk: Risk) -> Result<(), Error> {
-        Ok(self.granted.check(risk, what)?)
+        Ok(self.grant.check(risk, what)?)
     }
 
     /// Whether a session holds the link, so that others may use it too.
@@ -329,7 +323,7 @@ impl Client {
     pub fn traffic(&self) -> Option<Traffic> {
         match &self.transport {
             Transport::Image(link) => link.traffic(),
-            Transport::Notes(_) | Transport::Nothing => None,
+            Transport::DryRun(_) | Transport::Nothing => None,
         }
     }
 
@@ -354,7 +348,7 @@ impl Client {
     pub async fn end(self) -> Result<(), LinkError> {
         match self.transport {
             Transport::Image(link) => link.close().await,
-            Transport::Notes(_) | Transport::Nothing => Ok(()),
+            Transport::DryRun(_) | Transport::Nothing => Ok(()),
         }
     }
 }

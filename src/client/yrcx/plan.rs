@@ -8,37 +8,37 @@ use armctl_controller::yrcx::procedure::{Procedure, Step};
 use serde_json::{Value, json};
 
 use super::{Client, Error, Transport};
-use crate::plan::{FieldInWords, in_common, with_fields};
+use crate::plan::{ReadableField, merge_fields, with_fields};
 use crate::{Plan, Reason};
 
 impl Client {
     /// Whether this is a dry run.
     pub fn is_dry(&self) -> bool {
-        matches!(self.transport, Transport::Notes(_))
+        matches!(self.transport, Transport::DryRun(_))
     }
 
     /// Takes the plan so far.
     pub fn take_plan(&mut self) -> Plan {
-        self.notes().map(std::mem::take).unwrap_or_default()
+        self.plan_mut().map(std::mem::take).unwrap_or_default()
     }
 
     /// Dry run: plans reads whose answers are then unknown.
     ///
     /// # Errors
-    /// [`Error::NotKnown`], in a dry run.
+    /// [`Error::DryRun`], in a dry run.
     pub fn plan_all(&mut self, orders: &[Order]) -> Result<(), Error> {
         if !self.is_dry() || orders.is_empty() {
             return Ok(());
         }
         for order in orders {
-            self.note(order, Reason::default());
+            self.plan_order(order, Reason::default());
         }
-        Err(Error::NotKnown)
+        Err(Error::DryRun)
     }
 
     /// Dry run: plans an order that depends on earlier answers.
     pub fn plan(&mut self, order: &Order, about: &str) {
-        self.note(order, Reason::about(about));
+        self.plan_order(order, Reason::about(about));
     }
 
     /// Dry run: plans an order that depends on an earlier answer. `other` is the order after another answer: words that
@@ -46,45 +46,45 @@ impl Client {
     pub fn plan_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
         let word = |(one, other): (&u16, &u16)| if one == other { format!("0x{one:04X}") } else { "?".to_owned() };
         let words: Vec<String> = order.words().iter().zip(other.words()).map(word).collect();
-        let fields = in_common(fields(order), &fields(other));
+        let fields = merge_fields(fields(order), &fields(other));
         self.plan_frame(with_fields(json!({ "wi": words }), &fields), reason);
     }
 
     /// Dry run: plans a frame to the fieldbus device instead of the controller.
     pub fn plan_frame(&mut self, frame: Value, reason: Reason<'_>) {
-        if let Some(plan) = self.notes() {
+        if let Some(plan) = self.plan_mut() {
             plan.note(frame, reason);
         }
     }
 
     /// Dry run: adds the planned action for a file or a part.
     pub fn plan_item(&mut self, item: Value) {
-        if let Some(plan) = self.notes() {
+        if let Some(plan) = self.plan_mut() {
             plan.items.push(item);
         }
     }
 
     /// Dry run: describes later steps whose frames are not known yet.
     pub fn then(&mut self, what: &str) {
-        if let Some(plan) = self.notes() {
+        if let Some(plan) = self.plan_mut() {
             plan.then(what);
         }
     }
 
-    pub(super) fn notes(&mut self) -> Option<&mut Plan> {
+    pub(super) fn plan_mut(&mut self) -> Option<&mut Plan> {
         match &mut self.transport {
-            Transport::Notes(plan) => Some(plan),
+            Transport::DryRun(plan) => Some(plan),
             Transport::Image(_) | Transport::Nothing => None,
         }
     }
 
-    pub(super) fn note(&mut self, order: &Order, reason: Reason<'_>) {
+    pub(super) fn plan_order(&mut self, order: &Order, reason: Reason<'_>) {
         self.plan_frame(with_fields(json!({ "wi": hex(order.words()) }), &fields(order)), reason);
     }
 
     /// Plans the image of each step of a procedure.
-    pub(super) fn note_steps(&mut self, procedure: &Procedure) {
-        let Transport::Notes(plan) = &mut self.transport else { return };
+    pub(super) fn plan_steps(&mut self, procedure: &Procedure) {
+        let Transport::DryRun(plan) = &mut self.transport else { return };
         let image = &mut self.output.next;
         for step in &procedure.steps {
             let (signal, on) = match *step {
@@ -92,20 +92,20 @@ impl Client {
                 Step::Rise(signal) => (signal, true),
                 Step::Require { .. } | Step::Await { .. } => continue,
             };
-            let is_there = signal.is_on(image) == on;
+            let is_already_set = signal.is_on(image) == on;
             signal.set(image, on);
             let [now, before] = if on { ["on", "off"] } else { ["off", "on"] };
             let about = format!("{} {now}", signal.named());
             let depends_on = format!("the earlier signals: sent only if {} is {before}", signal.name());
             let reason = Reason::about(&about);
-            let reason = if is_there { reason.depending_on(&depends_on) } else { reason };
+            let reason = if is_already_set { reason.depending_on(&depends_on) } else { reason };
             plan.note(json!({ "bits": hex(&image.0[COMMAND_WORDS..]) }), reason);
         }
     }
 }
 
 /// Readable fields of a motion order, without absent ones.
-fn fields(order: &Order) -> Vec<FieldInWords> {
+fn fields(order: &Order) -> Vec<ReadableField> {
     if order.risk() < Risk::Motion {
         return Vec::new();
     }

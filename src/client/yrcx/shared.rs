@@ -16,30 +16,30 @@ impl Client {
     /// not this client.
     pub(super) fn join(&mut self) {
         let Transport::Image(link) = &self.transport else { return };
-        if link.shown().is_none() {
+        if link.output().is_none() {
             return;
         }
         (self.is_shared, self.is_held, self.is_up) = (true, true, link.is_up());
-        self.shown_now();
+        self.adopt_session_output();
     }
 
-    pub(super) fn shown_now(&mut self) {
+    pub(super) fn adopt_session_output(&mut self) {
         let Transport::Image(link) = &self.transport else { return };
-        let Some(image) = link.shown().and_then(image) else { return };
+        let Some(image) = link.output().and_then(image) else { return };
         self.output = Output::new(image);
         if self.is_up {
             let now = self.now();
             self.output.sent(now);
-            self.shown = Some(image);
+            self.last_output = Some(image);
         }
     }
 
     /// Applies bits or a command that another client has sent.
-    pub(super) fn shown_by_others(&mut self, now: Now, change: &Change) {
+    pub(super) fn apply_change(&mut self, now: Now, change: &Change) {
         let (Some(mask), Some(value)) = (image(&change.mask), image(&change.value)) else { return };
-        let mut shown = Output::new(self.shown.unwrap_or_default());
-        shown.changed(now, &mask, &value);
-        self.shown = self.shown.map(|_| shown.next);
+        let mut last_output = Output::new(self.last_output.unwrap_or_default());
+        last_output.changed(now, &mask, &value);
+        self.last_output = self.last_output.map(|_| last_output.next);
         self.output.changed(now, &mask, &value);
     }
 
@@ -64,23 +64,23 @@ impl Client {
     /// Waits for the turn to send a remote command, and applies everything that others sent before. With an older image
     /// a client could mistake its new command for one already sent.
     pub(super) async fn acquire(&mut self) -> Result<(), Error> {
-        self.is_over = false;
+        self.is_turn_over = false;
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
-        link.take(Instant::now() + self.timeout).await.map_err(Error::Session)?;
+        link.acquire(Instant::now() + self.timeout).await.map_err(Error::Session)?;
         self.catch_up().await
     }
 
     /// Passes the turn on once the last command has ended.
     pub(super) fn release(&mut self) {
-        if std::mem::take(&mut self.is_over)
+        if std::mem::take(&mut self.is_turn_over)
             && let Transport::Image(link) = &mut self.transport
         {
-            link.give();
+            link.release();
         }
     }
 
     /// An error if the link cannot come back.
-    pub(super) fn still_there(&self) -> Result<(), Error> {
+    pub(super) fn check_session(&self) -> Result<(), Error> {
         let Transport::Image(link) = &self.transport else { return Ok(()) };
         match link.ended() {
             Some(why) => Err(Error::Session(SessionBusy::Ended(why.to_owned()))),
@@ -89,8 +89,8 @@ impl Client {
     }
 
     /// Checks that a command that another client left running has ended: replacing it would stop it.
-    /// [`Error::OthersUnderWay`] while it runs.
-    pub(super) async fn end_others(&mut self) -> Result<(), Error> {
+    /// [`Error::OtherClientRunning`] while it runs.
+    pub(super) async fn check_other_commands(&mut self) -> Result<(), Error> {
         let words = self.output.next.command();
         if !self.is_shared || self.exchange.is_some() || words[0] == Status::Ready.word() {
             return Ok(());
@@ -100,14 +100,14 @@ impl Client {
             let seen = self.input.unwrap_or_default().command();
             match Status::from_word(seen[0]) {
                 Status::Running => {
-                    self.is_over = true;
+                    self.is_turn_over = true;
                     self.release();
-                    return Err(Error::OthersUnderWay { words: Box::new(words) });
+                    return Err(Error::OtherClientRunning { words: Box::new(words) });
                 }
                 // The controller may not have taken the command yet.
                 Status::Ready if Instant::now() < until && self.is_up => self.turn_until(until).await?,
                 _ => {
-                    self.watcher.event(Event::LeftByOthers { words, answer: seen });
+                    self.watcher.event(Event::OtherCommandEnded { words, answer: seen });
                     return Ok(());
                 }
             }

@@ -18,28 +18,28 @@ impl Client {
     ///
     /// # Errors
     /// [`Error::Unfinished`] without confirmation by the controller.
-    pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Error> {
+    pub async fn run_procedure(&mut self, procedure: Procedure) -> Result<Duration, Error> {
         if !procedure.only_awaits() {
             self.authorize_command(procedure.name, procedure.risk)?;
         }
         if self.is_dry() {
-            self.note_steps(&procedure);
-            return if procedure.risk == Risk::Read { Err(Error::NotKnown) } else { Ok(Duration::ZERO) };
+            self.plan_steps(&procedure);
+            return if procedure.risk == Risk::Read { Err(Error::DryRun) } else { Ok(Duration::ZERO) };
         }
-        let longest = if procedure.stops() { STOP_WITHIN } else { Duration::MAX };
-        self.switch(procedure, longest).await
+        let limit = if procedure.stops() { STOP_WITHIN } else { Duration::MAX };
+        self.switch(procedure, limit).await
     }
 
-    /// [`carry_out`](Self::carry_out) with a time limit and without authorization: a stop is always allowed.
-    pub(super) async fn switch(&mut self, procedure: Procedure, longest: Duration) -> Result<Duration, Error> {
+    /// [`run_procedure`](Self::run_procedure) with a time limit and without authorization: a stop is always allowed.
+    pub(super) async fn switch(&mut self, procedure: Procedure, limit: Duration) -> Result<Duration, Error> {
         self.catch_up().await?;
         self.claim_motion(procedure.risk).await?;
         let name = procedure.name;
         self.has_started |= procedure.risk == Risk::Motion;
-        let began = Instant::now();
-        self.start_sequence(Sequence::new(procedure, self.patience).within(longest))?;
-        match self.until_finished().await? {
-            sequence::Outcome::Done => Ok(began.elapsed()),
+        let start = Instant::now();
+        self.start_sequence(Sequence::new(procedure, self.procedure_timeout).within(limit))?;
+        match self.wait_for_procedure().await? {
+            sequence::Outcome::Done => Ok(start.elapsed()),
             outcome => Err(Error::Unfinished { name, outcome }),
         }
     }
@@ -48,9 +48,9 @@ impl Client {
     ///
     /// # Errors
     /// [`Error::Silent`] without an image within the time limit.
-    pub async fn look(&mut self) -> Result<Image, Error> {
+    pub async fn input_image(&mut self) -> Result<Image, Error> {
         if self.is_dry() {
-            return Err(Error::NotKnown);
+            return Err(Error::DryRun);
         }
         self.catch_up().await?;
         let until = Instant::now() + self.timeout;
@@ -69,10 +69,10 @@ impl Client {
     ///
     /// # Errors
     /// [`Error::Silent`] when the link is lost; the next call waits until it is open again.
-    pub async fn look_until(&mut self, mut matters: impl FnMut(&Image) -> bool) -> Result<Image, Error> {
+    pub async fn wait_for_input(&mut self, mut condition: impl FnMut(&Image) -> bool) -> Result<Image, Error> {
         loop {
             let was_up = self.is_up;
-            if let Some(image) = self.input.filter(|image| matters(image)) {
+            if let Some(image) = self.input.filter(|image| condition(image)) {
                 return Ok(image);
             }
             self.turn().await?;
@@ -83,7 +83,7 @@ impl Client {
     }
 
     /// The output image; `None` if another client owns it.
-    pub fn shown(&self) -> Option<&Image> {
+    pub fn output_image(&self) -> Option<&Image> {
         (self.is_owner || self.is_shared).then_some(&self.output.next)
     }
 }

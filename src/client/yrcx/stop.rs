@@ -17,7 +17,7 @@ use crate::STOP_WITHIN;
 
 /// What a stop ended.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Stopped {
+pub enum StopResult {
     /// Nothing: no motion was sent.
     Nothing,
     /// A motion. The stop input was switched off and is on again.
@@ -32,7 +32,7 @@ pub enum Stopped {
     /// A command without motion.
     Command(Command),
     /// Nothing: the command had already ended, with this alarm after a failure.
-    HadEnded(Command, Option<Alarm>),
+    AlreadyEnded(Command, Option<Alarm>),
 }
 
 impl Client {
@@ -41,7 +41,7 @@ impl Client {
     ///
     /// # Errors
     /// [`Error::OutcomeUnknown`] if the end was not observed: the stop input stays off.
-    pub async fn stop(&mut self) -> Result<Stopped, Error> {
+    pub async fn stop(&mut self) -> Result<StopResult, Error> {
         self.abandon_sequence();
         let until = Instant::now() + STOP_WITHIN;
         let now = self.now();
@@ -51,28 +51,28 @@ impl Client {
             if matches!(order.row().pace, Pace::Motion | Pace::Jog) {
                 self.watcher.event(Event::Stopping);
             }
-            let outcome = self.until_ended(Some(until)).await?;
+            let outcome = self.wait_for_outcome(Some(until)).await?;
             let command = order.command();
             return match outcome.ended {
                 Ended::Answered(Answer::Refused { alarm, positions }) if alarm == STOP_INPUT => {
-                    Ok(Stopped::Motion { order: Box::new(order), positions })
+                    Ok(StopResult::Motion { order: Box::new(order), positions })
                 }
-                Ended::Answered(Answer::Refused { alarm, .. }) => Ok(Stopped::HadEnded(command, Some(alarm))),
-                Ended::Answered(_) => Ok(Stopped::HadEnded(command, None)),
-                Ended::NotSent(_) => Ok(Stopped::Nothing),
-                Ended::Stopped => Ok(Stopped::Command(command)),
+                Ended::Answered(Answer::Refused { alarm, .. }) => Ok(StopResult::AlreadyEnded(command, Some(alarm))),
+                Ended::Answered(_) => Ok(StopResult::AlreadyEnded(command, None)),
+                Ended::NotSent(_) => Ok(StopResult::Nothing),
+                Ended::Stopped => Ok(StopResult::Command(command)),
                 Ended::NoAnswer(_) | Ended::OutcomeUnknown(_) => Err(self.unanswered(&outcome)),
             };
         }
         if !self.has_started {
-            return Ok(Stopped::Nothing);
+            return Ok(StopResult::Nothing);
         }
         self.watcher.event(Event::Stopping);
         for procedure in [Some(Procedure::stop()), Procedure::set(input::STOP, true)].into_iter().flatten() {
             self.switch(procedure, until.saturating_duration_since(Instant::now())).await?;
         }
         self.has_started = false;
-        Ok(Stopped::Started)
+        Ok(StopResult::Started)
     }
 
     /// Whether a jog runs, which only a stop ends.

@@ -9,17 +9,17 @@ use armctl_controller::yrcx::session::Silence;
 use armctl_controller::yrcx::signal::output;
 use armctl_controller::yrcx::value::Key;
 use armctl_transport::image::ImagePeer;
-use armctl_transport::session::client::{Found, attach_at};
+use armctl_transport::session::client::{AttachResult, attach_at};
 use armctl_transport::session::host::Host;
-use armctl_transport::session::host::held::Held;
-use armctl_transport::session::place::Spot;
+use armctl_transport::session::host::shared_link::SharedLink;
+use armctl_transport::session::location::SessionPath;
 use armctl_transport::session::wire::Info;
 use tokio::time::timeout;
 
 use super::*;
 
 async fn simulated(risk: Risk) -> Client {
-    Client::simulated(Start::default(), Options::default().granting(risk)).await.unwrap()
+    Client::simulated(Start::default(), Options::default().with_risk(risk)).await.unwrap()
 }
 
 fn order(draft: Draft) -> Order {
@@ -58,7 +58,7 @@ impl ImagePeer for Deaf {
 
 async fn deaf(risk: Risk, gone: Option<Duration>) -> Client {
     let link = ImageLink::in_process(Box::new(Deaf(gone)));
-    Client::connect(link, Options::default().granting(risk)).await.unwrap()
+    Client::connect(link, Options::default().with_risk(risk)).await.unwrap()
 }
 
 /// Takes a command and then runs forever.
@@ -90,7 +90,7 @@ async fn a_stop_says_within_3_s_that_nobody_confirmed_it() {
     let power = order(Command::ServoFree.order().with(Key::Axes, "1"));
     for what in [motion(), jog(), power] {
         let link = ImageLink::in_process(Box::<Stuck>::default());
-        let mut client = Client::connect(link, Options::default().granting(Risk::Motion)).await.unwrap();
+        let mut client = Client::connect(link, Options::default().with_risk(Risk::Motion)).await.unwrap();
         assert!(timeout(Duration::from_secs(1), client.ask(&what)).await.is_err());
         let began = Instant::now();
         let stopped = client.stop().await;
@@ -98,19 +98,19 @@ async fn a_stop_says_within_3_s_that_nobody_confirmed_it() {
         assert!(began.elapsed() <= Duration::from_secs(3), "{:?}", began.elapsed());
     }
     let link = ImageLink::in_process(Box::<Stuck>::default());
-    let mut client = Client::connect(link, Options::default().granting(Risk::Write)).await.unwrap();
+    let mut client = Client::connect(link, Options::default().with_risk(Risk::Write)).await.unwrap();
     for stop in [Procedure::stop(), Procedure::emergency_stop()] {
         let began = Instant::now();
-        let stopped = client.carry_out(stop).await;
+        let stopped = client.run_procedure(stop).await;
         assert!(matches!(stopped, Err(Error::Unfinished { .. })), "{stopped:?}");
         assert!(began.elapsed() <= Duration::from_secs(3), "{:?}", began.elapsed());
     }
 }
 
 /// A client of the session at this spot.
-async fn attached(spot: &Spot) -> Client {
-    let Found::Session(attached) =
-        attach_at(spot, "cell", "test", armctl_transport::session::wire::Purpose::Any).await.unwrap()
+async fn attached(location: &SessionPath) -> Client {
+    let AttachResult::Session(attached) =
+        attach_at(location, "cell", "test", armctl_transport::session::wire::Purpose::Any).await.unwrap()
     else {
         panic!("nobody holds it")
     };
@@ -120,14 +120,14 @@ async fn attached(spot: &Spot) -> Client {
 #[tokio::test]
 async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
     let folder = tempfile::tempdir().unwrap();
-    let spot = Spot::at(folder.path().join("cell"));
+    let location = SessionPath::at(folder.path().join("cell"));
     let info = Info { pid: 1, ..Info::own("cell", "yrcx", "sim:", "armctl session open") };
-    let claim = spot.claim(&info).unwrap().unwrap();
+    let claim = location.claim(&info).unwrap().unwrap();
     let link = ImageLink::in_process(Box::new(Simulated::new(Start::default())));
-    let held = Held::Images(hold(link, true, Instant::now() + Duration::from_secs(60)).await.unwrap());
+    let held = SharedLink::Images(hold(link, true, Instant::now() + Duration::from_secs(60)).await.unwrap());
     let mut host = Host::new(claim, "cell".to_owned(), info, held, |_| {}).unwrap();
     let work = async {
-        let (mut one, mut other) = (attached(&spot).await, attached(&spot).await);
+        let (mut one, mut other) = (attached(&location).await, attached(&location).await);
         let (here, there) = (point(1), point(2));
         for _ in 0..100 {
             // Both clients need the link at once: each must wait for the command of the other.
@@ -145,16 +145,16 @@ async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
 #[tokio::test(start_paused = true)]
 async fn nothing_leaves_that_was_not_granted_but_a_stop() {
     let mut client = simulated(Risk::Motion).await;
-    client.carry_out(Procedure::run()).await.unwrap();
+    client.run_procedure(Procedure::run()).await.unwrap();
     client.grant(Grant::default());
     let denied = client.ask(&motion()).await.unwrap_err();
     assert!(matches!(&denied, Error::NotAuthorized(denied) if denied.risk == Risk::Motion), "{denied}");
     assert_eq!(client.totals().commands, 0);
-    assert!(output::PROGRAM_RUNNING.is_on(&client.look().await.unwrap()));
-    assert_eq!(client.stop().await.unwrap(), Stopped::Started);
-    assert!(!output::PROGRAM_RUNNING.is_on(&client.look().await.unwrap()));
+    assert!(output::PROGRAM_RUNNING.is_on(&client.input_image().await.unwrap()));
+    assert_eq!(client.stop().await.unwrap(), StopResult::Started);
+    assert!(!output::PROGRAM_RUNNING.is_on(&client.input_image().await.unwrap()));
     assert!(client.ask(&motion()).await.is_err(), "a stop grants nothing");
-    assert_eq!(client.stop().await.unwrap(), Stopped::Nothing);
+    assert_eq!(client.stop().await.unwrap(), StopResult::Nothing);
 }
 
 #[tokio::test(start_paused = true)]
@@ -197,16 +197,16 @@ async fn a_read_is_tried_once_more_than_retries_says_each_as_long_as_the_timeout
 
 #[tokio::test(start_paused = true)]
 async fn a_dry_run_notes_orders_and_knows_no_answers() {
-    let mut client = Client::dry_run(Options::default().granting(Risk::Motion));
+    let mut client = Client::dry_run(Options::default().with_risk(Risk::Motion));
     client.ask(&motion()).await.unwrap();
-    assert!(matches!(client.ask(&point(1)).await, Err(Error::NotKnown)));
-    assert!(matches!(client.look().await, Err(Error::NotKnown)));
-    client.carry_out(Procedure::run()).await.unwrap();
+    assert!(matches!(client.ask(&point(1)).await, Err(Error::DryRun)));
+    assert!(matches!(client.input_image().await, Err(Error::DryRun)));
+    client.run_procedure(Procedure::run()).await.unwrap();
     let plan = client.take_plan();
     let words: Vec<_> = plan.frames.iter().filter_map(|frame| frame["wi"][0].as_str()).collect();
     assert_eq!(words, ["0x0001", "0x0101"]);
     assert_eq!(plan.frames.last().unwrap()["about"], "auto-start (SI(12)) off");
-    assert_eq!(client.stop().await.unwrap(), Stopped::Nothing);
+    assert_eq!(client.stop().await.unwrap(), StopResult::Nothing);
     let mut reader = Client::dry_run(Options::default());
     assert!(matches!(reader.ask(&motion()).await, Err(Error::NotAuthorized(_))));
     assert_eq!(reader.take_plan(), Plan::default());
@@ -217,11 +217,11 @@ async fn a_motion_that_is_dropped_goes_on_until_it_is_stopped() {
     let mut client = simulated(Risk::Motion).await;
     assert!(timeout(Duration::from_millis(300), client.ask(&motion())).await.is_err());
     let stopped = client.stop().await.unwrap();
-    assert!(matches!(&stopped, Stopped::Motion { order, .. } if **order == motion()), "{stopped:?}");
+    assert!(matches!(&stopped, StopResult::Motion { order, .. } if **order == motion()), "{stopped:?}");
     assert!(client.begin(&motion()).await.unwrap().is_none(), "it goes on by itself");
     let busy = client.ask(&point(1)).await.unwrap_err();
-    assert!(matches!(busy, Error::UnderWay { command: Command::MovePtp }), "{busy}");
-    assert!(matches!(client.stop().await.unwrap(), Stopped::Motion { .. }));
+    assert!(matches!(busy, Error::CommandRunning { command: Command::MovePtp }), "{busy}");
+    assert!(matches!(client.stop().await.unwrap(), StopResult::Motion { .. }));
     assert!(client.ask(&point(1)).await.is_ok());
 }
 
@@ -239,11 +239,11 @@ async fn what_only_looks_sees_and_gives_no_commands() {
     let link = ImageLink::in_process(Box::new(Simulated::new(Start::default())));
     let options = Options { commands: false, ..Options::default() };
     let mut client = Client::connect(link, options).await.unwrap();
-    assert!(output::CPU_OK.is_on(&client.look().await.unwrap()) && client.shown().is_none());
-    assert!(matches!(client.ask(&point(1)).await, Err(Error::NotCommanding { .. })));
-    let mut apart = Client::apart(Options::default());
-    assert!(matches!(apart.look().await, Err(Error::Silent)));
-    assert!(matches!(apart.ask(&point(1)).await, Err(Error::NotCommanding { .. })));
+    assert!(output::CPU_OK.is_on(&client.input_image().await.unwrap()) && client.output_image().is_none());
+    assert!(matches!(client.ask(&point(1)).await, Err(Error::MonitorOnly { .. })));
+    let mut without_link = Client::without_link(Options::default());
+    assert!(matches!(without_link.input_image().await, Err(Error::Silent)));
+    assert!(matches!(without_link.ask(&point(1)).await, Err(Error::MonitorOnly { .. })));
 }
 
 #[derive(Debug, Default)]
@@ -262,11 +262,11 @@ async fn a_watcher_is_told_images_and_losses() {
     let told = Arc::default();
     client.watch(Onlooker(Arc::clone(&told)));
     client.ready().await.unwrap();
-    let lost = client.look_until(|_| false).await.unwrap_err();
+    let lost = client.wait_for_input(|_| false).await.unwrap_err();
     assert!(matches!(lost, Error::Silent), "{lost}");
     let told = told.lock().unwrap();
-    let is_shown = |event: &Event| matches!(event, Event::Shown(image) if *image == resting());
-    assert!(told.iter().any(is_shown) && told.iter().any(|event| matches!(event, Event::Seen(_))), "{told:?}");
+    let is_shown = |event: &Event| matches!(event, Event::ImageSent(image) if *image == resting());
+    assert!(told.iter().any(is_shown) && told.iter().any(|event| matches!(event, Event::ImageReceived(_))), "{told:?}");
     assert!(matches!(told.last(), Some(Event::Lost { is_reopening: true, .. })), "{told:?}");
     assert_eq!(client.totals().losses, 1);
 }

@@ -29,7 +29,7 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::{Robot, target::Family};
 use crate::transport::session::host::Guard;
-use crate::transport::session::host::held::Held;
+use crate::transport::session::host::shared_link::SharedLink;
 
 /// A family, as the rest of the program sees it; [`declared`] derives it from the declaration.
 pub trait Face: Sync {
@@ -137,13 +137,13 @@ pub trait Watch {
 /// A link for a session.
 pub struct HeldLink {
     /// The link.
-    pub held: Held,
+    pub held: SharedLink,
     /// Action after the link is closed: end of the trace.
     pub finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
 }
 
-impl From<Held> for HeldLink {
-    fn from(held: Held) -> Self {
+impl From<SharedLink> for HeldLink {
+    fn from(held: SharedLink) -> Self {
         Self { held, finish: None }
     }
 }

@@ -12,8 +12,8 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::target::{self, Address, Family, Target};
 use crate::settings::{Robot, Sessions, Sources};
-use crate::transport::session::client::{self, AttachError, Attached, Found, SessionBusy};
-use crate::transport::session::place::{self, Claim, Place, PlaceError, Spot, key};
+use crate::transport::session::client::{self, AttachError, AttachResult, Attached, SessionBusy};
+use crate::transport::session::location::{self, Claim, LocationError, SessionFolder, SessionPath, key};
 use crate::transport::session::process;
 use crate::transport::session::wire::{Info, Peer, Purpose};
 
@@ -28,7 +28,7 @@ pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<O
 }
 
 /// Access to a controller that accepts one client.
-pub enum Turn {
+pub enum LockResult {
     /// Through its session.
     Session(Box<Attached>),
     /// With an own link; the claim keeps other processes of this computer from opening one.
@@ -37,21 +37,23 @@ pub enum Turn {
 
 /// Session of a link that accepts one client, or the claim to open the link. Waits a short time for another command
 /// that has the claim.
-pub async fn turn(robot: &Robot, access: &Access, screen: &Screen) -> Result<Turn, Failure> {
+pub async fn lock_soon(robot: &Robot, access: &Access, screen: &Screen) -> Result<LockResult, Failure> {
     loop {
         if let Some(attached) = attach(robot, access, screen).await? {
-            return Ok(Turn::Session(attached));
+            return Ok(LockResult::Session(attached));
         }
         // A stop does not wait, and a simulator in this process has no other clients.
         let is_alone = robot.target.value.is_simulated() || robot.sessions == Sessions::None || access.is_stop;
         // Without a session folder, processes cannot coordinate.
-        let Some(place) = (if is_alone { None } else { Place::make().ok() }) else { return Ok(Turn::Own(None)) };
-        let spot = place.spot(&key_of(robot));
-        match spot.turn(&info(robot, access)).await {
-            Ok(place::Turn::Mine(claim)) => return Ok(Turn::Own(Some(claim))),
-            Ok(place::Turn::Session) => {}
-            Ok(place::Turn::Taken) => return Err(in_use(robot, &spot)),
-            Err(_) => return Ok(Turn::Own(None)),
+        let Some(place) = (if is_alone { None } else { SessionFolder::create().ok() }) else {
+            return Ok(LockResult::Own(None));
+        };
+        let location = place.location(&key_of(robot));
+        match location.lock_soon(&info(robot, access)).await {
+            Ok(location::LockResult::Locked(claim)) => return Ok(LockResult::Own(Some(claim))),
+            Ok(location::LockResult::Session) => {}
+            Ok(location::LockResult::Busy) => return Err(in_use(robot, &location)),
+            Err(_) => return Ok(LockResult::Own(None)),
         }
     }
 }
@@ -62,8 +64,8 @@ pub fn info(robot: &Robot, access: &Access) -> Info {
 }
 
 /// Failure for a link that another command uses.
-pub fn in_use(robot: &Robot, spot: &Spot) -> Failure {
-    let who = spot.owner().map_or_else(
+pub fn in_use(robot: &Robot, location: &SessionPath) -> Failure {
+    let who = location.owner().map_or_else(
         || "another process".to_owned(),
         |Info { pid, command, .. }| format!("process {pid} (`{command}`)"),
     );
@@ -88,9 +90,9 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
     let (key, typed) = (key_of(robot), command_line(access));
     let attaching = client::attach(&key, &typed, purpose);
     let attached = match timeout(within, attaching).await.unwrap_or(Err(AttachError::Silent)) {
-        Ok(Found::Session(attached)) => attached,
-        Ok(Found::Nothing) => return Ok(None),
-        Ok(Found::Dead) => {
+        Ok(AttachResult::Session(attached)) => attached,
+        Ok(AttachResult::Nothing) => return Ok(None),
+        Ok(AttachResult::Dead) => {
             let open = "`armctl session open` opens a new session, `armctl session close` removes the old one";
             screen.note(&format!(
                 "{}: the session process has ended, so the command runs without it; {open}",
@@ -99,7 +101,7 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
             return Ok(None);
         }
         // A folder of another user is not used: there is no session, but the user may expect one.
-        Err(AttachError::Place(error @ PlaceError::Unsafe { .. })) => {
+        Err(AttachError::Location(error @ LocationError::Unsafe { .. })) => {
             screen.note(&format!("warning: sessions are not used: {error}"));
             return Ok(None);
         }
@@ -141,7 +143,7 @@ const STOP_WAITS: Duration = Duration::from_millis(300);
 
 /// Process that holds the link of a robot.
 fn owner(robot: &Robot) -> Option<Info> {
-    Place::find().ok().flatten()?.spot(&key_of(robot)).owner()
+    SessionFolder::find().ok().flatten()?.location(&key_of(robot)).owner()
 }
 
 fn holder(robot: &Robot) -> String {
@@ -161,7 +163,7 @@ fn frozen(robot: &Robot) -> Failure {
 /// Whether a session holds the robot's link and commands can use it.
 pub fn is_held(robot: &Robot) -> bool {
     robot.sessions != Sessions::None
-        && Place::find().is_ok_and(|place| place.is_some_and(|place| place.spot(&key_of(robot)).is_open()))
+        && SessionFolder::find().is_ok_and(|place| place.is_some_and(|place| place.location(&key_of(robot)).is_open()))
 }
 
 /// Whether a session of another process holds the robot's link and commands can use it.
@@ -172,20 +174,21 @@ pub fn is_held_by_another(robot: &Robot) -> bool {
 /// Session key of the robot: its address, or the alias address that its session was opened with.
 pub fn key_of(robot: &Robot) -> String {
     let own = own_key(robot);
-    let Ok(Some(place)) = Place::find() else { return own };
-    if robot.target.value.is_simulated() || place.spot(&own).socket().exists() {
+    let Ok(Some(place)) = SessionFolder::find() else { return own };
+    if robot.target.value.is_simulated() || place.location(&own).socket().exists() {
         return own;
     }
     let mut others = sessions(&place, robot.family).into_iter();
-    others.find(|(_, address)| robot.is_at(address)).map_or(own, |(spot, _)| spot.key())
+    others.find(|(_, address)| robot.is_at(address)).map_or(own, |(location, _)| location.key())
 }
 
 /// Sessions of a family, each with the address that it was opened with.
-fn sessions(place: &Place, family: Family) -> Vec<(Spot, Address)> {
+fn sessions(place: &SessionFolder, family: Family) -> Vec<(SessionPath, Address)> {
     // An unreadable folder counts as empty; opening a session there reports the error.
-    let spots = place.spots().unwrap_or_default().into_iter();
-    let owned = spots.filter_map(|spot| Some((spot.owner().filter(|owner| owner.family == family.name())?, spot)));
-    owned.filter_map(|(owner, spot)| Some((spot, owner.target.parse::<Target>().ok()?.address()))).collect()
+    let locations = place.locations().unwrap_or_default().into_iter();
+    let owned = locations
+        .filter_map(|location| Some((location.owner().filter(|owner| owner.family == family.name())?, location)));
+    owned.filter_map(|(owner, location)| Some((location, owner.target.parse::<Target>().ok()?.address()))).collect()
 }
 
 /// Resolves all addresses of a robot from its network, if one of them may belong to a session, or to a read-only
@@ -205,9 +208,9 @@ pub fn identify(sources: &Sources, driver: &dyn Driver, robot: &mut Robot, chang
 
 /// Whether a session under another address may hold the robot's link.
 fn may_be_held(robot: &Robot, own: &Address) -> bool {
-    let place = if robot.sessions == Sessions::None { None } else { Place::find().ok().flatten() };
+    let place = if robot.sessions == Sessions::None { None } else { SessionFolder::find().ok().flatten() };
     place.is_some_and(|place| {
-        !place.spot(&own_key(robot)).socket().exists()
+        !place.location(&own_key(robot)).socket().exists()
             && sessions(&place, robot.family).iter().any(|(_, address)| own.may_meet(address))
     })
 }
@@ -236,13 +239,13 @@ fn command_line(access: &Access) -> String {
 }
 
 /// Failure: the session folder cannot be used.
-pub fn no_place(error: &PlaceError) -> Failure {
+pub fn no_place(error: &LocationError) -> Failure {
     let failure = Failure::new(Kind::Local, format!("sessions: {error}"));
     match error {
-        PlaceError::Unsafe { path, .. } => {
+        LocationError::Unsafe { path, .. } => {
             failure.hint(format!("remove {}, or set XDG_RUNTIME_DIR to your own folder", path.display()))
         }
-        PlaceError::Io { .. } => failure.hint("set XDG_RUNTIME_DIR to the folder for sessions"),
+        LocationError::Io { .. } => failure.hint("set XDG_RUNTIME_DIR to the folder for sessions"),
     }
 }
 
@@ -250,9 +253,9 @@ pub fn no_place(error: &PlaceError) -> Failure {
 pub fn refused(label: &str, error: &AttachError) -> Failure {
     let hint = "list sessions with `armctl session list`, or bypass the session with --no-session";
     let kind = match error {
-        AttachError::Place(_) | AttachError::Io(_) => Kind::Local,
+        AttachError::Location(_) | AttachError::Io(_) => Kind::Local,
         AttachError::Silent | AttachError::Refused(_) => Kind::NoAnswer,
-        AttachError::Foreign => Kind::Malformed,
+        AttachError::WrongVersion => Kind::Malformed,
     };
     Failure::new(kind, format!("{label}: {error}")).hint(hint)
 }

@@ -41,7 +41,7 @@ impl<'a> Authority<'a> {
 
     /// Authority for a read-only command.
     pub fn reading(screen: &'a Screen, robot: &'a Robot) -> Self {
-        Self::new(Gate::default(), screen, robot, Risk::Read, Grant::of(Risk::Read))
+        Self::new(Gate::default(), screen, robot, Risk::Read, Grant::up_to(Risk::Read))
     }
 
     /// Authority for a part of the work on another screen.

@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::Robot;
-use crate::transport::session::place::Place;
+use crate::transport::session::location::SessionFolder;
 use crate::transport::session::{detach, process, terminate};
 
 /// Result of opening a session.
@@ -82,8 +82,8 @@ pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) 
 
 /// Starts this program in the background with these arguments, and waits until its link is up.
 pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
-    let place = Place::make().map_err(|error| no_place(&error))?;
-    let log = place.spot(&key_of(robot)).log();
+    let place = SessionFolder::create().map_err(|error| no_place(&error))?;
+    let log = place.location(&key_of(robot)).log();
     let mut child = detach(words, &log).context("this program, in the background")?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {

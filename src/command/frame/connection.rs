@@ -20,7 +20,7 @@ use crate::settings::{Robot, target};
 #[derive(Debug, Clone)]
 pub struct Access {
     /// Maximum risk of a sent frame: the last check, after the gate.
-    pub granted: Grant,
+    pub grant: Grant,
     /// Whether frames are noted instead of sent.
     pub dry_run: bool,
     /// Trace file.
@@ -40,8 +40,8 @@ pub struct Access {
 impl Access {
     /// Read-only access.
     pub fn reading(mode: ConnectMode) -> Self {
-        let (granted, own) = (Grant::of(Risk::Read), Own::default());
-        Self { granted, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false, is_stop: false }
+        let (grant, own) = (Grant::up_to(Risk::Read), Own::default());
+        Self { grant, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false, is_stop: false }
     }
 }
 

@@ -17,14 +17,14 @@ impl From<Plan> for DryRun {
 
 /// Failure for a read in a dry run. It ends the command, unless the command can continue without the answer.
 pub fn unknown() -> Failure {
-    Failure::new(Kind::NotKnown, "a dry run has no answer")
+    Failure::new(Kind::DryRun, "a dry run has no answer")
 }
 
 /// Whether a failure of a dry run only means a missing answer. A malformed answer counts as well, because a dry run
 /// reads nothing.
 pub fn is_end(failure: &Failure) -> bool {
     match failure.kind {
-        Kind::NotKnown
+        Kind::DryRun
         | Kind::Refused
         | Kind::NoAnswer
         | Kind::Malformed
@@ -44,7 +44,7 @@ pub trait Known<T> {
 impl<T> Known<T> for Result<T, Failure> {
     fn known(self) -> Result<Option<T>, Failure> {
         match self {
-            Err(failure) if failure.kind == Kind::NotKnown => Ok(None),
+            Err(failure) if failure.kind == Kind::DryRun => Ok(None),
             answered => answered.map(Some),
         }
     }

@@ -296,7 +296,7 @@ impl Run {
         let mut silences = Silences::new(self, robot);
         let mut rounds = Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { EVERY });
         loop {
-            let grant = Grant::of(Risk::Read);
+            let grant = Grant::up_to(Risk::Read);
             let attempt = self.attempt(command, robot, link, &grant);
             let attempted = match rounds.deadline().filter(|_| command.is_endless()) {
                 Some(deadline) => timeout_at(deadline, attempt).await,
@@ -376,7 +376,7 @@ impl Run {
 
     async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
         let access = self.access(command, robot);
-        let grant = access.granted.clone();
+        let grant = access.grant.clone();
         let access = match &self.line {
             Some(line) => line.connecting(robot, access, &self.screen).await?,
             None => access,
@@ -397,7 +397,7 @@ impl Run {
     /// Access of a command at its start.
     fn access(&self, command: &dyn AnyCommand, robot: &Robot) -> Access {
         Access {
-            granted: Grant::of(command.intent(Some(robot)).granted_at_first()),
+            grant: Grant::up_to(command.intent(Some(robot)).granted_at_first()),
             dry_run: self.gate.dry_run,
             trace: self.trace.clone(),
             mode: command.connect_mode(robot),
@@ -488,7 +488,7 @@ impl Run {
     /// Frames that `command` would send: it runs to its end on a link that takes notes and has no answers.
     async fn plan(&self, command: &dyn AnyCommand, robot: &Robot, screen: &Screen) -> Result<Plan, Failure> {
         let access = Access { dry_run: true, ..self.access(command, robot) };
-        let grant = access.granted.clone();
+        let grant = access.grant.clone();
         let mut link = command.connect(robot, access, screen).await?;
         let gate = Gate { dry_run: true, ..self.gate };
         let several = self.sources.selection.is_plural();

@@ -20,13 +20,13 @@ pub static QUIET: Screen = Screen::silent();
 
 /// Access without restrictions.
 pub fn everything() -> Access {
-    Access { granted: Grant::of(Risk::Motion), ..Access::reading(ConnectMode::Control) }
+    Access { grant: Grant::up_to(Risk::Motion), ..Access::reading(ConnectMode::Control) }
 }
 
 /// Context for a command; all questions are answered with `--yes`.
 pub fn context<'a, F: Family>(robot: &'a Robot, link: &'a mut F::Link) -> Context<'a, F> {
     let gate = Gate { yes: true, ..Gate::default() };
-    let authority = Authority::new(gate, &QUIET, robot, Risk::Motion, Grant::of(Risk::Motion));
+    let authority = Authority::new(gate, &QUIET, robot, Risk::Motion, Grant::up_to(Risk::Motion));
     Context { robot, link, screen: &QUIET, several: false, authority }
 }
 
@@ -44,8 +44,8 @@ pub fn planned<F: Family>(
     prepare: impl FnOnce(&mut F::Link),
 ) -> Result<Value, Failure> {
     let intent = command.intent(Some(robot));
-    let grant = Grant::of(intent.granted_at_first());
-    let access = Access { granted: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode(robot)) };
+    let grant = Grant::up_to(intent.granted_at_first());
+    let access = Access { grant: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode(robot)) };
     let connected = command.connect(robot, access, &QUIET).now_or_never().expect("a dry run opens nothing");
     let mut connection = connected?;
     prepare(connection::link::<F>(&mut *connection)?);

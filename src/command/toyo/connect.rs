@@ -7,7 +7,7 @@ use super::link::Toyo;
 use super::overview::overview;
 use super::simulated;
 use crate::client::toyo::{Client, Endpoint, Error, Line, Options};
-use crate::command::frame::attach::{Turn, turn};
+use crate::command::frame::attach::{LockResult, lock_soon};
 use crate::command::frame::trace::locked;
 use crate::command::{Access, Family as _};
 use crate::failure::Failure;
@@ -16,8 +16,8 @@ use crate::settings::target::{self, Place};
 use crate::settings::{Robot, Sessions};
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::serial;
-use crate::transport::session::host::held;
-use crate::transport::session::place::Claim;
+use crate::transport::session::host::shared_link;
+use crate::transport::session::location::Claim;
 use crate::transport::stream::Stream;
 
 /// Endpoint of a target.
@@ -51,7 +51,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
 
 /// Client options for a robot.
 pub fn options(robot: &Robot, access: &Access) -> Options {
-    Options { granted: access.granted.clone(), timeout: robot.timeout.value, retries: robot.retries.value }
+    Options { grant: access.grant.clone(), timeout: robot.timeout.value, retries: robot.retries.value }
 }
 
 /// Connects to the target of a robot.
@@ -88,9 +88,9 @@ impl Way {
     async fn open(&self) -> Result<Line, Failure> {
         let Self { endpoint, robot, access, screen, claim } = self;
         if locked(claim).is_none() {
-            match turn(robot, access, screen).await? {
-                Turn::Session(attached) => return Ok(Stream::Session(attached)),
-                Turn::Own(own) => *locked(claim) = own,
+            match lock_soon(robot, access, screen).await? {
+                LockResult::Session(attached) => return Ok(Stream::Session(attached)),
+                LockResult::Own(own) => *locked(claim) = own,
             }
         }
         endpoint.open(robot.timeout.value).await.map_err(|error| failure(&robot.label(), error))
@@ -99,14 +99,14 @@ impl Way {
 
 /// Opens a line for a session, which opens it again after a loss. A first request checks the controller, because an
 /// open line proves nothing.
-pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<held::Line, Failure> {
+pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<shared_link::Line, Failure> {
     let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;
     // The session uses the same connection, because a device server can need time before it accepts another one.
     let open = link.into_line().ok_or_else(|| Failure::local("internal error: a dry run has no line"))?;
     let (endpoint, timeout, label) = (endpoint(&robot)?, robot.timeout.value, robot.label());
-    Ok(held::Line::new(open, move || {
+    Ok(shared_link::Line::new(open, move || {
         let (endpoint, label) = (endpoint.clone(), label.clone());
         Box::pin(async move { endpoint.open(timeout).await.map_err(|error| failure(&label, error).message) })
     }))

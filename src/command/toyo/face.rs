@@ -29,7 +29,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 use crate::transport::session::host::Guard;
-use crate::transport::session::host::held::Held;
+use crate::transport::session::host::shared_link::SharedLink;
 
 impl Declaration for Toyo {
     type Commands = Commands;
@@ -51,7 +51,7 @@ impl Declaration for Toyo {
     const SETUP: (&'static str, &'static str) = ("cable and settings of a Toyo controller", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = panel::PANEL;
-    const GUARD: Guard = Guard { sends: passing::only_reads_or_stops, shows: |_, _| false };
+    const GUARD: Guard = Guard { is_harmless_data: passing::only_reads_or_stops, is_harmless_image: |_, _| false };
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![
@@ -90,7 +90,7 @@ impl Declaration for Toyo {
     }
 
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
-        Ok(Held::Stream(connect::hold(robot, access, screen).await?).into())
+        Ok(SharedLink::Stream(connect::hold(robot, access, screen).await?).into())
     }
 }
 

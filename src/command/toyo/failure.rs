@@ -61,7 +61,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
             None => about(Kind::NoAnswer, error.to_string()),
         },
         Error::Io { is_shared, error } => broken(label, is_shared, &error),
-        Error::NotKnown => unknown(),
+        Error::DryRun => unknown(),
         _ => about(Kind::Malformed, error.to_string()),
     }
 }

@@ -117,7 +117,7 @@ async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
 
 /// Failure while waiting for the end.
 fn accepted(failure: Failure) -> Failure {
-    if failure.kind == Kind::NotKnown {
+    if failure.kind == Kind::DryRun {
         return failure;
     }
     let message = format!("the controller accepted the command, but its result is unknown: {}", failure.message);

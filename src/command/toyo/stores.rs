@@ -50,7 +50,7 @@ pub enum CellState {
     /// Not read yet.
     NotAsked,
     /// Unknown in a dry run.
-    NotKnown,
+    DryRun,
     /// The controller does not have the cell.
     NotThere,
     /// The content that was just read.
@@ -59,7 +59,7 @@ pub enum CellState {
 
 impl From<Option<Record>> for CellState {
     fn from(found: Option<Record>) -> Self {
-        found.map_or(Self::NotKnown, Self::This)
+        found.map_or(Self::DryRun, Self::This)
     }
 }
 
@@ -141,7 +141,7 @@ pub async fn look(link: &mut Link, screen: &Screen, stores: &mut [Store]) -> Res
 async fn found(link: &mut Link, store: &Store) -> Result<CellState, Failure> {
     if link.is_dry() {
         plan_twice(link, &store.cell.read);
-        return Ok(CellState::NotKnown);
+        return Ok(CellState::DryRun);
     }
     if store.is_optional {
         return Ok(link.read_if_there(&store.cell.read).await?.map_or(CellState::NotThere, CellState::This));
@@ -237,7 +237,7 @@ async fn one(link: &mut Link, screen: &Screen, store: &Store) -> Result<StoreRes
     Ok(match found {
         CellState::NotThere => StoreResult::NotThere,
         CellState::This(found) if cell.is(&found) => StoreResult::Unchanged,
-        CellState::NotKnown => {
+        CellState::DryRun => {
             link.plan_overwriting(&cell.read, &cell.write.text()).await?;
             StoreResult::Written
         }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 pub(super) use self::report::in_a_line;
 use self::report::{Own, WithTexts, entry, explained, short};
-use super::each::{Denied, Outcome, Round};
+use super::each::{Batch, Outcome, ReadError};
 use super::link::Link;
 use super::link::Yerc;
 use super::numbers::within;
@@ -62,12 +62,14 @@ impl Command for List {
         let all = (1..=SLOTS).map(|slot| question(slot, texts)).collect::<Result<Vec<_>, _>>()?;
         plan(link, &all, texts, &question(1, false)?)?;
         let mut alarms = Vec::new();
-        let mut round = Round::default();
+        let mut batch = Batch::default();
         for slot in 1..=SLOTS {
             // The manual does not describe gaps between slots, so all four slots are read.
-            let outcome = match read(link, &mut round, &mut texts, |texts| question(slot, texts)).await? {
+            let outcome = match read(link, &mut batch, &mut texts, |texts| question(slot, texts)).await? {
                 Ok(alarm) if alarm.is_none() => continue,
-                Ok(alarm) => explained(entry(&alarm, link.encoding, link.model_to_show()), context.robot, link).await,
+                Ok(alarm) => {
+                    explained(entry(&alarm, link.encoding, link.model_for_display()), context.robot, link).await
+                }
                 Err(denied) => Err(denied.into()),
             };
             alarms.push(Row::new(slot.into(), format!("alarm slot {slot}"), outcome));
@@ -147,14 +149,14 @@ impl Command for History {
         plan(link, &all, texts, &question(first, self.from, false)?)?;
         let mut alarms = Vec::new();
         let mut asked = 0;
-        let mut round = Round::default();
+        let mut batch = Batch::default();
         for &(_, list, class) in classes {
             for number in numbers.clone() {
                 asked += 1;
-                let outcome = match read(link, &mut round, &mut texts, |texts| question(list, number, texts)).await? {
+                let outcome = match read(link, &mut batch, &mut texts, |texts| question(list, number, texts)).await? {
                     Ok(alarm) if alarm.is_none() => break,
                     Ok(alarm) => {
-                        explained(entry(&alarm, link.encoding, link.model_to_show()), context.robot, link).await
+                        explained(entry(&alarm, link.encoding, link.model_for_display()), context.robot, link).await
                     }
                     Err(denied) => Err(denied.into()),
                 };
@@ -172,12 +174,12 @@ impl Command for History {
 /// that cannot be read does not hide the others.
 pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<alarm::Alarm>, Failure> {
     let mut alarms = Vec::new();
-    let mut round = Round::default();
+    let mut batch = Batch::default();
     for slot in 1..=slots {
-        let outcome = read(link, &mut round, texts, |texts| ReadAlarm::new(slot, texts).map_err(usage)).await?;
+        let outcome = read(link, &mut batch, texts, |texts| ReadAlarm::new(slot, texts).map_err(usage)).await?;
         match outcome {
             Ok(alarm) if alarm.is_none() => {}
-            Ok(alarm) => alarms.push(short(entry(&alarm, link.encoding, link.model_to_show()))),
+            Ok(alarm) => alarms.push(short(entry(&alarm, link.encoding, link.model_for_display()))),
             Err(denied) => {
                 let failure = Failure::from(denied);
                 if failure.kind == Kind::NoAnswer {
@@ -219,17 +221,17 @@ fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<
 /// command.
 async fn read<Q: Query<Answer = payload::Alarm>>(
     link: &mut Link,
-    round: &mut Round,
+    batch: &mut Batch,
     texts: &mut bool,
     question: impl Fn(bool) -> Result<Q, Failure>,
 ) -> Result<Outcome<payload::Alarm>, Failure> {
     if *texts {
-        match link.ask_in(round, &question(true)?).await? {
-            Err(Denied::Refused(refusal)) if may_be_unknown(refusal.status) => *texts = false,
+        match link.ask_in_batch(batch, &question(true)?).await? {
+            Err(ReadError::Refused(refusal)) if may_be_unknown(refusal.status) => *texts = false,
             outcome => return Ok(outcome),
         }
     }
-    link.ask_in(round, &question(false)?).await
+    link.ask_in_batch(batch, &question(false)?).await
 }
 
 /// Whether a status can mean that a controller before FS1.14 does not have 0x30A. The manuals do not define the

@@ -185,10 +185,10 @@ macro_rules! by_axis {
                 let link = context.link;
                 let question = link.by_model(|model| $query::new(model, self.group)).await?;
                 let Some(axes) = link.ask(&question).await.known()? else {
-                    link.plan_fit(self.group, Coordinates::Pulse);
+                    link.plan_existing_axes(self.group, Coordinates::Pulse);
                     return Err(unknown());
                 };
-                let (axes, fitted) = link.fit(self.group, Coordinates::Pulse, axes).await;
+                let (axes, fitted) = link.existing_axes(self.group, Coordinates::Pulse, axes).await;
                 let is_robot = matches!(self.group, Group::Robot(_));
                 Ok($report { group: self.group.to_string(), $field: ByAxis::new(axes, is_robot, fitted) })
             }
@@ -239,7 +239,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::client::yerc::Fitted;
+    use crate::client::yerc::AxisSet;
     use crate::command::yerc::testing::{frames, frames_on, golden, reports};
     use crate::controller::yerc::payload::{Axes, Text};
     use crate::failure::Kind;
@@ -273,7 +273,7 @@ mod tests {
     #[test]
     fn torque_is_labelled_as_raw() {
         let axes = Axes::new(&[-3, 7]).unwrap();
-        let report = Torques { group: "R1".into(), torque_raw: ByAxis::new(axes, true, Fitted::ALL) };
+        let report = Torques { group: "R1".into(), torque_raw: ByAxis::new(axes, true, AxisSet::ALL) };
         assert_eq!(render::csv(&report.view()), "axis,torque_raw\nS,-3\nL,7\n");
         assert_eq!(serde_json::to_string(&report).unwrap(), r#"{"group":"R1","torque_raw":{"s":-3,"l":7}}"#);
     }

@@ -24,12 +24,12 @@ impl Chosen {
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let unread = |failure: &Failure| Self::Unread(failure.message.trim_end_matches('.').to_owned());
         let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
-        match link.is_for("selected job").try_ask(&question).await {
+        match link.for_purpose("selected job").try_ask(&question).await {
             Ok(Ok(info)) if info.name.is_empty() => Ok(Self::None),
             Ok(Ok(info)) => Ok(Self::Job(info)),
             Ok(Err(refusal)) => Ok(unread(&refusal.into())),
             Err(failure) if failure.kind == Kind::Malformed => Ok(unread(&failure)),
-            Err(failure) if failure.kind == Kind::NotKnown => Ok(Self::None),
+            Err(failure) if failure.kind == Kind::DryRun => Ok(Self::None),
             Err(failure) => Err(failure),
         }
     }

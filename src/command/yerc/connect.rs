@@ -13,7 +13,7 @@ use crate::output::Screen;
 use crate::settings::target::Place;
 use crate::settings::{Robot, Sessions};
 use crate::transport::fault::FaultSpec;
-use crate::transport::session::host::held::Datagrams;
+use crate::transport::session::host::shared_link::Datagrams;
 
 fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
     match &robot.target.value.place {
@@ -40,7 +40,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
 pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
     let options = Options {
         model: robot.model.value.named(),
-        granted: access.granted.clone(),
+        grant: access.grant.clone(),
         timeout: robot.timeout.value,
         retries: robot.retries.value,
     };
@@ -53,7 +53,7 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
     match Box::pin(attach(robot, access, screen)).await? {
         Some(session) => {
             let model = endpoint.model().or(options.model);
-            Ok(Client::through(session, Options { model, ..options }))
+            Ok(Client::in_session(session, Options { model, ..options }))
         }
         None => Client::connect(endpoint, options).await.map_err(|error| failure(&robot.label(), error)),
     }

@@ -2,22 +2,22 @@
 
 use super::link::Link;
 use crate::client::yerc;
-pub use crate::client::yerc::Round;
+pub use crate::client::yerc::Batch;
 use crate::controller::yerc::query::Query;
 use crate::failure::Failure;
 
 /// Reason why a request has no answer.
-pub type Denied = yerc::Denied<Failure>;
+pub type ReadError = yerc::ReadError<Failure>;
 
 /// Outcome of a request.
 pub type Outcome<T> = yerc::Outcome<T, Failure>;
 
-impl From<Denied> for Failure {
-    fn from(denied: Denied) -> Self {
+impl From<ReadError> for Failure {
+    fn from(denied: ReadError) -> Self {
         match denied {
-            Denied::Refused(refusal) => refusal.into(),
-            Denied::Failed(failure) => failure,
-            Denied::NotAsked(failure) => Failure { message: format!("not read: {}", failure.message), ..failure },
+            ReadError::Refused(refusal) => refusal.into(),
+            ReadError::Failed(failure) => failure,
+            ReadError::NotSent(failure) => Failure { message: format!("not read: {}", failure.message), ..failure },
         }
     }
 }
@@ -33,7 +33,7 @@ pub async fn existing<K, Q: Query + Copy>(
     of_existing(keys.into_iter().zip(outcomes)).map_err(Failure::from)
 }
 
-fn of_existing<K, A>(outcomes: impl Iterator<Item = (K, Outcome<A>)>) -> Result<Vec<(K, Outcome<A>)>, Denied> {
+fn of_existing<K, A>(outcomes: impl Iterator<Item = (K, Outcome<A>)>) -> Result<Vec<(K, Outcome<A>)>, ReadError> {
     let mut found = Vec::new();
     let mut denied = None;
     let mut is_any = false;
@@ -54,14 +54,14 @@ fn of_existing<K, A>(outcomes: impl Iterator<Item = (K, Outcome<A>)>) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::client::yerc::{Asked, Refusal};
+    use crate::client::yerc::{Refusal, RefusedRequest};
     use crate::controller::yerc::wire::Status;
 
     #[test]
     fn what_is_absent_is_left_out_unless_everything_is_refused() {
         let no = |code| {
-            let to = Asked::Robot { command: 0x74, instance: 2 };
-            Err(Denied::Refused(Refusal { status: Status::refused(code), to }))
+            let to = RefusedRequest::Robot { command: 0x74, instance: 2 };
+            Err(ReadError::Refused(Refusal { status: Status::refused(code), to }))
         };
         let found = of_existing([(1, no(0xA001)), (2, Ok("x")), (3, no(0x2150)), (4, no(0xA001))].into_iter());
         assert_eq!(found, Ok(vec![(2, Ok("x")), (3, no(0x2150))]));

@@ -26,7 +26,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 use crate::transport::session::host::Guard;
-use crate::transport::session::host::held::Held;
+use crate::transport::session::host::shared_link::SharedLink;
 
 impl Declaration for Yerc {
     type Commands = Commands;
@@ -47,7 +47,7 @@ impl Declaration for Yerc {
     const SETUP: (&'static str, &'static str) = ("settings of a Yaskawa controller", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = panel::PANEL;
-    const GUARD: Guard = Guard { sends: passing::only_reads_or_stops, shows: |_, _| false };
+    const GUARD: Guard = Guard { is_harmless_data: passing::only_reads_or_stops, is_harmless_image: |_, _| false };
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![("udp://".to_owned(), "yerc: name or address of the controller")]
@@ -79,7 +79,7 @@ impl Declaration for Yerc {
     }
 
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
-        Ok(Held::Datagrams(connect::hold(robot, access, screen).await?).into())
+        Ok(SharedLink::Datagrams(connect::hold(robot, access, screen).await?).into())
     }
 }
 

@@ -56,7 +56,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::AnotherModel { .. } => {
             about(Kind::Refused, error_text).hint("repeat the command: armctl now uses the right model")
         }
-        Error::NotKnown => unknown(),
+        Error::DryRun => unknown(),
         _ => about(Kind::Malformed, error.to_string()).hint("-vvv shows the bytes"),
     }
 }
@@ -129,12 +129,12 @@ impl From<Refusal> for Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::client::yerc::Asked;
+    use crate::client::yerc::RefusedRequest;
     use crate::controller::yerc::wire::Status;
 
     #[test]
     fn a_motion_that_is_refused_for_motion_may_be_that_motion() {
-        let to = Asked::Robot { command: 0x8B, instance: 1 };
+        let to = RefusedRequest::Robot { command: 0x8B, instance: 1 };
         let hint = |added, risk| refused(Refusal { status: Status::refused(added), to }, risk).hint.unwrap();
         assert!(hint(0x2010, Risk::Motion).contains("duplicated it"));
         assert!(!hint(0x2060, Risk::Motion).contains("duplicated"));
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_refusal_names_the_request() {
         let message = |to| Failure::from(Refusal { status: Status::refused(0xA001), to }).message;
-        let robot = message(Asked::from(&Request {
+        let robot = message(RefusedRequest::from(&Request {
             command: 0x7A,
             instance: 300,
             attribute: 1,
@@ -152,7 +152,7 @@ mod tests {
             data: Vec::new(),
         }));
         assert!(robot.starts_with("the controller refused 0x7A (instance 300): "), "{robot}");
-        let file = message(Asked::from(&Request::file(0x16, *b"A.JBI")));
+        let file = message(RefusedRequest::from(&Request::file(0x16, *b"A.JBI")));
         assert!(file.starts_with("the controller refused file service 0x16: "), "{file}");
     }
 }

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use self::source::Source;
 pub use self::stop::Halt;
-use super::each::{Denied, Outcome};
+use super::each::{Outcome, ReadError};
 use super::file::Edit;
 use super::link::{Link, Yerc};
 use super::numbers::within;
@@ -170,7 +170,7 @@ impl Task {
     fn new(number: u8, outcome: Outcome<JobInfo>, encoding: Encoding) -> Self {
         let (info, refusal, error) = match outcome {
             Ok(info) => (Some(info), None, None),
-            Err(Denied::Refused(refusal)) if is_absent(refusal.status) => {
+            Err(ReadError::Refused(refusal)) if is_absent(refusal.status) => {
                 (None, Some(status::explain(refusal.status).code_text), None)
             }
             Err(denied) => (None, None, Some(ItemError::new(task_name(number), denied.into()))),
@@ -344,7 +344,7 @@ impl Report for Selected {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::link::{Asked, Refusal};
+    use crate::command::yerc::link::{Refusal, RefusedRequest};
     use crate::command::yerc::testing::{frames, frames_on, golden, intent, objection, reports};
     use std::time::Duration;
 
@@ -410,8 +410,8 @@ mod tests {
     #[test]
     fn an_absent_task_is_data() {
         let info = JobInfo { name: Text::cut(b"\x85\x41"), line: 3, step: 0, speed_override: 3333 };
-        let to = Asked::Robot { command: 0x73, instance: 2 };
-        let refused = |code| Err(Denied::Refused(Refusal { status: wire::Status::refused(code), to }));
+        let to = RefusedRequest::Robot { command: 0x73, instance: 2 };
+        let refused = |code| Err(ReadError::Refused(Refusal { status: wire::Status::refused(code), to }));
         let tasks = Jobs {
             tasks: vec![
                 Task::new(0, Ok(info), Encoding::ShiftJis),

@@ -6,14 +6,14 @@ use std::time::Duration;
 use derive_more::{Deref, DerefMut};
 
 use super::connect;
-use super::each::{Outcome, Round};
+use super::each::{Batch, Outcome};
 use super::failure::{failure, refused};
 use super::orders::usage;
 use super::told::Told;
 use super::trace::Trace;
 use crate::client::Watcher;
-pub use crate::client::yerc::{Asked, Error, Refusal};
 use crate::client::yerc::{Cause, Client, Event, Totals, TransferError};
+pub use crate::client::yerc::{Error, Refusal, RefusedRequest};
 use crate::command::face::sample::Traffic;
 use crate::command::frame::dry_run::{Known as _, Plan};
 use crate::command::frame::orders::{BEFORE, unwritten};
@@ -164,7 +164,7 @@ impl Link {
     /// Reads the value that a write replaces; none if the controller refuses, and in a dry run, which notes the
     /// request. A lost connection is a failure: nothing was written.
     pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
-        let answer = self.is_for(BEFORE).try_ask(question).await.known().map_err(unwritten)?;
+        let answer = self.for_purpose(BEFORE).try_ask(question).await.known().map_err(unwritten)?;
         Ok(answer.and_then(Result::ok))
     }
 
@@ -175,8 +175,12 @@ impl Link {
     }
 
     /// Sends one of several requests.
-    pub async fn ask_in<Q: Query>(&mut self, round: &mut Round, query: &Q) -> Result<Outcome<Q::Answer>, Failure> {
-        let outcome = self.client.ask_in(round, query).await.map_err(|error| self.failure(error))?;
+    pub async fn ask_in_batch<Q: Query>(
+        &mut self,
+        batch: &mut Batch,
+        query: &Q,
+    ) -> Result<Outcome<Q::Answer>, Failure> {
+        let outcome = self.client.ask_in_batch(batch, query).await.map_err(|error| self.failure(error))?;
         Ok(outcome.map_err(|denied| denied.map(|error| self.failure(error))))
     }
 
@@ -237,8 +241,8 @@ impl Link {
     }
 
     /// Sets the purpose of the next request, for a dry run.
-    pub fn is_for(&mut self, purpose: &'static str) -> &mut Self {
-        self.client.is_for(purpose);
+    pub fn for_purpose(&mut self, purpose: &'static str) -> &mut Self {
+        self.client.for_purpose(purpose);
         self
     }
 
@@ -274,8 +278,8 @@ impl Watcher<Event> for Onlooker {
 
     fn event(&mut self, event: Event) {
         match event {
-            Event::Disturbed(counters) => self.screen.detail(1, &format!("{}: {counters}", self.label)),
-            Event::LeftOpen => self.screen.note(&format!(
+            Event::UnexpectedTraffic(counters) => self.screen.detail(1, &format!("{}: {counters}", self.label)),
+            Event::TransferLeftOpen => self.screen.note(&format!(
                 "{}: the controller did not confirm the end of the transfer; it may refuse file commands as busy for some \
                  seconds",
                 self.label

@@ -91,7 +91,7 @@ async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
     };
     match link.ask(&question).await {
         Ok(alarm) if !alarm.is_none() => {
-            let words = alarm::in_a_line(&alarm, link.encoding, link.model_to_show());
+            let words = alarm::in_a_line(&alarm, link.encoding, link.model_for_display());
             (format!("{words} occurred"), Some(alarm.code.to_string()))
         }
         Ok(_) => ("an alarm occurred and was reset".to_owned(), None),

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, VecDeque};
 
-use super::each::{Denied, Outcome, Round};
+use super::each::{Batch, Outcome, ReadError};
 use super::link::Link;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::controller::yerc::request::Request;
@@ -37,12 +37,12 @@ pub async fn read_in_parts<S: PlannedRead>(
         return Err(unknown());
     }
     let mut steps: VecDeque<S> = plan(wanted)?.into();
-    let mut round = Round::default();
+    let mut batch = Batch::default();
     let mut known: HashMap<S::Item, Outcome<S::Value>> = HashMap::with_capacity(wanted.len());
     while let Some(step) = steps.pop_front() {
         let asked = step.wanted();
         progress(asked, known.len());
-        let denied = match link.ask_in(&mut round, &step).await? {
+        let denied = match link.ask_in_batch(&mut batch, &step).await? {
             Ok(values) => {
                 known.extend(values.into_iter().map(|(item, value)| (item, Ok(value))));
                 continue;
@@ -119,15 +119,15 @@ pub fn plan_in_parts<S: PlannedRead>(
 const REFUSED: &str = "whether the controller refuses the run";
 
 /// Division of a run after this refusal; `None` if a new read would not help.
-fn how(denied: &Denied, usual: Parts) -> Option<Parts> {
+fn how(denied: &ReadError, usual: Parts) -> Option<Parts> {
     /// Added status: "command error", "undefined command".
     const UNKNOWN: [u32; 2] = [0x1010, 0xA000];
     match denied {
-        Denied::Refused(refusal) if refusal.status.code == 0x08 || UNKNOWN.contains(&refusal.status.added) => {
+        ReadError::Refused(refusal) if refusal.status.code == 0x08 || UNKNOWN.contains(&refusal.status.added) => {
             Some(Parts::Single)
         }
-        Denied::Refused(_) => Some(usual),
-        Denied::Failed(failure) => (failure.kind == Kind::Malformed).then_some(Parts::Single),
-        Denied::NotAsked(_) => None,
+        ReadError::Refused(_) => Some(usual),
+        ReadError::Failed(failure) => (failure.kind == Kind::Malformed).then_some(Parts::Single),
+        ReadError::NotSent(_) => None,
     }
 }

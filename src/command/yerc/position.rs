@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 use super::link::Link;
 use super::link::Yerc;
 use super::var::{PositionData, as_position, held};
-use crate::client::yerc::Fitted;
+use crate::client::yerc::AxisSet;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
 use crate::command::frame::plot::Past;
@@ -75,7 +75,7 @@ impl Command for Position {
         let questions = link.by_model(questions).await?;
         let Some(outcomes) = link.ask_each(&questions).await.known()? else {
             for coordinates in wanted {
-                link.plan_fit(self.group, *coordinates);
+                link.plan_existing_axes(self.group, *coordinates);
             }
             return Err(unknown());
         };
@@ -84,7 +84,7 @@ impl Command for Position {
         for (coordinates, outcome) in wanted.iter().zip(outcomes) {
             let position = match outcome {
                 Ok(position) => {
-                    let (axes, fitted) = link.fit(self.group, *coordinates, position.axes).await;
+                    let (axes, fitted) = link.existing_axes(self.group, *coordinates, position.axes).await;
                     Ok((payload::Position { axes, ..position }, fitted))
                 }
                 Err(denied) => Err(denied.into()),
@@ -105,10 +105,10 @@ pub(super) async fn ask(
 ) -> Result<(payload::Position, robot::Position), Failure> {
     let question = link.by_model(|model| ReadPosition::new(model, group, coordinates)).await?;
     let Some(position) = link.ask(&question).await.known()? else {
-        link.plan_fit(group, coordinates);
+        link.plan_existing_axes(group, coordinates);
         return Err(unknown());
     };
-    let (axes, fitted) = link.fit(group, coordinates, position.axes).await;
+    let (axes, fitted) = link.existing_axes(group, coordinates, position.axes).await;
     let position = payload::Position { axes, ..position };
     let report = reported(group, coordinates, (position, fitted), link.pulses_per_degree(group))?;
     Ok((position, report.of_group(group.to_string())))
@@ -126,7 +126,7 @@ const fn frame(coordinates: Coordinates) -> &'static str {
 fn row(
     group: Group,
     coordinates: Coordinates,
-    outcome: Result<(payload::Position, Fitted), Failure>,
+    outcome: Result<(payload::Position, AxisSet), Failure>,
     per_degree: &[f64],
 ) -> Row {
     let position = outcome.and_then(|read| reported(group, coordinates, read, per_degree));
@@ -137,7 +137,7 @@ fn row(
 fn reported(
     group: Group,
     coordinates: Coordinates,
-    (position, fitted): (payload::Position, Fitted),
+    (position, fitted): (payload::Position, AxisSet),
     per_degree: &[f64],
 ) -> Result<robot::Position, Failure> {
     match (coordinates, position.kind) {
@@ -156,14 +156,14 @@ pub(super) fn taught(group: Group, value: &variables::Value, per_degree: &[f64])
     let position = as_position(value);
     let used = &position.axes.as_slice()[..position.shown_axes().min(position.axes.as_slice().len())];
     let axes = Axes::new(used).unwrap_or(position.axes);
-    as_reported(group, payload::Position { axes, ..position }, Fitted::ALL, per_degree)
+    as_reported(group, payload::Position { axes, ..position }, AxisSet::ALL, per_degree)
 }
 
 /// Position of a group in any coordinate system.
 pub(super) fn as_reported(
     group: Group,
     position: payload::Position,
-    fitted: Fitted,
+    fitted: AxisSet,
     per_degree: &[f64],
 ) -> robot::Position {
     if position.kind.is_cartesian() {
@@ -174,7 +174,7 @@ pub(super) fn as_reported(
 }
 
 /// Position by axis, also in degrees if the pulses per degree are known.
-fn pulses(group: Group, position: payload::Position, fitted: Fitted, per_degree: &[f64]) -> robot::Position {
+fn pulses(group: Group, position: payload::Position, fitted: AxisSet, per_degree: &[f64]) -> robot::Position {
     let axes = ByAxis::new(position.axes, matches!(group, Group::Robot(_)), fitted);
     let per_degree = per_degree.iter().copied().map(Some).chain(std::iter::repeat(None));
     let joint = |((name, pulses), per): ((&'static str, i32), Option<f64>)| Joint {
@@ -194,7 +194,7 @@ fn pulses(group: Group, position: payload::Position, fitted: Fitted, per_degree:
 }
 
 /// Position in coordinates.
-fn cartesian(group: Group, position: payload::Position, fitted: Fitted) -> robot::Position {
+fn cartesian(group: Group, position: payload::Position, fitted: AxisSet) -> robot::Position {
     let axes = position.axes.as_slice();
     let value = |axis: usize| {
         let value = axes.get(axis).filter(|_| fitted.has(axis));
@@ -242,12 +242,12 @@ const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"]
 pub(super) struct ByAxis {
     axes: Axes,
     is_robot: bool,
-    fitted: Fitted,
+    fitted: AxisSet,
 }
 
 impl ByAxis {
     /// `is_robot` selects the names.
-    pub(super) fn new(axes: Axes, is_robot: bool, fitted: Fitted) -> Self {
+    pub(super) fn new(axes: Axes, is_robot: bool, fitted: AxisSet) -> Self {
         Self { axes, is_robot, fitted }
     }
 
@@ -373,7 +373,7 @@ mod tests {
     }
 
     fn read(group: Group, coordinates: Coordinates, position: payload::Position) -> Value {
-        let row = row(group, coordinates, Ok((position, Fitted::ALL)), &[90.0]);
+        let row = row(group, coordinates, Ok((position, AxisSet::ALL)), &[90.0]);
         serde_json::to_value(row).unwrap()
     }
 

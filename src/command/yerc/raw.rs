@@ -137,7 +137,7 @@ impl Command for Raw {
         let doubt = match link.known_model() {
             Some(model) => request.check(model).err(),
             None if Model::ALL.iter().any(|model| request.check(*model).is_ok()) => None,
-            None => request.check(link.model_to_show()).err(),
+            None => request.check(link.model_for_display()).err(),
         };
         let doubt = doubt.map(|error| error.to_string());
         if let Some(doubt) = &doubt {
@@ -266,7 +266,7 @@ impl Answer {
             fields: fields.into_iter().filter(|field| field.offset >= HEADER_LEN).collect(),
             round_trip_ms: elapsed.as_secs_f64() * 1000.0,
             attempts,
-            refusal: (!status.is_ok()).then(|| Refusal { status, to: link::Asked::from(request) }.into()),
+            refusal: (!status.is_ok()).then(|| Refusal { status, to: link::RefusedRequest::from(request) }.into()),
         }
     }
 }

@@ -12,7 +12,7 @@ use super::var::{PositionData, as_position, called, held, is_undefined, unlike};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::names;
 use crate::command::frame::teach::{Taught, mismatch, not_read_back};
-use crate::command::yerc::each::Denied;
+use crate::command::yerc::each::ReadError;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::names::Kind;
@@ -89,7 +89,7 @@ impl Command for Teach {
         let Context { link, authority, robot, screen, .. } = context;
         let called = called(names::of(robot, screen), self.variable);
         let (name, group) = (self.variable.to_string(), self.group()?);
-        let Some(old) = self.read(link.is_for("content of the variable")).await.known()? else {
+        let Some(old) = self.read(link.for_purpose("content of the variable")).await.known()? else {
             return Err(self.plan(link, group).await?);
         };
         let coordinates = self.coordinates(old.as_ref())?;
@@ -146,7 +146,7 @@ impl Teach {
     async fn read(&self, link: &mut Link) -> Result<Option<Value>, Failure> {
         match link.try_ask(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
             Ok(value) => Ok(Some(value)),
-            Err(refusal) if is_undefined(&Denied::Refused(refusal)) => Ok(None),
+            Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => Ok(None),
             Err(refusal) => Err(refusal.into()),
         }
     }
@@ -199,7 +199,7 @@ impl Teach {
         let reason = Reason::about("current position");
         let reason = if is_open { reason.depending_on("the content of the variable") } else { reason };
         link.plan_depending(&one.request(), &other.request(), reason);
-        link.plan_fit(group, coordinates);
+        link.plan_existing_axes(group, coordinates);
         let [one, other] = unlike()
             .map(|position| Position { kind: if is_robot { position.kind } else { PositionKind::Pulse }, ..position });
         let write = |position| WriteVariable::new(self.variable.number, held(group, position)).map_err(usage);

@@ -69,7 +69,7 @@ impl Poller {
         status: ControllerStatus,
         base: Option<&Position>,
     ) -> Result<Whole, Failure> {
-        let model = self.link.model_to_show();
+        let model = self.link.model_for_display();
         let pulses = self.position(Coordinates::Pulse).await?;
         let torque = self.ask(ReadTorque::new(model, Group::R1)).await?;
         let is_full = detail == Detail::Full;
@@ -88,9 +88,9 @@ impl Poller {
     }
 
     async fn position(&mut self, coordinates: Coordinates) -> Result<Option<Position>, Failure> {
-        let position = self.ask(ReadPosition::new(self.link.model_to_show(), Group::R1, coordinates)).await?;
+        let position = self.ask(ReadPosition::new(self.link.model_for_display(), Group::R1, coordinates)).await?;
         let Some(position) = position else { return Ok(None) };
-        let (axes, _) = self.link.fit(Group::R1, coordinates, position.axes).await;
+        let (axes, _) = self.link.existing_axes(Group::R1, coordinates, position.axes).await;
         Ok(Some(Position { axes, ..position }))
     }
 

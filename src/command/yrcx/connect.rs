@@ -76,7 +76,7 @@ impl Endpoint<'_> {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
                 let opened = (fieldbus.open)(At { robot, bus: &bus, tap: Tap::default() }, Purpose::Command).await;
                 let link = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
-                Ok((link.keeping(controller), None))
+                Ok((link.with_owned(controller), None))
             }
             Self::Sim(sim) => Ok((ImageLink::in_process(Box::new(simulated::in_process(sim)?)), None)),
         }

@@ -30,7 +30,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{BUSES, Family};
 use crate::transport::session::host::Guard;
-use crate::transport::session::host::held::Held;
+use crate::transport::session::host::shared_link::SharedLink;
 
 impl Declaration for Yrcx {
     type Commands = Commands;
@@ -51,7 +51,7 @@ impl Declaration for Yrcx {
     const SETUP: (&'static str, &'static str) = ("settings of a YRCX", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = panel::PANEL;
-    const GUARD: Guard = Guard { sends: |_| false, shows: passing::only_stops };
+    const GUARD: Guard = Guard { is_harmless_data: |_| false, is_harmless_image: passing::only_stops };
     const SESSION_RECORDS: bool = true;
     const SESSION_COMMANDS: bool = true;
 
@@ -94,7 +94,7 @@ impl Declaration for Yrcx {
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
         let (images, recorder) = hold::hold(robot, access, screen).await?;
         let finish = recorder.map(|recorder| Box::new(|| Recorder::finish(recorder)) as Box<_>);
-        Ok(HeldLink { held: Held::Images(images), finish })
+        Ok(HeldLink { held: SharedLink::Images(images), finish })
     }
 }
 

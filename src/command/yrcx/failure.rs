@@ -5,7 +5,7 @@ use std::fmt;
 
 use super::position::Unit;
 use super::refusal::kept;
-use crate::client::yrcx::{Error, Stopped};
+use crate::client::yrcx::{Error, StopResult};
 use crate::command::frame::attach::session_busy;
 use crate::command::frame::dry_run::unknown;
 use crate::controller::yrcx::describe::command_summary;
@@ -72,18 +72,18 @@ pub fn failure(label: &str, error: Error) -> Failure {
             let message = format!("{why}the axis may still move: the connection to the controller is down");
             Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop")
         }
-        Error::UnderWay { .. } => about(Kind::NoAnswer, &error)
+        Error::CommandRunning { .. } => about(Kind::NoAnswer, &error)
             .hint("the controller executes one remote command at a time; `yrcx io set stop=off` stops a motion"),
-        Error::OthersUnderWay { words } => {
+        Error::OtherClientRunning { words } => {
             about(Kind::NoAnswer, &format!("another client's command is still running: {}", command_summary(&words)))
                 .hint(
                     "wait until it ends; `yrcx stop` stops a motion, and `yrcx io get` shows the state of the \
                      controller",
                 )
         }
-        Error::SignalsUnderWay => about(Kind::NoAnswer, &error).hint("wait until it ends"),
+        Error::ProcedureRunning => about(Kind::NoAnswer, &error).hint("wait until it ends"),
         Error::WordsNotSent => about(Kind::NoAnswer, &error).hint("`yrcx io get SIW2` shows the current words"),
-        Error::SignalsAlone { command } => {
+        Error::SignalsOnly { command } => {
             let id = command.row().id;
             let what = "the fieldbus unit supports only signals (I/O size \"Compact\")";
             about(Kind::Rejected, &format!("{what}, and {id} is a remote command")).hint(
@@ -91,7 +91,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
                  status`, `yrcx io`, `yrcx run`, `yrcx stop`, `yrcx recover`",
             )
         }
-        Error::NotCommanding { .. } => Failure::usage(error.to_string())
+        Error::MonitorOnly { .. } => Failure::usage(error.to_string())
             .hint("remove role from the URL; input_only and listen_only can only read signals: `yrcx io get`"),
         Error::NotHeld => Failure::usage(format!("without waiting, {error}"))
             .hint("remove --no-wait, or keep a connection open with `armctl session open` first"),
@@ -101,7 +101,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         }
         Error::NotAuthorized(error) => error.into(),
         Error::Session(busy) => session_busy(label, &busy),
-        Error::NotKnown => unknown(),
+        Error::DryRun => unknown(),
         Error::NoReport { .. } => Failure::local(format!("{label}: {error}")),
         _ => Failure::local(error.to_string()),
     }
@@ -111,14 +111,14 @@ pub fn failure(label: &str, error: Error) -> Failure {
 const STOPPED: &str = "the robot was stopped by the stop input SI(06), which is on again";
 
 /// Text for the result of a stop.
-pub fn stopped(stopped: Stopped) -> String {
+pub fn stopped(stopped: StopResult) -> String {
     match stopped {
-        Stopped::Nothing => "no motion command was sent".to_owned(),
-        Stopped::Motion { order, positions } => format!("{STOPPED}{}", place(&order, &positions)),
-        Stopped::Started => STOPPED.to_owned(),
-        Stopped::Command(command) => format!("{} was ended", command.row().id),
-        Stopped::HadEnded(command, None) => format!("{} had already completed", command.row().id),
-        Stopped::HadEnded(command, Some(alarm)) => {
+        StopResult::Nothing => "no motion command was sent".to_owned(),
+        StopResult::Motion { order, positions } => format!("{STOPPED}{}", place(&order, &positions)),
+        StopResult::Started => STOPPED.to_owned(),
+        StopResult::Command(command) => format!("{} was ended", command.row().id),
+        StopResult::AlreadyEnded(command, None) => format!("{} had already completed", command.row().id),
+        StopResult::AlreadyEnded(command, Some(alarm)) => {
             format!("{} had already ended: alarm {alarm}, {}", command.row().id, alarm.text())
         }
     }

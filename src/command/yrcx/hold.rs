@@ -10,7 +10,7 @@ use crate::command::Access;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::transport::session::host::held::Images;
+use crate::transport::session::host::shared_link::Images;
 
 /// Opens the link.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Images, Option<Recorder>), Failure> {

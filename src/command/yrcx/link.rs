@@ -82,7 +82,7 @@ impl Family for Yrcx {
         }
         if access.mode == ConnectMode::Explicit {
             let (board, recorder) = endpoint.board(robot, &access, screen).await?;
-            let link = Link::new(robot, &access, screen, Client::apart(options), recorder)?;
+            let link = Link::new(robot, &access, screen, Client::without_link(options), recorder)?;
             return Ok(Link { board: Some(board), ..link });
         }
         let (client, recorder) = if let Some(attached) = Box::pin(attach(robot, &access, screen)).await? {
@@ -171,7 +171,7 @@ fn options(robot: &Robot, endpoint: &Endpoint<'_>, access: &Access) -> Options {
     Options {
         commands,
         is_held: robot.target.value.is_simulated(),
-        granted: access.granted.clone(),
+        grant: access.grant.clone(),
         timeout: robot.timeout.value,
         retries: robot.retries.value,
     }
@@ -180,21 +180,21 @@ fn options(robot: &Robot, endpoint: &Endpoint<'_>, access: &Access) -> Options {
 fn tell_statistics(client: &Client, screen: &Screen) {
     let Totals { commands, waited, losses } = client.totals();
     screen.detail(1, &format!("{commands} remote commands, {waited:.1?} from start to end"));
-    let Some(image::Traffic { sent, received, intervals, mut odd }) = client.traffic() else { return };
+    let Some(image::Traffic { sent, received, intervals, mut irregular }) = client.traffic() else { return };
     let every = intervals.map(|(to, from)| format!(" every {to:?} and {from:?}")).unwrap_or_default();
     screen.detail(1, &format!("{sent} images sent, {received} received{every}"));
-    odd.push((losses.into(), "losses of the link"));
-    if let Some(odd) = counted(&odd) {
-        screen.detail(1, &format!("link faults: {odd}"));
+    irregular.push((losses.into(), "losses of the link"));
+    if let Some(text) = counted(&irregular) {
+        screen.detail(1, &format!("link faults: {text}"));
     }
 }
 
 impl Link {
     /// Traffic counted on its own connection. A session counts the traffic of its connection itself.
     pub(super) fn traffic(&self) -> Traffic {
-        let image::Traffic { sent, received, odd, .. } = self.client.traffic().unwrap_or_default();
-        let odd: u64 = odd.iter().map(|(count, _)| count).sum();
-        Traffic { sent, received, disturbances: odd + u64::from(self.client.totals().losses) }
+        let image::Traffic { sent, received, irregular, .. } = self.client.traffic().unwrap_or_default();
+        let irregular: u64 = irregular.iter().map(|(count, _)| count).sum();
+        Traffic { sent, received, disturbances: irregular + u64::from(self.client.totals().losses) }
     }
 
     /// Link to a peer in this process.
@@ -307,7 +307,7 @@ impl Link {
     /// Executes a procedure of signals and returns its duration.
     pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Failure> {
         self.no_unit("signals belong to the whole controller")?;
-        self.client.carry_out(procedure).await.map_err(|error| self.failure(error))
+        self.client.run_procedure(procedure).await.map_err(|error| self.failure(error))
     }
 
     /// Sets general-purpose words: [`Client::set_words`].
@@ -318,12 +318,12 @@ impl Link {
 
     /// Current image of the controller.
     pub async fn look(&mut self) -> Result<Image, Failure> {
-        self.client.look().await.map_err(|error| self.failure(error))
+        self.client.input_image().await.map_err(|error| self.failure(error))
     }
 
     /// Waits for an image that matches, and returns it. A loss of the link is reported once.
     pub async fn look_until(&mut self, matters: impl FnMut(&Image) -> bool) -> Result<Image, Failure> {
-        self.client.look_until(matters).await.map_err(|error| self.failure(error))
+        self.client.wait_for_input(matters).await.map_err(|error| self.failure(error))
     }
 
     /// Notes all requests in a dry run, in which the answers are unknown.

@@ -105,7 +105,7 @@ pub(super) fn state(link: &Link, image: &Image, alarm: Option<&Alarm>) -> State 
         controller_mode: Some(if is_auto { "auto" } else { "manual" }),
         servo_on: Some(output::SERVO_ON.is_on(image)),
         running: Some(output::PROGRAM_RUNNING.is_on(image)),
-        held: link.shown().map(|shown| !input::STOP.is_on(shown)),
+        held: link.output_image().map(|shown| !input::STOP.is_on(shown)),
         homed: Some(output::ORIGIN_COMPLETE.is_on(image)),
         emergency_stop: Some(output::EMERGENCY_STOP.is_on(image)),
         fault: Fault::new(output::ALARM.is_on(image), alarm),

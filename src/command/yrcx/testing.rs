@@ -197,9 +197,9 @@ impl ImagePeer for Handle {
 
 /// Controller on a fieldbus that supports only signals.
 #[derive(Debug)]
-struct SignalsAlone(Handle);
+struct SignalsOnly(Handle);
 
-impl ImagePeer for SignalsAlone {
+impl ImagePeer for SignalsOnly {
     fn input(&mut self, now: Duration, image: Option<&[u8]>) {
         let whole = image.map(|bytes| {
             assert_eq!(bytes.len(), Image::SIGNAL_BYTES);
@@ -219,25 +219,25 @@ impl ImagePeer for SignalsAlone {
 
 impl Bench {
     pub(super) fn new(scripted: Scripted) -> Self {
-        Self::granted(scripted, Risk::Motion)
+        Self::grant(scripted, Risk::Motion)
     }
 
     /// Bench with a fieldbus that supports only signals.
     pub(super) fn signals_alone(scripted: Scripted) -> Self {
-        Self::over(scripted, Risk::Motion, |handle| Box::new(SignalsAlone(handle)))
+        Self::over(scripted, Risk::Motion, |handle| Box::new(SignalsOnly(handle)))
     }
 
     /// Bench with a limited granted risk.
-    pub(super) fn granted(scripted: Scripted, granted: Risk) -> Self {
-        Self::over(scripted, granted, |handle| Box::new(handle))
+    pub(super) fn grant(scripted: Scripted, grant: Risk) -> Self {
+        Self::over(scripted, grant, |handle| Box::new(handle))
     }
 
-    fn over(scripted: Scripted, granted: Risk, end: impl FnOnce(Handle) -> Box<dyn ImagePeer>) -> Self {
+    fn over(scripted: Scripted, grant: Risk, end: impl FnOnce(Handle) -> Box<dyn ImagePeer>) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let peer = Shared::new(scripted.into());
-        let access = Access { granted: Grant::of(granted), ..Access::reading(ConnectMode::Control) };
+        let access = Access { grant: Grant::up_to(grant), ..Access::reading(ConnectMode::Control) };
         let screen = quiet();
         let opening = Link::to_peer(&robot, &access, &screen, end(Handle(Shared::clone(&peer))));
         let link = runtime.block_on(opening).expect("a link");

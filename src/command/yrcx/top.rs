@@ -153,7 +153,7 @@ impl Poller {
     }
 
     fn whole(&self, detail: Detail, image: &Image, not_asked: Option<&'static str>) -> Whole {
-        let shown = self.link.shown().copied();
+        let shown = self.link.output_image().copied();
         let mut banks = Vec::new();
         if detail == Detail::Full {
             banks.extend(shown.map(|shown| bank("inputs", Side::Input, &shown)));

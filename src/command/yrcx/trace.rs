@@ -18,7 +18,7 @@ use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::Side;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::transport::image::tap::{Passed, Tap};
+use crate::transport::image::tap::{Passage, Tap};
 use crate::transport::tap::Direction;
 
 /// Text trace of the images of one link. Without a network, the images themselves are recorded as well.
@@ -96,14 +96,14 @@ impl Opening {
         }
         let passed = Arc::new(Mutex::new(VecDeque::new()));
         let kept = Arc::clone(&passed);
-        let tap = Tap::new(move |packet: Passed| {
+        let tap = Tap::new(move |packet: Passage| {
             let line = match packet {
-                Passed::Datagram { from, to, bytes } => format!("udp {from} -> {to}  {}", hex(&bytes)),
-                Passed::Segment { from, to, bytes } => format!("tcp {from} -> {to}  {}", hex(&bytes)),
-                Passed::Adapter { direction, bytes } => {
+                Passage::Datagram { from, to, bytes } => format!("udp {from} -> {to}  {}", hex(&bytes)),
+                Passage::Segment { from, to, bytes } => format!("tcp {from} -> {to}  {}", hex(&bytes)),
+                Passage::Adapter { direction, bytes } => {
                     format!("adapter {}  {}", direction.arrow(), bytes.escape_ascii())
                 }
-                Passed::Frame(bytes) => format!("frame  {}", hex(&bytes)),
+                Passage::Frame(bytes) => format!("frame  {}", hex(&bytes)),
             };
             let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
             if kept.len() == MOST_SHOWN {
@@ -132,7 +132,7 @@ const MOST_WAITING: usize = 65_536;
 pub struct Recorder {
     writer: JoinHandle<Result<(), Failure>>,
     /// `None` is the end of the stream.
-    packets: SyncSender<Option<(Duration, Passed)>>,
+    packets: SyncSender<Option<(Duration, Passage)>>,
     /// Number of packets dropped because the queue was full.
     lost: Arc<AtomicU64>,
 }
@@ -144,14 +144,14 @@ impl Recorder {
             return Ok(None);
         }
         let mut record = trace::Trace::of_packets(access, screen, link_type)?;
-        let (packets, coming) = mpsc::sync_channel::<Option<(Duration, Passed)>>(MOST_WAITING);
+        let (packets, coming) = mpsc::sync_channel::<Option<(Duration, Passage)>>(MOST_WAITING);
         let writer = std::thread::Builder::new().name("trace".to_owned()).spawn(move || {
             while let Ok(Some((time, passed))) = coming.recv() {
                 record.capture(|capture, _| match passed {
-                    Passed::Datagram { from, to, bytes } => capture.datagram(time, from, to, &bytes),
-                    Passed::Segment { from, to, bytes } => capture.segment(time, from, to, &bytes),
-                    Passed::Adapter { .. } => Ok(()),
-                    Passed::Frame(bytes) => capture.frame(time, &bytes),
+                    Passage::Datagram { from, to, bytes } => capture.datagram(time, from, to, &bytes),
+                    Passage::Segment { from, to, bytes } => capture.segment(time, from, to, &bytes),
+                    Passage::Adapter { .. } => Ok(()),
+                    Passage::Frame(bytes) => capture.frame(time, &bytes),
                 });
             }
             record.finish()

@@ -59,7 +59,7 @@ impl Bus for Connection {
         let view = self.view();
         let counted = view.statistics;
         let (health, _) = self.network().health();
-        let odd = vec![
+        let irregular = vec![
             (counted.missed, "not answered in time"),
             (counted.wrong, "spoilt"),
             (counted.late, "late"),
@@ -68,7 +68,7 @@ impl Bus for Connection {
             (health.rejected, "refused by the adapter"),
         ];
         let intervals = view.details.rate.map(|rate| (rate, rate));
-        Traffic { sent: counted.sent, received: counted.received, intervals, odd }
+        Traffic { sent: counted.sent, received: counted.received, intervals, irregular }
     }
 
     fn close(self) -> LocalBoxFuture<'static, Result<(), Error>> {
@@ -103,7 +103,7 @@ impl Listened {
                     if !known.is_up {
                         return Event::Reopened;
                     }
-                    if known.is_news(&input.image) {
+                    if known.is_new(&input.image) {
                         return Event::Image(input.image.into());
                     }
                     tokio::select! {
@@ -176,7 +176,7 @@ impl Reading {
                 self.connection.views.changed().await;
                 continue;
             }
-            if known.is_news(&self.image) {
+            if known.is_new(&self.image) {
                 return Event::Image(Arc::clone(&self.image));
             }
             sleep_until(self.due).await;

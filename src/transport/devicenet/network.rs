@@ -22,7 +22,7 @@ use super::monitor::{Monitor, Sight};
 use super::scanner::{Found, Identity, Reply, Scanner, Token, View, Views};
 use super::settings::Settings;
 use super::wire::{Answer, Mac, Request};
-use crate::image::tap::Passed;
+use crate::image::tap::Passage;
 pub use crate::image::tap::Tap;
 use crate::serial::{self, Line};
 
@@ -403,7 +403,7 @@ impl Inside {
 /// Records a frame.
 fn pass(taps: &[Tap], frame: &Frame) {
     for tap in taps {
-        tap.pass(|| Passed::Frame(frame.to_capture()));
+        tap.pass(|| Passage::Frame(frame.to_capture()));
     }
 }
 

@@ -67,14 +67,14 @@ impl Bus for Device {
     fn traffic(&self) -> Traffic {
         let view = self.connection.view();
         let counted = view.statistics;
-        let odd = vec![
+        let irregular = vec![
             (counted.lost, "lost"),
             (counted.late, "late"),
             (counted.stale, "stale"),
             (counted.misfit, "with a wrong size"),
             (counted.skipped, "not sent in time"),
         ];
-        Traffic { sent: counted.sent, received: counted.received, intervals: view.details.intervals, odd }
+        Traffic { sent: counted.sent, received: counted.received, intervals: view.details.intervals, irregular }
     }
 
     fn close(self) -> LocalBoxFuture<'static, Result<(), EipError>> {
@@ -100,7 +100,7 @@ impl Reading {
         loop {
             match self.reader.reading() {
                 Ok(_) if !known.is_up => return Event::Reopened,
-                Ok(image) if known.is_news(&image) => return Event::Image(Arc::clone(&image)),
+                Ok(image) if known.is_new(&image) => return Event::Image(Arc::clone(&image)),
                 Err(error) if known.is_up => {
                     return Event::Lost(LinkError::Lost { cause: Cause::new(error), outputs: Outputs::Never });
                 }

@@ -116,8 +116,8 @@ impl Scanner {
             groups: Mutex::default(),
         });
         spawn(engine.handle(), hear(Arc::clone(&inner), heard));
-        let turned = Arc::clone(&inner);
-        let engine = engine.start("eip", start, alarm, move || turned.turn())?;
+        let for_engine = Arc::clone(&inner);
+        let engine = engine.start("eip", start, alarm, move || for_engine.turn())?;
         Ok(Self { owner: Arc::new(Owner { inner, _engine: engine }) })
     }
 

@@ -47,9 +47,9 @@ impl From<tap::Tap> for Tap {
             tap.pass(|| {
                 let (from, to, bytes) = (passed.from.into(), passed.to.into(), passed.bytes.to_vec());
                 if passed.is_tcp {
-                    tap::Passed::Segment { from, to, bytes }
+                    tap::Passage::Segment { from, to, bytes }
                 } else {
-                    tap::Passed::Datagram { from, to, bytes }
+                    tap::Passage::Datagram { from, to, bytes }
                 }
             });
         })

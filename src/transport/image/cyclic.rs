@@ -29,7 +29,7 @@ pub trait Bus: fmt::Debug + 'static {
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Self::Error>;
 
     /// Corrects the byte order of an image if the bus has another one.
-    fn turned(&self, image: Arc<[u8]>) -> Arc<[u8]> {
+    fn native_order(&self, image: Arc<[u8]>) -> Arc<[u8]> {
         image
     }
 
@@ -78,8 +78,8 @@ impl<B: Bus> Cyclic<B> {
                 return Event::Sent;
             }
             if let Some(input) = view.input.filter(|input| input.generation == self.generation) {
-                let image = self.bus.turned(input.image);
-                if known.is_news(&image) {
+                let image = self.bus.native_order(input.image);
+                if known.is_new(&image) {
                     return Event::Image(image);
                 }
             }
@@ -93,7 +93,7 @@ impl<B: Bus> ImageConnection for Cyclic<B> {
         self.sizes
     }
 
-    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
+    fn set_output(&mut self, image: &[u8]) -> Result<(), LinkError> {
         // The previous image is replaced, even if this one fails.
         self.pending = None;
         match self.bus.set_image(self.generation, image) {

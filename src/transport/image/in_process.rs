@@ -45,8 +45,8 @@ impl InProcess {
     async fn wait(&mut self, known: Known<'_>) -> Event {
         loop {
             let now = self.start.elapsed();
-            let shown = self.peer.output(now);
-            match (&shown, known.is_up) {
+            let last_output = self.peer.output(now);
+            match (&last_output, known.is_up) {
                 (None, true) => {
                     self.pending = None;
                     let cause = Cause::new("the other side has ended");
@@ -63,7 +63,7 @@ impl InProcess {
                 self.due = now + CYCLE;
                 return Event::Sent;
             }
-            if let Some(image) = shown.filter(|image| known.is_news(image)) {
+            if let Some(image) = last_output.filter(|image| known.is_new(image)) {
                 return Event::Image(image.into());
             }
             // A peer that is always due is polled once per cycle.
@@ -82,7 +82,7 @@ impl ImageConnection for InProcess {
         Sizes { output: self.size, input: self.size }
     }
 
-    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
+    fn set_output(&mut self, image: &[u8]) -> Result<(), LinkError> {
         self.pending = Some(image.to_vec());
         Ok(())
     }

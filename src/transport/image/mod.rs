@@ -44,7 +44,7 @@ pub enum Event {
     /// The link is open again.
     Reopened,
     /// Another user of the link has changed the image to the peer.
-    Shown(Change),
+    OutputChanged(Change),
     /// The session refuses all images of this process, because the robot is read-only.
     Denied,
     /// No event before the deadline.
@@ -61,7 +61,7 @@ pub trait ImageConnection: fmt::Debug {
     ///
     /// # Errors
     /// The image has another size, or the connection is read-only. A loss is not an error here; `next` reports it.
-    fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
+    fn set_output(&mut self, _image: &[u8]) -> Result<(), LinkError> {
         Err(LinkError::Settings(Cause::new("a read-only connection sends no outputs")))
     }
 
@@ -100,7 +100,7 @@ pub struct Known<'a> {
 
 impl Known<'_> {
     /// Whether this image is new to the caller.
-    pub fn is_news(&self, image: &[u8]) -> bool {
+    pub fn is_new(&self, image: &[u8]) -> bool {
         self.is_up && self.image.is_none_or(|known| **known != *image)
     }
 }
@@ -115,7 +115,7 @@ pub struct Traffic {
     /// Intervals of images to and from the device, if they are agreed.
     pub intervals: Option<(Duration, Duration)>,
     /// Irregular events with their names: `(2, "late")`.
-    pub odd: Vec<(u64, &'static str)>,
+    pub irregular: Vec<(u64, &'static str)>,
 }
 
 /// A link to one peer, over a connection of this process or of another one.
@@ -123,22 +123,22 @@ pub struct Traffic {
 pub struct ImageLink {
     end: End,
     /// Last image from the peer, to detect changes.
-    seen: Option<Arc<[u8]>>,
+    last_input: Option<Arc<[u8]>>,
     is_up: bool,
     /// Value that must live as long as the link, such as an in-process peer.
-    kept: Option<Box<dyn fmt::Debug>>,
+    keep_alive: Option<Box<dyn fmt::Debug>>,
 }
 
 #[derive(Debug)]
 enum End {
-    Own(Box<dyn ImageConnection>),
+    Local(Box<dyn ImageConnection>),
     Session(Box<Attached>),
 }
 
 impl ImageLink {
     /// Creates a link over a connection.
     pub fn over(connection: impl ImageConnection + 'static) -> Self {
-        Self { end: End::Own(Box::new(connection)), seen: None, is_up: true, kept: None }
+        Self { end: End::Local(Box::new(connection)), last_input: None, is_up: true, keep_alive: None }
     }
 
     /// Creates a link to a peer in this process.
@@ -149,13 +149,13 @@ impl ImageLink {
     /// Creates a link over a session, which another process holds.
     pub fn in_session(attached: Box<Attached>) -> Self {
         let is_up = attached.welcome.down.is_none();
-        Self { end: End::Session(attached), seen: None, is_up, kept: None }
+        Self { end: End::Session(attached), last_input: None, is_up, keep_alive: None }
     }
 
     /// Keeps a value alive until the link is closed.
     #[must_use]
-    pub fn keeping(self, kept: Box<dyn fmt::Debug>) -> Self {
-        Self { kept: Some(kept), ..self }
+    pub fn with_owned(self, keep_alive: Box<dyn fmt::Debug>) -> Self {
+        Self { keep_alive: Some(keep_alive), ..self }
     }
 
     /// Whether the link is up.
@@ -166,31 +166,31 @@ impl ImageLink {
     /// Size of the image to the peer in bytes; 0 for a read-only link.
     pub fn output_size(&self) -> usize {
         match &self.end {
-            End::Own(connection) => connection.sizes().output,
-            End::Session(attached) => attached.shown().map_or(0, <[u8]>::len),
+            End::Local(connection) => connection.sizes().output,
+            End::Session(attached) => attached.output().map_or(0, <[u8]>::len),
         }
     }
 
     /// In a session, the image that is sent to the peer now.
-    pub fn shown(&self) -> Option<&[u8]> {
+    pub fn output(&self) -> Option<&[u8]> {
         match &self.end {
-            End::Session(attached) => attached.shown(),
-            End::Own(_) => None,
+            End::Session(attached) => attached.output(),
+            End::Local(_) => None,
         }
     }
 
     /// Waits until this process has exclusive control of the shared outputs, at most until `until`.
-    pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
+    pub async fn acquire(&mut self, until: Instant) -> Result<(), SessionBusy> {
         match &mut self.end {
-            End::Session(attached) => attached.take(until).await,
-            End::Own(_) => Ok(()),
+            End::Session(attached) => attached.acquire(until).await,
+            End::Local(_) => Ok(()),
         }
     }
 
     /// Gives up exclusive control.
-    pub fn give(&mut self) {
+    pub fn release(&mut self) {
         if let End::Session(attached) = &mut self.end {
-            attached.over();
+            attached.release();
         }
     }
 
@@ -206,7 +206,7 @@ impl ImageLink {
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         match &mut self.end {
             End::Session(attached) => attached.claim_motion().await,
-            End::Own(_) => Ok(()),
+            End::Local(_) => Ok(()),
         }
     }
 
@@ -214,7 +214,7 @@ impl ImageLink {
     pub fn ended(&self) -> Option<&str> {
         match &self.end {
             End::Session(attached) => attached.ended(),
-            End::Own(_) => None,
+            End::Local(_) => None,
         }
     }
 
@@ -223,13 +223,13 @@ impl ImageLink {
     ///
     /// # Errors
     /// The image has another size.
-    pub fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
+    pub fn set_output(&mut self, image: &[u8]) -> Result<(), LinkError> {
         match &mut self.end {
             // An image from before a loss must not be sent after it.
-            End::Own(_) if !self.is_up => Ok(()),
-            End::Own(connection) => connection.show(image),
+            End::Local(_) if !self.is_up => Ok(()),
+            End::Local(connection) => connection.set_output(image),
             End::Session(attached) => {
-                attached.show(image);
+                attached.set_output(image);
                 Ok(())
             }
         }
@@ -238,8 +238,8 @@ impl ImageLink {
     /// Waits for the next event, at most until `until`. Cancel safe.
     pub async fn next(&mut self, until: Instant) -> Event {
         let event = match &mut self.end {
-            End::Own(connection) => {
-                let next = connection.next(Known { is_up: self.is_up, image: self.seen.as_ref() });
+            End::Local(connection) => {
+                let next = connection.next(Known { is_up: self.is_up, image: self.last_input.as_ref() });
                 if Instant::now() < until {
                     timeout_at(until, next).await.unwrap_or(Event::Timeout)
                 } else {
@@ -249,10 +249,10 @@ impl ImageLink {
             End::Session(attached) => attached.event(until).await.into(),
         };
         match &event {
-            Event::Image(image) => self.seen = Some(Arc::clone(image)),
-            Event::Lost(_) => (self.is_up, self.seen) = (false, None),
+            Event::Image(image) => self.last_input = Some(Arc::clone(image)),
+            Event::Lost(_) => (self.is_up, self.last_input) = (false, None),
             Event::Reopened => self.is_up = true,
-            Event::Sent | Event::Shown(_) | Event::Denied | Event::Timeout => {}
+            Event::Sent | Event::OutputChanged(_) | Event::Denied | Event::Timeout => {}
         }
         event
     }
@@ -260,23 +260,23 @@ impl ImageLink {
     /// Counters; `None` for a link without its own network.
     pub fn traffic(&self) -> Option<Traffic> {
         match &self.end {
-            End::Own(connection) => connection.traffic(),
+            End::Local(connection) => connection.traffic(),
             End::Session(_) => None,
         }
     }
 
     /// Closes the link. A session stays open.
     pub async fn close(self) -> Result<(), LinkError> {
-        let Self { end, kept, .. } = self;
+        let Self { end, keep_alive, .. } = self;
         let closed = match end {
-            End::Own(connection) => connection.close().await,
+            End::Local(connection) => connection.close().await,
             End::Session(attached) => {
                 attached.leave().await;
                 Ok(())
             }
         };
         // The peer must live until the close is complete.
-        drop(kept);
+        drop(keep_alive);
         closed
     }
 }
@@ -286,7 +286,7 @@ impl From<client::Event> for Event {
         match event {
             client::Event::Sent => Self::Sent,
             client::Event::Image(image) => Self::Image(image.into()),
-            client::Event::Shown(change) => Self::Shown(change),
+            client::Event::OutputChanged(change) => Self::OutputChanged(change),
             client::Event::Denied => Self::Denied,
             // The session host has already reported the state of the outputs, if it could.
             client::Event::Lost(why) => Self::Lost(LinkError::Silent(Cause::new(why))),

@@ -8,7 +8,7 @@ use crate::tap::Direction;
 
 /// A recorded item.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Passed {
+pub enum Passage {
     /// A datagram.
     Datagram {
         /// Sender.
@@ -38,7 +38,7 @@ pub enum Passed {
     Frame(Vec<u8>),
 }
 
-type Look = dyn Fn(Passed) + Send + Sync;
+type Look = dyn Fn(Passage) + Send + Sync;
 
 /// Called with all traffic, on the threads that move it. It must not block.
 #[derive(Clone, Default)]
@@ -46,7 +46,7 @@ pub struct Tap(Option<Arc<Look>>);
 
 impl Tap {
     /// Creates a tap that calls this function.
-    pub fn new(tap: impl Fn(Passed) + Send + Sync + 'static) -> Self {
+    pub fn new(tap: impl Fn(Passage) + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(tap)))
     }
 
@@ -56,7 +56,7 @@ impl Tap {
     }
 
     /// Records an item. `passed` is only called if the tap is open.
-    pub fn pass(&self, passed: impl FnOnce() -> Passed) {
+    pub fn pass(&self, passed: impl FnOnce() -> Passage) {
         if let Some(tap) = &self.0 {
             tap(passed());
         }

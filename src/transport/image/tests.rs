@@ -55,10 +55,10 @@ async fn images_leave_in_the_rhythm_of_the_link_and_only_news_are_told() {
     let heard = Arc::clone(&echo.heard);
     let mut link = ImageLink::in_process(Box::new(echo));
     assert_eq!(later(&mut link, 10).await, image(&[]));
-    link.show(b"a").unwrap();
+    link.set_output(b"a").unwrap();
     assert_eq!(later(&mut link, 10).await, Event::Sent);
-    link.show(b"b").unwrap();
-    link.show(b"c").unwrap();
+    link.set_output(b"b").unwrap();
+    link.set_output(b"c").unwrap();
     assert_eq!(later(&mut link, 10).await, image(b"a"));
     assert_eq!(later(&mut link, 10).await, Event::Sent);
     assert_eq!(later(&mut link, 10).await, image(b"c"));
@@ -79,9 +79,9 @@ async fn what_was_to_be_sent_before_a_loss_is_not_sent_after_it() {
     let heard = Arc::clone(&echo.heard);
     let mut link = ImageLink::in_process(Box::new(echo));
     assert_eq!(later(&mut link, 1).await, image(&[]));
-    link.show(b"a").unwrap();
+    link.set_output(b"a").unwrap();
     assert_eq!(later(&mut link, 1).await, Event::Sent);
-    link.show(b"b").unwrap();
+    link.set_output(b"b").unwrap();
     assert_eq!(later(&mut link, 100).await, image(b"a"));
     let lost = LinkError::Lost { cause: Cause::new("the other side has ended"), outputs: Outputs::Released };
     assert_eq!(later(&mut link, 100).await, Event::Lost(lost));

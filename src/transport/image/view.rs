@@ -94,8 +94,8 @@ pub struct Views<E, S, D>(watch::Receiver<View<E, S, D>>);
 impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
     /// Creates a sender and a receiver.
     pub fn new(view: View<E, S, D>) -> (watch::Sender<View<E, S, D>>, Self) {
-        let (shows, seen) = watch::channel(view);
-        (shows, Self(seen))
+        let (sender, receiver) = watch::channel(view);
+        (sender, Self(receiver))
     }
 
     /// Current view.

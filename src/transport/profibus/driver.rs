@@ -119,13 +119,13 @@ struct Driver {
 impl Driver {
     fn run(mut self) {
         loop {
-            let turned = if let Some(mut port) = self.port.take() {
+            let outcome = if let Some(mut port) = self.port.take() {
                 self.turn(port.as_mut()).map(|()| self.port = Some(port))
             } else {
                 self.reopen();
                 Ok(())
             };
-            if let Err(error) = turned {
+            if let Err(error) = outcome {
                 let now = self.shared.start.elapsed();
                 let error = ProfibusError::Gone { text: plain(&error) };
                 self.shared.master().port_failed(now, error);

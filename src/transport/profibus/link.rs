@@ -12,7 +12,7 @@ use super::hearing::Hearing;
 use super::master::{Details, Statistics, View, Views};
 use super::settings::Settings;
 use crate::image::cyclic::{Bus, Cyclic};
-use crate::image::tap::{Passed, Tap};
+use crate::image::tap::{Passage, Tap};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
 /// Byte swapping of an image: the words that a board sends with exchanged bytes.
@@ -30,7 +30,7 @@ impl Swapped {
         }
     }
 
-    fn turned(self, image: &[u8]) -> Vec<u8> {
+    fn native_order(self, image: &[u8]) -> Vec<u8> {
         let mut image = image.to_vec();
         self.turn(&mut image);
         image
@@ -72,11 +72,11 @@ impl Bus for Slave {
     }
 
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfibusError> {
-        self.connection.set_image(generation, &self.swapped.turned(image))
+        self.connection.set_image(generation, &self.swapped.native_order(image))
     }
 
-    fn turned(&self, image: Arc<[u8]>) -> Arc<[u8]> {
-        self.swapped.turned(&image).into()
+    fn native_order(&self, image: Arc<[u8]>) -> Arc<[u8]> {
+        self.swapped.native_order(&image).into()
     }
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
@@ -91,14 +91,14 @@ impl Bus for Slave {
     fn traffic(&self) -> Traffic {
         let view = self.connection.view();
         let counted = view.statistics;
-        let odd = vec![
+        let irregular = vec![
             (counted.repeated, "repeated"),
             (counted.noise, "bytes of noise"),
             (counted.unexpected, "unexpected"),
             (counted.skipped, "not sent in time"),
         ];
         let intervals = Some((view.details.cycle, view.details.cycle));
-        Traffic { sent: counted.sent, received: counted.received, intervals, odd }
+        Traffic { sent: counted.sent, received: counted.received, intervals, irregular }
     }
 
     fn close(self) -> LocalBoxFuture<'static, Result<(), ProfibusError>> {
@@ -138,8 +138,8 @@ impl Listening {
         loop {
             let before = self.hearing.heard().exchanges;
             if let Some(input) = self.hearing.heard().input.clone().filter(|_| known.is_up) {
-                let image: Arc<[u8]> = self.swapped.turned(&input).into();
-                if known.is_news(&image) {
+                let image: Arc<[u8]> = self.swapped.native_order(&input).into();
+                if known.is_new(&image) {
                     return Event::Image(image);
                 }
             }
@@ -169,7 +169,7 @@ impl ImageConnection for Listening {
 
 /// Converts a tap for telegrams.
 pub fn record(tap: Tap) -> Option<super::driver::Tap> {
-    let record = move |bytes: &[u8]| tap.pass(|| Passed::Frame(bytes.to_vec()));
+    let record = move |bytes: &[u8]| tap.pass(|| Passage::Frame(bytes.to_vec()));
     Some(Box::new(record) as super::driver::Tap)
 }
 

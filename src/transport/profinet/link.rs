@@ -56,14 +56,14 @@ impl Bus for Device {
 
     fn traffic(&self) -> Traffic {
         let counted = self.connection.statistics();
-        let odd = vec![
+        let irregular = vec![
             (counted.stale, "late or duplicate"),
             (counted.skipped, "not sent in time"),
             (counted.alarms, "alarms"),
             (counted.losses, "losses"),
         ];
         let intervals = Some((self.settings.cycle, self.settings.cycle));
-        Traffic { sent: counted.sent, received: counted.received, intervals, odd }
+        Traffic { sent: counted.sent, received: counted.received, intervals, irregular }
     }
 
     fn close(self) -> LocalBoxFuture<'static, Result<(), ProfinetError>> {

@@ -24,7 +24,7 @@ use super::sockets::{BUFFER, Sockets};
 use super::wire::Mac;
 use super::wire::alarm::Notification;
 use super::wire::rpc;
-use crate::image::tap::{Passed, Tap};
+use crate::image::tap::{Passage, Tap};
 use crate::local::LocalError;
 
 /// Owner of connections on one interface. Clones are cheap. Its thread stops with the last clone and the last
@@ -215,7 +215,7 @@ impl Inner {
         while let Some(action) = slot.core.poll(now) {
             match action {
                 Action::Frame(bytes) => {
-                    slot.tap.pass(|| Passed::Frame(bytes.clone()));
+                    slot.tap.pass(|| Passage::Frame(bytes.clone()));
                     if let Err(error) = self.sockets.send_frame(&bytes) {
                         slot.core.failed(LocalError::new("sending a frame", &error).into());
                     }
@@ -223,7 +223,7 @@ impl Inner {
                 Action::Datagram(to, bytes) => {
                     let from = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
                     let card = slot.core.card().unwrap_or_default();
-                    slot.tap.pass(|| Passed::Frame(in_frame(self.here.mac, card, from, to, &bytes)));
+                    slot.tap.pass(|| Passage::Frame(in_frame(self.here.mac, card, from, to, &bytes)));
                     if let Err(error) = self.sockets.send_datagram(to, &bytes) {
                         slot.core.failed(LocalError::new("sending a call", &error).into());
                     }
@@ -239,7 +239,7 @@ impl Inner {
         let now = self.now();
         for slot in self.slots().values_mut() {
             if slot.core.concerns(bytes) {
-                slot.tap.pass(|| Passed::Frame(bytes.to_vec()));
+                slot.tap.pass(|| Passage::Frame(bytes.to_vec()));
             }
             slot.core.frame(now, bytes);
         }
@@ -251,7 +251,7 @@ impl Inner {
         for slot in self.slots().values_mut() {
             if slot.core.address() == Some(*from.ip()) {
                 let card = slot.core.card().unwrap_or_default();
-                slot.tap.pass(|| Passed::Frame(in_frame(card, self.here.mac, from, to, bytes)));
+                slot.tap.pass(|| Passage::Frame(in_frame(card, self.here.mac, from, to, bytes)));
             }
             slot.core.datagram(now, from, bytes);
         }

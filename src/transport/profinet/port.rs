@@ -14,7 +14,7 @@ use super::simulated::Network;
 use super::wire::frame::{self, Frame};
 use super::wire::{Mac, arp, rpc};
 use super::{Now, simulated};
-use crate::image::tap::{Passed, Tap};
+use crate::image::tap::{Passage, Tap};
 use crate::local::LocalError;
 
 /// Buffer for a frame or datagram.
@@ -75,7 +75,7 @@ impl Frames {
     }
 
     pub(super) fn send(&self, frame: &[u8]) -> Result<(), ProfinetError> {
-        self.tap.pass(|| Passed::Frame(frame.to_vec()));
+        self.tap.pass(|| Passage::Frame(frame.to_vec()));
         match &self.end {
             End::Simulated(network) => network.send_frame(frame),
             End::Socket(socket, _) => {
@@ -104,7 +104,7 @@ impl Frames {
     pub(super) fn next(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let came = self.take(until)?;
         if let Some(bytes) = &came {
-            self.tap.pass(|| Passed::Frame(bytes.clone()));
+            self.tap.pass(|| Passage::Frame(bytes.clone()));
         }
         Ok(came)
     }
@@ -153,7 +153,7 @@ impl Calls {
     }
 
     pub(super) fn send(&self, bytes: &[u8]) -> Result<(), ProfinetError> {
-        self.tap.pass(|| Passed::Frame(in_frame(self.cards.0, self.cards.1, self.here(), self.target, bytes)));
+        self.tap.pass(|| Passage::Frame(in_frame(self.cards.0, self.cards.1, self.here(), self.target, bytes)));
         match &self.end {
             End::Simulated(network) => network.send_datagram(self.target, bytes),
             End::Socket(socket, _) => {
@@ -185,7 +185,7 @@ impl Calls {
         if from.ip() != self.target.ip() {
             return Ok(None);
         }
-        self.tap.pass(|| Passed::Frame(in_frame(self.cards.1, self.cards.0, from, self.here(), &bytes)));
+        self.tap.pass(|| Passage::Frame(in_frame(self.cards.1, self.cards.0, from, self.here(), &bytes)));
         Ok(Some(bytes))
     }
 

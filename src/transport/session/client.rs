@@ -9,14 +9,14 @@ use thiserror::Error;
 use tokio::task::yield_now;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
-use super::place::{Place, PlaceError, Spot};
+use super::location::{LocationError, SessionFolder, SessionPath};
 use super::socket::{self, WriteHalf};
 use super::wire::{
-    Change, Control, Frame, Hello, Images, Peer, Purpose, Reader, Status, VERSION, Welcome, WireError, short,
+    Change, Control, Frame, Hello, Images, Peer, Purpose, Reader, Status, VERSION, Welcome, WireError, shorten,
 };
 
 /// Reason for the end of a session without a message: its process was killed or crashed.
-const HOLDER_GONE: &str = "the process of the session has ended";
+const HOST_ENDED: &str = "the process of the session has ended";
 
 /// Time limit for answers that the host gives without asking the device.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
@@ -26,7 +26,7 @@ const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
 pub enum AttachError {
     /// Its folder or socket is not safe, or cannot be read.
     #[error("{0}")]
-    Place(#[from] PlaceError),
+    Location(#[from] LocationError),
     /// The session does not answer.
     #[error("the session does not answer")]
     Silent,
@@ -35,7 +35,7 @@ pub enum AttachError {
     Refused(String),
     /// The answer is not that of a session of this version.
     #[error("the answer is not from a session of this version of armctl")]
-    Foreign,
+    WrongVersion,
     /// The socket failed.
     #[error("{0}")]
     Io(#[from] io::Error),
@@ -45,14 +45,14 @@ impl From<WireError> for AttachError {
     fn from(error: WireError) -> Self {
         match error {
             WireError::Io(error) => Self::Io(error),
-            WireError::TooLong(_) | WireError::Senseless => Self::Foreign,
+            WireError::TooLong(_) | WireError::Invalid => Self::WrongVersion,
         }
     }
 }
 
 /// Result of looking for a session.
 #[derive(Debug)]
-pub enum Found {
+pub enum AttachResult {
     /// No session.
     Nothing,
     /// The socket of a dead session.
@@ -89,45 +89,50 @@ impl SessionBusy {
 }
 
 /// Finds the session of this key, and attaches to it.
-pub async fn attach(key: &str, command: &str, purpose: Purpose) -> Result<Found, AttachError> {
-    match Place::find()? {
-        Some(place) => attach_at(&place.spot(key), key, command, purpose).await,
-        None => Ok(Found::Nothing),
+pub async fn attach(key: &str, command: &str, purpose: Purpose) -> Result<AttachResult, AttachError> {
+    match SessionFolder::find()? {
+        Some(folder) => attach_at(&folder.location(key), key, command, purpose).await,
+        None => Ok(AttachResult::Nothing),
     }
 }
 
 /// Attaches to a session at a known location.
-pub async fn attach_at(spot: &Spot, key: &str, command: &str, purpose: Purpose) -> Result<Found, AttachError> {
-    let Some(mut end) = End::connect(spot).await? else {
-        return Ok(if spot.check()? { Found::Dead } else { Found::Nothing });
+pub async fn attach_at(
+    location: &SessionPath,
+    key: &str,
+    command: &str,
+    purpose: Purpose,
+) -> Result<AttachResult, AttachError> {
+    let Some(mut connection) = Connection::connect(location).await? else {
+        return Ok(if location.check()? { AttachResult::Dead } else { AttachResult::Nothing });
     };
-    let (key, pid, command) = (key.to_owned(), std::process::id(), short(command));
+    let (key, pid, command) = (key.to_owned(), std::process::id(), shorten(command));
     let hello = Hello { version: VERSION, key, pid, command, purpose };
-    end.post(Control::Hello(hello));
-    match end.answer().await? {
+    connection.send_control(Control::Hello(hello));
+    match connection.answer().await? {
         Control::Welcome(welcome) if welcome.version == VERSION => {
-            Ok(Found::Session(Box::new(Attached::new(end, *welcome))))
+            Ok(AttachResult::Session(Box::new(Attached::new(connection, *welcome))))
         }
         Control::Refused(why) => Err(AttachError::Refused(why)),
         Control::Ended(_) => {
             // The session closes its socket after the link. Wait for it, so that the link is free for the next one.
-            let closed = async { while let Ok(Some(_)) = end.reader.next().await {} };
+            let closed = async { while let Ok(Some(_)) = connection.reader.next().await {} };
             timeout_at(Instant::now() + ANSWERS_WITHIN, closed).await.map_err(|_| AttachError::Silent)?;
-            Ok(Found::Nothing)
+            Ok(AttachResult::Nothing)
         }
-        _ => Err(AttachError::Foreign),
+        _ => Err(AttachError::WrongVersion),
     }
 }
 
 /// Status of the session at a location; `None` if there is none.
-pub async fn status(spot: &Spot) -> Result<Option<Status>, AttachError> {
-    let Some(mut end) = End::connect(spot).await? else { return Ok(None) };
-    end.post(Control::Ask);
-    match end.answer().await? {
+pub async fn status(location: &SessionPath) -> Result<Option<Status>, AttachError> {
+    let Some(mut connection) = Connection::connect(location).await? else { return Ok(None) };
+    connection.send_control(Control::Ask);
+    match connection.answer().await? {
         Control::Status(status) => Ok(Some(*status)),
         // The session is closing.
         Control::Ended(_) => Ok(None),
-        _ => Err(AttachError::Foreign),
+        _ => Err(AttachError::WrongVersion),
     }
 }
 
@@ -135,42 +140,42 @@ pub async fn status(spot: &Spot) -> Result<Option<Status>, AttachError> {
 ///
 /// # Errors
 /// [`AttachError::Refused`] during a motion, unless `force`.
-pub async fn close(spot: &Spot, force: bool) -> Result<bool, AttachError> {
-    let Some(mut end) = End::connect(spot).await? else { return Ok(false) };
-    end.post(Control::Close { force });
-    match end.answer().await? {
+pub async fn close(location: &SessionPath, force: bool) -> Result<bool, AttachError> {
+    let Some(mut connection) = Connection::connect(location).await? else { return Ok(false) };
+    connection.send_control(Control::Close { force });
+    match connection.answer().await? {
         Control::Closing | Control::Ended(_) => {}
         Control::Refused(why) => return Err(AttachError::Refused(why)),
-        _ => return Err(AttachError::Foreign),
+        _ => return Err(AttachError::WrongVersion),
     }
     // The host closes the connection last. Earlier frames do not matter.
-    while let Ok(Some(_)) = end.reader.next().await {}
+    while let Ok(Some(_)) = connection.reader.next().await {}
     Ok(true)
 }
 
 /// A connection to a host.
 #[derive(Debug)]
-struct End {
+struct Connection {
     reader: Reader,
     writer: WriteHalf,
     unsent: Vec<u8>,
 }
 
-impl End {
-    async fn connect(spot: &Spot) -> Result<Option<Self>, AttachError> {
-        if !spot.check()? {
+impl Connection {
+    async fn connect(location: &SessionPath) -> Result<Option<Self>, AttachError> {
+        if !location.check()? {
             return Ok(None);
         }
-        let ends = socket::connect(&spot.socket()).await?;
+        let ends = socket::connect(&location.socket()).await?;
         Ok(ends.map(|(read, write)| Self { reader: Reader::new(read), writer: write, unsent: Vec::new() }))
     }
 
     /// Queues a frame, and sends as much as the socket accepts now.
-    fn post(&mut self, control: Control) {
-        self.put(&Frame::Control(control));
+    fn send_control(&mut self, control: Control) {
+        self.send_frame(&Frame::Control(control));
     }
 
-    fn put(&mut self, frame: &Frame) {
+    fn send_frame(&mut self, frame: &Frame) {
         frame.emit(&mut self.unsent);
         // The next read reports a failed socket.
         if let Ok(sent) = self.writer.try_write(&self.unsent) {
@@ -202,7 +207,7 @@ impl End {
             Err(_) => Err(AttachError::Silent),
             Ok(Ok(Some(Frame::Control(control)))) => Ok(control),
             Ok(Ok(None)) => Ok(Control::Ended("the session has just ended".to_owned())),
-            Ok(Ok(Some(_))) => Err(AttachError::Foreign),
+            Ok(Ok(Some(_))) => Err(AttachError::WrongVersion),
             Ok(Err(error)) if is_gone(&error) => Ok(Control::Ended("the session has just ended".to_owned())),
             Ok(Err(error)) => Err(error.into()),
         }
@@ -220,36 +225,46 @@ fn is_gone(error: &WireError) -> bool {
 /// A client attached to a session.
 #[derive(Debug)]
 pub struct Attached {
-    end: End,
+    connection: Connection,
     /// Frames that arrived while another one was expected.
-    early: VecDeque<Frame>,
+    early_frames: VecDeque<Frame>,
     /// Bytes of a frame that were not received yet.
     rest: Vec<u8>,
-    line: Line,
-    takes: u32,
+    line: LineState,
+    requests: u32,
     may_move: bool,
     ended: Option<String>,
     /// Whether [`Event::Lost`] has reported the end of the session.
-    told: bool,
+    is_loss_reported: bool,
     /// State of the session when this client attached.
     pub welcome: Welcome,
 }
 
 /// Ownership of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Line {
+enum LineState {
     Free,
     /// Requested.
-    Asked,
-    Mine,
+    Requested,
+    Owned,
 }
 
 impl Attached {
-    fn new(end: End, mut welcome: Welcome) -> Self {
+    fn new(connection: Connection, mut welcome: Welcome) -> Self {
         let seen = welcome.images.as_mut().and_then(|images| images.seen.take());
-        let early = seen.map(Frame::Image).into_iter().collect();
-        let (line, rest) = (Line::Free, Vec::new());
-        Self { end, early, rest, line, takes: 0, may_move: false, ended: None, told: false, welcome }
+        let early_frames = seen.map(Frame::Image).into_iter().collect();
+        let (line, rest) = (LineState::Free, Vec::new());
+        Self {
+            connection,
+            early_frames,
+            rest,
+            line,
+            requests: 0,
+            may_move: false,
+            ended: None,
+            is_loss_reported: false,
+            welcome,
+        }
     }
 
     /// Reason for the end of the session, if it has ended.
@@ -259,49 +274,49 @@ impl Attached {
 
     /// Whether this client has the line.
     pub fn has_line(&self) -> bool {
-        self.line == Line::Mine
+        self.line == LineState::Owned
     }
 
     /// Waits for the line until `until`. Cancel safe.
-    pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
-        self.take_for(0, until).await
+    pub async fn acquire(&mut self, until: Instant) -> Result<(), SessionBusy> {
+        self.acquire_channel(0, until).await
     }
 
     /// Waits for one channel of the line. Other clients can have other channels at the same time.
-    pub async fn take_for(&mut self, channel: u8, until: Instant) -> Result<(), SessionBusy> {
-        if self.line == Line::Mine {
+    pub async fn acquire_channel(&mut self, channel: u8, until: Instant) -> Result<(), SessionBusy> {
+        if self.line == LineState::Owned {
             return Ok(());
         }
-        if self.line == Line::Free {
-            self.takes = self.takes.wrapping_add(1);
-            self.end.post(Control::Take { number: self.takes, channel });
-            self.line = Line::Asked;
+        if self.line == LineState::Free {
+            self.requests = self.requests.wrapping_add(1);
+            self.connection.send_control(Control::Take { number: self.requests, channel });
+            self.line = LineState::Requested;
         }
         let mut holder = None;
-        while self.line == Line::Asked {
-            match self.arrived(until).await? {
+        while self.line == LineState::Requested {
+            match self.next_from_socket(until).await? {
                 None => {
-                    self.over();
+                    self.release();
                     return Err(SessionBusy::Busy(holder));
                 }
-                Some(Frame::Control(Control::Taken(take))) if take == self.takes => self.line = Line::Mine,
+                Some(Frame::Control(Control::Taken(take))) if take == self.requests => self.line = LineState::Owned,
                 Some(Frame::Control(Control::Queued(peer))) => holder = Some(peer),
-                Some(frame) => self.early.push_back(frame),
+                Some(frame) => self.early_frames.push_back(frame),
             }
         }
         if self.images().is_none() {
             // Earlier frames belong to earlier exchanges.
-            self.early.clear();
+            self.early_frames.clear();
             self.rest.clear();
         }
         Ok(())
     }
 
     /// Releases the line.
-    pub fn over(&mut self) {
-        if self.line != Line::Free {
-            self.end.post(Control::Over);
-            self.line = Line::Free;
+    pub fn release(&mut self) {
+        if self.line != LineState::Free {
+            self.connection.send_control(Control::Over);
+            self.line = LineState::Free;
         }
     }
 
@@ -310,14 +325,14 @@ impl Attached {
         if self.may_move {
             return Ok(());
         }
-        self.end.post(Control::Motion);
+        self.connection.send_control(Control::Motion);
         let until = Instant::now() + ANSWERS_WITHIN;
         loop {
-            match self.arrived(until).await? {
+            match self.next_from_socket(until).await? {
                 None => return Err(SessionBusy::Ended("the session does not answer".to_owned())),
                 Some(Frame::Control(Control::Granted)) => break,
                 Some(Frame::Control(Control::Held(peer))) => return Err(SessionBusy::Moved(peer)),
-                Some(frame) => self.early.push_back(frame),
+                Some(frame) => self.early_frames.push_back(frame),
             }
         }
         self.may_move = true;
@@ -327,7 +342,7 @@ impl Attached {
     /// Detaches from the session.
     pub async fn leave(mut self) {
         // If the host is gone, no message is needed.
-        let _ = timeout_at(Instant::now() + ANSWERS_WITHIN, self.end.flush()).await;
+        let _ = timeout_at(Instant::now() + ANSWERS_WITHIN, self.connection.flush()).await;
     }
 
     /// Sends a datagram or bytes of a stream. Without the line, nothing is sent, because the host would drop it.
@@ -336,8 +351,8 @@ impl Attached {
             return Err(io::Error::new(io::ErrorKind::NotConnected, why.clone()));
         }
         if self.has_line() {
-            self.end.put(&Frame::Data { channel, bytes: bytes.to_vec() });
-            if let Err(error) = self.end.flush().await {
+            self.connection.send_frame(&Frame::Data { channel, bytes: bytes.to_vec() });
+            if let Err(error) = self.connection.flush().await {
                 let why = self.end_with(Some(error.into()));
                 return Err(io::Error::new(io::ErrorKind::NotConnected, why));
             }
@@ -349,7 +364,7 @@ impl Attached {
     fn end_with(&mut self, error: Option<WireError>) -> String {
         let why = match error {
             Some(error) if !is_gone(&error) => format!("the session was lost: {error}"),
-            _ => HOLDER_GONE.to_owned(),
+            _ => HOST_ENDED.to_owned(),
         };
         self.ended = Some(why.clone());
         why
@@ -357,14 +372,19 @@ impl Attached {
 
     /// Lets the host open a new socket for a channel.
     pub fn renew(&mut self, channel: u8) {
-        self.end.post(Control::Renew(channel));
+        self.connection.send_control(Control::Renew(channel));
     }
 
     /// Waits for a datagram of a channel, at most until `until`. Bytes beyond the buffer are dropped.
-    pub async fn receive(&mut self, wanted: u8, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
+    pub async fn receive(
+        &mut self,
+        expected_channel: u8,
+        buffer: &mut [u8],
+        until: Instant,
+    ) -> io::Result<Option<usize>> {
         loop {
             match self.data(until).await? {
-                Some((channel, bytes)) if channel == wanted => return Ok(Some(copy(&bytes, buffer))),
+                Some((channel, bytes)) if channel == expected_channel => return Ok(Some(copy(&bytes, buffer))),
                 Some(_) => {}
                 None => return Ok(None),
             }
@@ -404,23 +424,23 @@ impl Attached {
 
     /// Next frame; `None` after a timeout or the end of the session.
     async fn next(&mut self, until: Instant) -> Option<Frame> {
-        match self.early.pop_front() {
+        match self.early_frames.pop_front() {
             Some(frame) => Some(frame),
-            None => self.arrived(until).await.unwrap_or_default(),
+            None => self.next_from_socket(until).await.unwrap_or_default(),
         }
     }
 
     /// Next frame from the socket; `None` after a timeout.
-    async fn arrived(&mut self, until: Instant) -> Result<Option<Frame>, SessionBusy> {
+    async fn next_from_socket(&mut self, until: Instant) -> Result<Option<Frame>, SessionBusy> {
         if let Some(why) = &self.ended {
             return Err(SessionBusy::Ended(why.clone()));
         }
         let next = if Instant::now() < until {
-            timeout_at(until, self.end.next()).await.ok()
+            timeout_at(until, self.connection.next()).await.ok()
         } else {
             // An expired timer takes a millisecond to fire. Frames that have already arrived are returned without it.
             yield_now().await;
-            self.end.next().now_or_never()
+            self.connection.next().now_or_never()
         };
         let why = match next {
             None => return Ok(None),
@@ -439,7 +459,7 @@ impl Attached {
 /// A normal exit sends Bye; a killed process does not.
 impl Drop for Attached {
     fn drop(&mut self) {
-        self.end.post(Control::Bye);
+        self.connection.send_control(Control::Bye);
     }
 }
 
@@ -457,12 +477,12 @@ pub enum Event {
     /// A new image of the device.
     Image(Vec<u8>),
     /// Another client has changed the image to the device.
-    Shown(Change),
-    /// The robot is read-only, and the last image was refused. [`Attached::shown`] is the current image to the device.
+    OutputChanged(Change),
+    /// The robot is read-only, and the last image was refused. [`Attached::output`] is the current image to the device.
     Denied,
     /// The link was lost, with the reason.
     Lost(String),
-    /// The link is open again. [`Attached::shown`] is the current image to the device.
+    /// The link is open again. [`Attached::output`] is the current image to the device.
     Reopened,
     /// No event before the deadline.
     Timeout,
@@ -475,13 +495,13 @@ impl Attached {
     }
 
     /// Current image to the device, as far as this client knows.
-    pub fn shown(&self) -> Option<&[u8]> {
+    pub fn output(&self) -> Option<&[u8]> {
         self.images().map(|images| &images.shown[..])
     }
 
     /// Sends the bits of this image that differ from the current one. Without the line, the exclusive part is not
     /// changed.
-    pub fn show(&mut self, image: &[u8]) {
+    pub fn set_output(&mut self, image: &[u8]) {
         let has_line = self.has_line();
         let Some(images) = &mut self.welcome.images else { return };
         let masks = images.shown.iter().zip(image).enumerate().map(|(at, (before, after))| {
@@ -491,7 +511,7 @@ impl Attached {
         let value = image.iter().copied().take(mask.len()).collect();
         let change = Change { generation: images.generation, mask, value };
         change.apply(&mut images.shown);
-        self.end.put(&Frame::Show(change));
+        self.connection.send_frame(&Frame::Show(change));
     }
 
     /// Sets the last will: bits (mask and value) that the host sends if this process dies; or removes it. It is valid
@@ -500,7 +520,7 @@ impl Attached {
         let Some(images) = &self.welcome.images else { return };
         let generation = images.generation;
         let will = bits.map(|(mask, value)| Change { generation, mask: mask.to_vec(), value: value.to_vec() });
-        self.end.post(Control::Will(will));
+        self.connection.send_control(Control::Will(will));
     }
 
     /// Waits for the next event, at most until `until`. Cancel safe.
@@ -520,7 +540,7 @@ impl Attached {
                     if let Some(images) = &mut self.welcome.images {
                         change.apply(&mut images.shown);
                     }
-                    return Event::Shown(change);
+                    return Event::OutputChanged(change);
                 }
                 Some(Frame::Control(Control::Denied { shown })) => {
                     if let (Some(images), Some(shown)) = (&mut self.welcome.images, shown) {
@@ -531,7 +551,7 @@ impl Attached {
                 Some(_) => {}
                 None => {
                     match self.ended.clone() {
-                        Some(why) if !std::mem::replace(&mut self.told, true) => return Event::Lost(why),
+                        Some(why) if !std::mem::replace(&mut self.is_loss_reported, true) => return Event::Lost(why),
                         // The session has ended, so no more events.
                         Some(_) => sleep_until(until).await,
                         None => {}

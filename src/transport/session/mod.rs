@@ -15,7 +15,7 @@
 
 pub mod client;
 pub mod host;
-pub mod place;
+pub mod location;
 #[cfg(unix)]
 mod socket;
 #[cfg(not(unix))]

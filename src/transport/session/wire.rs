@@ -15,10 +15,10 @@ use super::socket::ReadHalf;
 pub const VERSION: u32 = 3;
 
 /// Longest frame; longer than any datagram or image.
-const LONGEST: usize = 1 << 17;
+const MAX_FRAME: usize = 1 << 17;
 const HEAD: usize = 4;
 /// Longest text about a client or host.
-pub const LONGEST_TEXT: usize = 300;
+pub const MAX_TEXT: usize = 300;
 
 /// One frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -249,7 +249,7 @@ impl Info {
     /// Info of this process with this command.
     pub fn own(robot: &str, family: &str, target: &str, command: &str) -> Self {
         let (robot, family, target) = (robot.to_owned(), family.to_owned(), target.to_owned());
-        Self { pid: super::process(), robot, family, target, command: short(command) }
+        Self { pid: super::process(), robot, family, target, command: shorten(command) }
     }
 }
 
@@ -310,7 +310,7 @@ pub enum WireError {
     TooLong(usize),
     /// Unknown type, or invalid content.
     #[error("an invalid frame")]
-    Senseless,
+    Invalid,
     /// The socket failed.
     #[error("{0}")]
     Io(#[from] io::Error),
@@ -355,24 +355,24 @@ impl Frame {
     fn parse(bytes: &[u8]) -> Result<Option<(Self, usize)>, WireError> {
         let Some((head, rest)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
         let length = usize::try_from(u32::from_le_bytes(*head)).unwrap_or(usize::MAX);
-        if length > LONGEST {
+        if length > MAX_FRAME {
             return Err(WireError::TooLong(length));
         }
         let Some(content) = rest.get(..length) else { return Ok(None) };
         let frame = match content {
-            [CONTROL, json @ ..] => Self::Control(serde_json::from_slice(json).map_err(|_| WireError::Senseless)?),
+            [CONTROL, json @ ..] => Self::Control(serde_json::from_slice(json).map_err(|_| WireError::Invalid)?),
             [IMAGE, bytes @ ..] => Self::Image(bytes.to_vec()),
             [SHOW, rest @ ..] => {
-                let (generation, bits) = rest.split_first_chunk().ok_or(WireError::Senseless)?;
+                let (generation, bits) = rest.split_first_chunk().ok_or(WireError::Invalid)?;
                 if bits.len() % 2 != 0 {
-                    return Err(WireError::Senseless);
+                    return Err(WireError::Invalid);
                 }
                 let (mask, value) = bits.split_at(bits.len() / 2);
                 let (mask, value) = (mask.to_vec(), value.to_vec());
                 Self::Show(Change { generation: u32::from_le_bytes(*generation), mask, value })
             }
             [DATA, channel, bytes @ ..] => Self::Data { channel: *channel, bytes: bytes.to_vec() },
-            _ => return Err(WireError::Senseless),
+            _ => return Err(WireError::Invalid),
         };
         Ok(Some((frame, HEAD + length)))
     }
@@ -382,23 +382,23 @@ impl Frame {
 #[derive(Debug)]
 pub struct Reader {
     socket: ReadHalf,
-    arrived: Vec<u8>,
+    buffer: Vec<u8>,
 }
 
 impl Reader {
     /// Creates a reader.
     pub fn new(socket: ReadHalf) -> Self {
-        Self { socket, arrived: Vec::new() }
+        Self { socket, buffer: Vec::new() }
     }
 
     /// Waits for the next frame; `None` after the other side has closed. Cancel safe.
     pub async fn next(&mut self) -> Result<Option<Frame>, WireError> {
         loop {
-            if let Some((frame, length)) = Frame::parse(&self.arrived)? {
-                self.arrived.drain(..length);
+            if let Some((frame, length)) = Frame::parse(&self.buffer)? {
+                self.buffer.drain(..length);
                 return Ok(Some(frame));
             }
-            if self.socket.read_buf(&mut self.arrived).await? == 0 {
+            if self.socket.read_buf(&mut self.buffer).await? == 0 {
                 return Ok(None);
             }
         }
@@ -406,8 +406,8 @@ impl Reader {
 }
 
 /// Replaces control characters, and limits the length.
-pub fn short(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(LONGEST_TEXT).collect()
+pub fn shorten(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(MAX_TEXT).collect()
 }
 
 #[cfg(test)]
@@ -448,9 +448,9 @@ mod tests {
     #[test]
     fn what_is_too_long_or_senseless_is_refused() {
         assert!(matches!(Frame::parse(&[0, 0, 2, 1]), Err(WireError::TooLong(_))));
-        assert!(matches!(Frame::parse(&[0, 0, 0, 0]), Err(WireError::Senseless)));
-        assert!(matches!(Frame::parse(&[2, 0, 0, 0, b'c', b'{']), Err(WireError::Senseless)));
-        assert!(matches!(Frame::parse(&[6, 0, 0, 0, b's', 0, 0, 0, 0, 1]), Err(WireError::Senseless)));
+        assert!(matches!(Frame::parse(&[0, 0, 0, 0]), Err(WireError::Invalid)));
+        assert!(matches!(Frame::parse(&[2, 0, 0, 0, b'c', b'{']), Err(WireError::Invalid)));
+        assert!(matches!(Frame::parse(&[6, 0, 0, 0, b's', 0, 0, 0, 0, 1]), Err(WireError::Invalid)));
     }
 
     #[test]

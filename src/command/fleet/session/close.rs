@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::list::spots;
+use super::list::locations;
 use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::families;
@@ -18,7 +18,7 @@ use crate::output::view::{Table, View};
 use crate::settings::Robot;
 use crate::settings::target::Target;
 use crate::transport::session::client::{AttachError, close};
-use crate::transport::session::place::Spot;
+use crate::transport::session::location::SessionPath;
 use crate::transport::session::wire::Info;
 
 /// Arguments of `session close`.
@@ -54,7 +54,7 @@ async fn choose(run: &Run) -> Result<Option<String>, Failure> {
     if !run.screen.can_choose() {
         return Ok(None);
     }
-    let open: Vec<Info> = spots()?.iter().filter_map(Spot::owner).collect();
+    let open: Vec<Info> = locations()?.iter().filter_map(SessionPath::owner).collect();
     if open.is_empty() {
         return Ok(None);
     }
@@ -95,8 +95,8 @@ impl Close {
             let is_meant = |robot: &Robot| info.target.parse::<Target>().is_ok_and(|held| robot.is_at(&held.address()));
             is_named(info, name) || target.as_deref() == Some(name) && meant.iter().any(is_meant)
         };
-        let found: Vec<(Spot, Info)> =
-            spots()?.into_iter().filter_map(|spot| Some((spot.clone(), spot.owner()?))).collect();
+        let found: Vec<(SessionPath, Info)> =
+            locations()?.into_iter().filter_map(|location| Some((location.clone(), location.owner()?))).collect();
         for name in &names {
             if !found.iter().any(|(_, info)| is_named(info, name)) {
                 let known = found.iter().map(|(_, info)| info.robot.as_str());
@@ -109,13 +109,13 @@ impl Close {
             }
         }
         let mut closed = Closed { sessions: Vec::new(), failure: None };
-        for (spot, info) in found {
+        for (location, info) in found {
             if selection.all || names.iter().any(|name| is_named(&info, name)) {
                 let label = format!("{} ({})", info.robot, info.target);
-                let became = match close(&spot, self.force).await {
+                let became = match close(&location, self.force).await {
                     Ok(true) => "closed",
                     Ok(false) => {
-                        spot.clear().map_err(|error| no_place(&error))?;
+                        location.clear().map_err(|error| no_place(&error))?;
                         "forgotten"
                     }
                     Err(error) => {

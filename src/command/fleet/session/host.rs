@@ -21,8 +21,8 @@ use crate::failure::Failure;
 use crate::guardian::{self, HolderGuardian};
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::transport::session::host::{Host, Why};
-use crate::transport::session::place::{Place, Turn};
+use crate::transport::session::host::{EndReason, Host};
+use crate::transport::session::location::{LockResult, SessionFolder};
 
 /// A link that this process holds, with clients.
 pub struct SessionHost {
@@ -37,7 +37,7 @@ pub struct SessionHost {
 /// Result of an attempt to hold a link.
 pub enum Attempt {
     /// The link is held.
-    Held(Box<SessionHost>),
+    SharedLink(Box<SessionHost>),
     /// Another process has the link.
     Taken,
     /// No sessions are possible, with the reason.
@@ -52,52 +52,52 @@ impl SessionHost {
         screen: &Screen,
         say: impl Fn(&str) + Clone + Send + 'static,
     ) -> Result<Attempt, Failure> {
-        let place = match Place::make() {
+        let place = match SessionFolder::create() {
             Ok(place) => place,
             Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
         };
         let key = key_of(robot);
-        let spot = place.spot(&key);
-        let claim = match spot.turn(&info(robot, access)).await {
-            Ok(Turn::Mine(claim)) => claim,
-            Ok(Turn::Session) => return Ok(Attempt::Taken),
-            Ok(Turn::Taken) => return Err(in_use(robot, &spot)),
+        let location = place.location(&key);
+        let claim = match location.lock_soon(&info(robot, access)).await {
+            Ok(LockResult::Locked(claim)) => claim,
+            Ok(LockResult::Session) => return Ok(Attempt::Taken),
+            Ok(LockResult::Busy) => return Err(in_use(robot, &location)),
             Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
         };
         let info = info(robot, access);
         let face = families::of(robot.family);
         let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
         let host =
-            Host::new(claim, key, info, held, say.clone()).with_context(|| spot.socket().display().to_string())?;
+            Host::new(claim, key, info, held, say.clone()).with_context(|| location.socket().display().to_string())?;
         let orphaned = robot.clone();
         let guardian = Rc::new(HolderGuardian::new(robot, face.stop()));
         let guarding = Rc::clone(&guardian);
         let is_simulated = robot.target.value.is_simulated();
-        let host = host.watched_by(move |moves| if is_simulated { Ok(()) } else { guarding.moves(moves) });
-        let host = host.stopped_by(move |why| {
+        let host = host.with_guard(move |moves| if is_simulated { Ok(()) } else { guarding.moves(moves) });
+        let host = host.with_stop(move |why| {
             say(&format!("{why}: armctl stops the robot"));
             guardian::stop_orphan(&orphaned, face.stop(), say.clone());
         });
         let mut entry = WatchedEntry::new(robot);
-        let host = host.guarded(face.guard(), move || entry.is_read_only());
-        Ok(Attempt::Held(Box::new(Self { host, guardian, finish, label: robot.label() })))
+        let host = host.with_read_only_check(face.guard(), move || entry.is_read_only());
+        Ok(Attempt::SharedLink(Box::new(Self { host, guardian, finish, label: robot.label() })))
     }
 
     /// Sets the idle time after which the session ends.
     #[must_use]
-    pub fn ending_after(self, idle: Option<Duration>) -> Self {
-        Self { host: self.host.ending_after(idle), ..self }
+    pub fn with_idle_limit(self, idle: Option<Duration>) -> Self {
+        Self { host: self.host.with_idle_limit(idle), ..self }
     }
 
     /// Serves clients until one of them closes the session, or until the idle time is over. Cancel safe:
     /// [`SessionHost::end`] continues from there.
-    pub async fn serve(&mut self) -> Why {
+    pub async fn serve(&mut self) -> EndReason {
         self.guardian.guard(Box::pin(self.host.serve())).await
     }
 
     /// Whether the robot moves.
-    pub fn under_way(&mut self) -> bool {
-        self.host.under_way()
+    pub fn is_moving(&mut self) -> bool {
+        self.host.is_moving()
     }
 
     /// Ends the session: informs clients, closes the link, completes the recording.
@@ -184,9 +184,9 @@ async fn hold(
     let records = access.trace.is_some() && families::of(robot.family).session_records();
     let access = Access { trace: access.trace.filter(|_| records), ..access };
     let attempt = async {
-        match Place::find() {
+        match SessionFolder::find() {
             _ if !is_held => SessionHost::open(&robot, &access, &screen, tell).await.map(Some),
-            Ok(Some(place)) if place.spot(&key).socket().exists() => Ok(None),
+            Ok(Some(place)) if place.location(&key).socket().exists() => Ok(None),
             // A line that bypasses the held link would reach another simulator, or open a second connection.
             _ => Err(Failure::local(format!(
                 "{label}: the socket of the open connection was removed by another process"
@@ -200,7 +200,7 @@ async fn hold(
     };
     let (by, holding) = match attempt {
         Ok(None) => (Ok(By::This { records }), None),
-        Ok(Some(Attempt::Held(holding))) => (Ok(By::This { records }), Some(holding)),
+        Ok(Some(Attempt::SharedLink(holding))) => (Ok(By::This { records }), Some(holding)),
         Ok(Some(Attempt::Taken)) => (Ok(By::Another), None),
         Ok(Some(Attempt::NoPlace(why))) => (Ok(By::Nobody(why)), None),
         Err(failure) => (Err(failure), None),
@@ -215,7 +215,7 @@ async fn hold(
             "the session was closed"
         }
         _ = ended.wait_for(|ended| *ended) => {
-            if holding.under_way() {
+            if holding.is_moving() {
                 say(&format!("{label}: the connection ends during a motion; the controller stops the motion"));
             }
             "the process of the session has ended"

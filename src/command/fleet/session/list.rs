@@ -13,7 +13,7 @@ use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::transport::session::client::{AttachError, status};
-use crate::transport::session::place::{Place, Spot};
+use crate::transport::session::location::{SessionFolder, SessionPath};
 use crate::transport::session::wire::{Leftover, Peer, Status, VERSION};
 
 /// Arguments of `session list`.
@@ -23,8 +23,8 @@ pub struct List {}
 impl List {
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let mut sessions = Vec::new();
-        for spot in spots()? {
-            sessions.push(Session::of(&spot, status(&spot).await));
+        for location in locations()? {
+            sessions.push(Session::of(&location, status(&location).await));
         }
         sessions.sort_by(|one, other| one.robot.cmp(&other.robot));
         run.local("session.list", &Sessions { sessions })
@@ -32,9 +32,9 @@ impl List {
 }
 
 /// Locations of sessions, alive or dead.
-pub fn spots() -> Result<Vec<Spot>, Failure> {
-    match Place::find().and_then(|place| place.map_or(Ok(Vec::new()), |place| place.spots())) {
-        Ok(spots) => Ok(spots),
+pub fn locations() -> Result<Vec<SessionPath>, Failure> {
+    match SessionFolder::find().and_then(|place| place.map_or(Ok(Vec::new()), |place| place.locations())) {
+        Ok(locations) => Ok(locations),
         Err(error) => Err(no_place(&error)),
     }
 }
@@ -90,7 +90,7 @@ struct Left {
 }
 
 impl Session {
-    fn of(spot: &Spot, found: Result<Option<Status>, AttachError>) -> Self {
+    fn of(location: &SessionPath, found: Result<Option<Status>, AttachError>) -> Self {
         let (link, why) = match found {
             Ok(Some(status)) => return Self::living(status),
             Ok(None) => (
@@ -99,7 +99,7 @@ impl Session {
             ),
             Err(error) => ("silent", error.to_string()),
         };
-        let owner = spot.owner();
+        let owner = location.owner();
         let (robot, family, target, pid) =
             owner.map_or_else(Default::default, |owner| (owner.robot, owner.family, owner.target, owner.pid));
         Self { robot, family, target, pid, link, why: Some(why), ..Self::default() }

@@ -25,9 +25,9 @@ use crate::output::log::Level;
 use crate::settings::target::Family;
 use crate::settings::{Robot, duration};
 use crate::transport::session::client::status;
-use crate::transport::session::host::Why;
+use crate::transport::session::host::EndReason;
 use crate::transport::session::leave_terminal;
-use crate::transport::session::place::{Place, Spot};
+use crate::transport::session::location::{SessionFolder, SessionPath};
 
 /// Arguments of `session open`.
 #[derive(Debug, Args)]
@@ -107,9 +107,9 @@ impl Open {
 
     /// Opens the link, and accepts clients.
     async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened), Failure> {
-        let place = Place::make().map_err(|error| no_place(&error))?;
-        let spot = place.spot(&key_of(robot));
-        let log = background.then(|| spot.log());
+        let place = SessionFolder::create().map_err(|error| no_place(&error))?;
+        let location = place.location(&key_of(robot));
+        let log = background.then(|| location.log());
         let (label, repeats) = (robot.label(), Repeats::default());
         let log_file = SessionLog { screen: run.screen, label, file: log.clone(), repeats };
         let log_file = Arc::new(Mutex::new(log_file));
@@ -117,8 +117,8 @@ impl Open {
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Control) };
         let opening = SessionHost::open(robot, &access, &run.screen, say.clone());
         let holding = match interruptible(opening).await?? {
-            Attempt::Held(holding) => holding,
-            Attempt::Taken => return Err(taken(robot, &spot).await),
+            Attempt::SharedLink(holding) => holding,
+            Attempt::Taken => return Err(taken(robot, &location).await),
             Attempt::NoPlace(failure) => return Err(failure),
         };
         say("the connection is open");
@@ -128,10 +128,10 @@ impl Open {
 
     /// Serves until the session is closed or idle; both are normal.
     async fn serve(&self, run: &Run, holding: Box<SessionHost>) -> Result<(), Failure> {
-        let mut holding = holding.ending_after(self.idle);
+        let mut holding = holding.with_idle_limit(self.idle);
         let why = match interruptible(holding.serve()).await {
-            Ok(Why::Asked) => "the session was closed".to_owned(),
-            Ok(Why::Idle) => "the session has ended: no command used it in the idle time".to_owned(),
+            Ok(EndReason::Requested) => "the session was closed".to_owned(),
+            Ok(EndReason::Idle) => "the session has ended: no command used it in the idle time".to_owned(),
             Err(asked) => format!("the session has ended: {}", asked.message),
         };
         holding.end(&why, &run.screen).await
@@ -139,8 +139,8 @@ impl Open {
 }
 
 /// Failure: another process has the link.
-async fn taken(robot: &Robot, spot: &Spot) -> Failure {
-    let who = match (status(spot).await, spot.owner()) {
+async fn taken(robot: &Robot, location: &SessionPath) -> Failure {
+    let who = match (status(location).await, location.owner()) {
         (Ok(Some(status)), _) => format!("process {}, since {}", status.info.pid, since(status.for_ms)),
         (_, Some(owner)) => format!("process {}, which does not answer", owner.pid),
         (_, None) => "a process that does not answer".to_owned(),

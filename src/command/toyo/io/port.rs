@@ -231,7 +231,7 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
         Some((from, to)) => (number(from)?, number(to)?),
     };
     if least > most {
-        return Err(typed::RangeError { meant: turned(text) }.to_string());
+        return Err(typed::RangeError { meant: reversed(text) }.to_string());
     }
     let most = if spot(first)?.1.is_some() { most } else { most + 7 };
     let place = |at: u16| Some(Spot { bank, port: u8::try_from(at / 8).ok()?, bit: u8::try_from(at % 8 + 1).ok()? });
@@ -239,7 +239,7 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
 }
 
 /// The range in reverse order.
-fn turned(text: &str) -> String {
+fn reversed(text: &str) -> String {
     let ends = text.split_once("..").or_else(|| text.split_once('-'));
     ends.map_or_else(|| text.to_owned(), |(from, to)| format!("{to}..{from}"))
 }

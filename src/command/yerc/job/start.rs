@@ -83,9 +83,9 @@ impl Command for Start {
             chosen.check_again(link).await?;
         }
         if let Some((name, select)) = named {
-            let selected = link.is_for("selects it").ask(&select).await;
+            let selected = link.for_purpose("selects it").ask(&select).await;
             selected.map_err(|failure| about(self.name.as_deref().unwrap_or_default(), failure))?;
-            if let Some(now) = Chosen::ask(link.is_for("selected job")).await.known()?
+            if let Some(now) = Chosen::ask(link.for_purpose("selected job")).await.known()?
                 && !link.is_dry()
             {
                 check_selected(link, &name, &chosen, &now)?;
@@ -102,7 +102,7 @@ impl Command for Start {
             if runs.last_ms().is_some() {
                 chosen.check_again(link).await.map_err(early)?;
             }
-            link.is_for("starts it").ask(&StartJob).await.map_err(early)?;
+            link.for_purpose("starts it").ask(&StartJob).await.map_err(early)?;
             let Some(limit) = limit else {
                 return Ok(Started {
                     accepted: true,
@@ -158,7 +158,7 @@ impl Start {
 
 /// Rejects the repetition of a job that does not end, or that ends after each line.
 async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
-    let Some(status) = link.is_for("cycle mode").ask(&ReadStatus).await.known()? else {
+    let Some(status) = link.for_purpose("cycle mode").ask(&ReadStatus).await.known()? else {
         return Ok(());
     };
     let why = if status.has(StatusBit::Continuous) {

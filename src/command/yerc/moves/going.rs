@@ -7,7 +7,7 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::question::{Question, moved_meanwhile};
-use crate::client::yerc::Fitted;
+use crate::client::yerc::AxisSet;
 use crate::command::frame::dry_run::Known as _;
 use crate::command::robot::motion::Motion;
 use crate::command::robot::position as robot;
@@ -152,7 +152,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         let is_asked = authority.asks();
         if (is_asked || !no_wait)
             && let Some((position, _)) =
-                position::ask(link.is_for("current position"), group, coordinates).await.known()?
+                position::ask(link.for_purpose("current position"), group, coordinates).await.known()?
         {
             goal = goal.from(&position);
             start = Some(position);
@@ -165,7 +165,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
             }
         }
         let start = start.filter(|_| !no_wait);
-        link.is_for("starts the motion").ask(&order).await?;
+        link.for_purpose("starts the motion").ask(&order).await?;
         if link.is_dry() && !no_wait {
             plan_looks(link, group, coordinates).await?;
         }
@@ -173,8 +173,8 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         let motion = Motion {
             accepted: true,
             group: Some(group.to_string()),
-            from: start.map(|start| as_reported(group, start, Fitted::ALL, &per_degree).of_group(group.to_string())),
-            to: goal.position().map(|target| as_reported(group, target, Fitted::ALL, &per_degree)),
+            from: start.map(|start| as_reported(group, start, AxisSet::ALL, &per_degree).of_group(group.to_string())),
+            to: goal.position().map(|target| as_reported(group, target, AxisSet::ALL, &per_degree)),
             speed: Some(question.speed.reported()),
             ..Motion::default()
         };
@@ -264,13 +264,14 @@ async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: 
         return Ok(());
     }
     let question = link.by_model(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
-    let Some(answer) = link.is_for("current position of the unnamed axes").try_ask(&question).await.known()? else {
-        link.plan_fit(group, Coordinates::Pulse);
+    let Some(answer) = link.for_purpose("current position of the unnamed axes").try_ask(&question).await.known()?
+    else {
+        link.plan_existing_axes(group, Coordinates::Pulse);
         return Ok(());
     };
     match answer {
         Ok(position) => {
-            let (axes, _) = link.fit(group, Coordinates::Pulse, position.axes).await;
+            let (axes, _) = link.existing_axes(group, Coordinates::Pulse, position.axes).await;
             silent_zero(group, &Position { axes, ..position }, named, flag).map_or(Ok(()), Err)
         }
         // A group that does not exist cannot move.

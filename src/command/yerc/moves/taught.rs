@@ -7,7 +7,7 @@ use super::{Target, plain, unnamed_base, way};
 use crate::command::Context;
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::names;
-use crate::command::yerc::each::Denied;
+use crate::command::yerc::each::ReadError;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position;
@@ -41,7 +41,7 @@ impl Motion<'_> {
         let (name, value) = match destination {
             Destination::Degrees(degrees) => {
                 self.target.refuse_besides("--deg", self.target.frame.user.is_some())?;
-                (None, Value::Position(self.turned(link, degrees)?))
+                (None, Value::Position(self.rotated(link, degrees)?))
             }
             Destination::Variable(variable) => {
                 let has_frame = self.target.frame.tool.is_some() || self.target.frame.user.is_some();
@@ -174,7 +174,7 @@ impl Motion<'_> {
     }
 
     /// Converts degrees to pulses, with the values of the inventory.
-    fn turned(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
+    fn rotated(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
         let group = self.target.mover.group;
         let per_degree = link.pulses_per_degree(group);
         if per_degree.len() < degrees.len() {
@@ -214,7 +214,7 @@ impl Motion<'_> {
         let pulse = ReadPosition::new(model, group, Coordinates::Pulse).map_err(usage)?;
         let base = ReadPosition::new(model, group, Coordinates::Base).unwrap_or(pulse);
         link.plan_depending(&pulse.request(), &base.request(), reason);
-        link.plan_fit(group, Coordinates::Pulse);
+        link.plan_existing_axes(group, Coordinates::Pulse);
         let holds = format!("starts the motion, if {variable} contains");
         let [one, other] = unlike();
         let (robot, station) = self.target.mover.words();
@@ -256,9 +256,9 @@ impl Motion<'_> {
 /// Content of a variable, which must be defined.
 async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
     let question = ReadVariable::new(variable.kind, variable.number);
-    match link.is_for("target position").try_ask(&question).await? {
+    match link.for_purpose("target position").try_ask(&question).await? {
         Ok(value) => Ok(value),
-        Err(refusal) if is_undefined(&Denied::Refused(refusal)) => {
+        Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => {
             let message = format!("{variable} was never taught; no motion command was sent");
             Err(Failure { message, ..Failure::from(refusal) }
                 .hint(format!("`yerc teach {variable}` stores the current position")))

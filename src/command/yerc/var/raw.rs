@@ -8,7 +8,7 @@ use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Known as _;
 use crate::command::frame::orders::{BEFORE, unwritten};
 use crate::command::frame::store::{Differing, overwritten};
-use crate::command::yerc::each::Denied;
+use crate::command::yerc::each::ReadError;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::query::ReadVariable;
 use crate::controller::yerc::request::Request;
@@ -52,9 +52,9 @@ async fn taught(link: &mut Link, references: &[Reference]) -> Result<Taught, Fai
     let mut taught = Taught { positions: HashMap::new(), has_unread: false };
     for reference in references {
         let question = ReadVariable::new(reference.kind, reference.number);
-        match link.is_for(BEFORE).try_ask(&question).await.known().map_err(unwritten)? {
+        match link.for_purpose(BEFORE).try_ask(&question).await.known().map_err(unwritten)? {
             Some(Ok(value)) => drop(taught.positions.insert(*reference, value)),
-            Some(Err(refusal)) => taught.has_unread |= !is_undefined(&Denied::Refused(refusal)),
+            Some(Err(refusal)) => taught.has_unread |= !is_undefined(&ReadError::Refused(refusal)),
             None => {}
         }
     }

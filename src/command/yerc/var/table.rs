@@ -15,7 +15,7 @@ use crate::command::frame::dry_run::Reason;
 use crate::command::frame::orders::{BEFORE, IF_DIFFERENT};
 use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Store, Words, Writable, ids};
 use crate::command::yerc::complete;
-use crate::command::yerc::each::Denied;
+use crate::command::yerc::each::ReadError;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::parts::{Parts, read_in_parts};
@@ -81,8 +81,8 @@ const MOST: usize = 10_000;
 const UNDEFINED: [u32; 2] = [0xB005, 0xB001];
 
 /// Whether a refusal to read one variable means that it is undefined.
-pub fn is_undefined(denied: &Denied) -> bool {
-    matches!(denied, Denied::Refused(refusal) if UNDEFINED.contains(&refusal.status.added))
+pub fn is_undefined(denied: &ReadError) -> bool {
+    matches!(denied, ReadError::Refused(refusal) if UNDEFINED.contains(&refusal.status.added))
 }
 
 impl Variables {
@@ -335,7 +335,7 @@ impl Writable for Variables {
     }
 
     async fn read_old(&self, link: &mut Link, screen: &Screen, keys: &[Reference]) -> Result<Answers<Value>, Failure> {
-        self.read(link.is_for(BEFORE), screen, keys).await
+        self.read(link.for_purpose(BEFORE), screen, keys).await
     }
 
     /// Consecutive variables of a kind are one request; so is a single axis of a BP or an EX.

@@ -31,7 +31,7 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
         let names = names::of(context.robot, context.screen);
-        let given = context.link.shown().copied();
+        let given = context.link.output_image().copied();
         if given.is_none()
             && let Some(signal) = Series::all(&self.signals).find(|signal| signal.side() == Side::Input)
         {

@@ -25,7 +25,7 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
         let names = names::of(context.robot, context.screen);
-        let inputs = context.link.shown().copied();
+        let inputs = context.link.output_image().copied();
         let outputs = context.link.look().await?;
         let inputs = inputs.iter().flat_map(|image| Signal::all(Side::Input).map(move |signal| (signal, image)));
         let all = inputs.chain(Signal::all(Side::Output).map(|signal| (signal, &outputs)));

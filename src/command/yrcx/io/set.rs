@@ -138,7 +138,7 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenSignals, Failure> {
         let names = names::of(context.robot, context.screen);
-        let shown = context.link.shown().copied();
+        let shown = context.link.output_image().copied();
         let mut done = 0;
         for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
             let before = &self.changes[..done];
@@ -188,7 +188,7 @@ impl Command for Pulse {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
-        let old = context.link.shown().map(|image| self.signal.0.is_on(image));
+        let old = context.link.output_image().map(|image| self.signal.0.is_on(image));
         context.link.carry_out(switching(Procedure::pulse(self.signal.0))?).await?;
         let words = format!("switched {} on and off again", self.called());
         Ok(New::of(self.signal.0.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))

@@ -24,8 +24,8 @@ impl Watcher<Event> for Onlooker {
     fn event(&mut self, event: Event) {
         let Self { trace, screen, label } = self;
         match event {
-            Event::Shown(image) => locked(trace).sent(&image),
-            Event::Seen(image) => locked(trace).received(&image),
+            Event::ImageSent(image) => locked(trace).sent(&image),
+            Event::ImageReceived(image) => locked(trace).received(&image),
             Event::CpuNotOk => screen.note(
                 "warning: CPU OK (SO(01)) is off: the controller is not ready, or the URL selects the wrong input data \
                  (`armctl robots check`)",
@@ -42,16 +42,16 @@ impl Watcher<Event> for Onlooker {
                 let stop = stop.map(|on| format!("; the stop input SI(06) is {}", state(on))).unwrap_or_default();
                 screen.note(&format!("{label}: the link is open again{stop}"));
             }
-            Event::Leftover(command, status) => {
+            Event::StatusReset(command, status) => {
                 screen.detail(1, &format!("the status was '{status}' before {}; it was reset", command.row().id));
             }
             Event::NotReleased(command) => {
                 let id = command.row().id;
                 screen.note(&format!("warning: {id} has ended, but the controller is not yet ready"));
             }
-            Event::BrokenOff(command, alarm) => screen.note(&format!("warning: {}", refused(command.row(), alarm))),
+            Event::Aborted(command, alarm) => screen.note(&format!("warning: {}", refused(command.row(), alarm))),
             Event::Unanswered(error) => screen.note(&format!("warning: {}", failure(label, error))),
-            Event::LeftByOthers { words, answer } => {
+            Event::OtherCommandEnded { words, answer } => {
                 let (what, end) = (command_summary(&words), answer_summary(&answer));
                 screen.note(&format!("{label}: another client left {what} running; it ended: {end}"));
             }

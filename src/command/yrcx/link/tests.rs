@@ -176,7 +176,7 @@ fn a_procedure_switches_waits_and_confirms() {
 
 #[test]
 fn nothing_riskier_than_granted_leaves() {
-    let mut bench = Bench::granted(Scripted::new([]), Risk::Read);
+    let mut bench = Bench::grant(Scripted::new([]), Risk::Read);
     for line in [MOVE, &["alarm", "reset"], &["run"], &["io", "set", "20=on"]] {
         let failure = bench.run(line).unwrap_err();
         assert_eq!(failure.kind, Kind::Local, "{line:?}");

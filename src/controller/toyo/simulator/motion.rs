@@ -198,8 +198,8 @@ impl Arc {
             return None;
         }
         let (aa, bb) = (dot(&a, &a), dot(&b, &b));
-        let turned = cross(&std::array::from_fn(|axis| aa * b[axis] - bb * a[axis]), &normal);
-        let center: Coordinates = std::array::from_fn(|axis| p2[axis] + turned[axis] / (2.0 * area));
+        let center_offset = cross(&std::array::from_fn(|axis| aa * b[axis] - bb * a[axis]), &normal);
+        let center: Coordinates = std::array::from_fn(|axis| p2[axis] + center_offset[axis] / (2.0 * area));
         let spoke = minus(&p0, &center);
         let radius = dot(&spoke, &spoke).sqrt();
         // The plane is oriented so that the way through the middle point turns in the positive sense.

@@ -162,9 +162,9 @@ pub(super) fn inverse(pose: &Pose, near: &Pulses) -> Pulses {
 
 /// Normalizes degrees to -180 (excluded) to 180.
 pub(super) fn wrap(degrees: f64) -> f64 {
-    let turned = degrees.rem_euclid(360.0);
+    let rotated = degrees.rem_euclid(360.0);
     // The tolerance keeps a value slightly above 180 from becoming -180.
-    if turned > 180.0 + 1e-9 { turned - 360.0 } else { turned }
+    if rotated > 180.0 + 1e-9 { rotated - 360.0 } else { rotated }
 }
 
 /// The angle equivalent to `degrees` that is nearest to `near`.

@@ -221,7 +221,7 @@ fn target_pose(order: &CartesianMove, increment: bool, from: &Pose, base_mm: f64
                 turn[2] += frame[3];
             }
         }
-        PositionKind::Tool => place = turned(place, from),
+        PositionKind::Tool => place = rotated(place, from),
         PositionKind::Base if !increment => place[0] -= base_mm,
         _ => {}
     }
@@ -239,7 +239,7 @@ fn turned_about_z([x, y, z]: [f64; 3], degrees: f64) -> [f64; 3] {
 }
 
 /// Converts a tool direction to robot coordinates: rotation about X, then Y, then Z.
-fn turned([x, y, z]: [f64; 3], pose: &Pose) -> [f64; 3] {
+fn rotated([x, y, z]: [f64; 3], pose: &Pose) -> [f64; 3] {
     let (sin, cos) = pose[3].to_radians().sin_cos();
     let (y, z) = (y * cos - z * sin, y * sin + z * cos);
     let (sin, cos) = pose[4].to_radians().sin_cos();

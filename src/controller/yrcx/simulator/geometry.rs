@@ -83,7 +83,7 @@ impl Geometry {
             Kind::Scara { first, .. } => {
                 let (bend, second) = self.second_arm(two);
                 let turn = one + two + last;
-                let (elbow, wrist) = (turned(first, 0.0, one), turned(second, 0.0, one + bend));
+                let (elbow, wrist) = (rotated(first, 0.0, one), rotated(second, 0.0, one + bend));
                 let tool = self.tool(turn);
                 [elbow.0 + wrist.0 + tool[0], elbow.1 + wrist.1 + tool[1], height + tool[2], turn]
             }
@@ -136,9 +136,9 @@ impl Geometry {
         let height = f64::from(three) / STEPS;
         let (x, y) = match (self.kind, on_r) {
             (Kind::Cartesian, 0) => (f64::from(one) / STEPS, f64::from(two) / STEPS),
-            (Kind::Cartesian, _) => turned(f64::from(one) / STEPS, f64::from(two) / STEPS, r),
+            (Kind::Cartesian, _) => rotated(f64::from(one) / STEPS, f64::from(two) / STEPS, r),
             (Kind::Scara { .. }, 0) => (0.0, 0.0),
-            (Kind::Scara { .. }, _) => turned(f64::from(two) / STEPS, 0.0, r + f64::from(one) / self.per_unit[3]),
+            (Kind::Scara { .. }, _) => rotated(f64::from(two) / STEPS, 0.0, r + f64::from(one) / self.per_unit[3]),
         };
         [x, y, height]
     }
@@ -155,7 +155,7 @@ fn half_turns(angle: f64) -> f64 {
     }
 }
 
-fn turned(x: f64, y: f64, degrees: f64) -> (f64, f64) {
+fn rotated(x: f64, y: f64, degrees: f64) -> (f64, f64) {
     let (sin, cos) = degrees.to_radians().sin_cos();
     (x * cos - y * sin, x * sin + y * cos)
 }
@@ -163,20 +163,20 @@ fn turned(x: f64, y: f64, degrees: f64) -> (f64, f64) {
 /// Converts coordinates of a shift to the robot.
 pub(super) fn from_shift(shift: &[i32; 4], pose: &Four) -> Four {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
-    let (turned_x, turned_y) = turned(pose[0], pose[1], r);
+    let (turned_x, turned_y) = rotated(pose[0], pose[1], r);
     [turned_x + x, turned_y + y, pose[2] + z, pose[3] + r]
 }
 
 /// Converts coordinates of the robot to a shift.
 pub(super) fn to_shift(shift: &[i32; 4], pose: &Four) -> Four {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
-    let (turned_x, turned_y) = turned(pose[0] - x, pose[1] - y, -r);
+    let (turned_x, turned_y) = rotated(pose[0] - x, pose[1] - y, -r);
     [turned_x, turned_y, pose[2] - z, pose[3] - r]
 }
 
 /// Moves a pose by `by` in tool coordinates, which rotate with R.
 pub(super) fn along_tool(pose: &Four, by: &Four) -> Four {
-    let (x, y) = turned(by[0], by[1], pose[3]);
+    let (x, y) = rotated(by[0], by[1], pose[3]);
     [pose[0] + x, pose[1] + y, pose[2] + by[2], pose[3] + by[3]]
 }
 

@@ -9,7 +9,7 @@ use tokio::time::{Instant, sleep_until, timeout_at};
 use super::pipe::Pipe;
 use super::slcan::{Lines, Said, bitrate_command, emit, flag};
 use super::{Bitrate, BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
-use crate::image::tap::{Passed, Tap};
+use crate::image::tap::{Passage, Tap};
 use crate::tap::Direction;
 
 /// Silence after which all leftovers of an earlier use have been read.
@@ -128,7 +128,7 @@ impl SlcanPort {
         if self.pipe.writer().waiting() > MOST_WAITING {
             return Err(PortError::Stuck { path: self.path.clone() });
         }
-        self.tap.pass(|| Passed::Adapter { direction: Direction::Sent, bytes: bytes.to_vec() });
+        self.tap.pass(|| Passage::Adapter { direction: Direction::Sent, bytes: bytes.to_vec() });
         // A closed stream is reported by the next read.
         self.pipe.writer().write(bytes);
         Ok(())
@@ -146,7 +146,7 @@ impl SlcanPort {
 
     fn take(&mut self, read: io::Result<Vec<u8>>) -> Result<(), PortError> {
         let bytes = read.map_err(|error| PortError::Gone { path: self.path.clone(), why: error.to_string() })?;
-        self.tap.pass(|| Passed::Adapter { direction: Direction::Received, bytes: bytes.clone() });
+        self.tap.pass(|| Passage::Adapter { direction: Direction::Received, bytes: bytes.clone() });
         if self.received.0.elapsed() > WINDOW {
             self.received = (Instant::now(), 0);
         }

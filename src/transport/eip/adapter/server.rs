@@ -112,8 +112,8 @@ impl<A: Application> Server<A> {
         spawn(prepared.handle(), accept(Arc::clone(&inner), sessions, prepared.handle().clone()));
         spawn(prepared.handle(), receive(Arc::clone(&inner), heard, Inner::heard));
         spawn(prepared.handle(), receive(Arc::clone(&inner), asked, Inner::asked));
-        let turned = Arc::clone(&inner);
-        let engine = prepared.start("adapter", start, alarm, move || turned.turn())?;
+        let for_engine = Arc::clone(&inner);
+        let engine = prepared.start("adapter", start, alarm, move || for_engine.turn())?;
         Ok(Self { inner, address, io_port: image_address.port(), _engine: engine })
     }
 

@@ -7,7 +7,7 @@ use super::super::settings::Settings;
 use super::super::wire::alarm::{Notification, Priority};
 use super::super::wire::rpc::operation;
 use super::super::wire::status::Status;
-use super::world::{MS, World, resting, settings, setup, turned};
+use super::world::{MS, World, native_order, resting, settings, setup};
 
 fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
@@ -195,13 +195,13 @@ fn any_network_brings_images_or_a_reason() {
             let view = world.view();
             if view.generation == 1 && view.state == State::Open {
                 let shown = view.input.map(|input| input.image);
-                assert_eq!(shown.as_deref(), Some(&turned(&wanted)[..]), "{spec}, seed {seed}");
+                assert_eq!(shown.as_deref(), Some(&native_order(&wanted)[..]), "{spec}, seed {seed}");
             }
             let known = [Some(wanted.clone()), Some(resting()), None];
             let history = &world.device.application().history;
             assert!(history.iter().all(|shown| known.contains(shown)), "{spec}, seed {seed}");
             assert!(history.iter().filter(|shown| **shown == known[0]).count() <= 1, "{spec}, seed {seed}: twice");
-            let known = [turned(&wanted), turned(&resting()), vec![0; 48]];
+            let known = [native_order(&wanted), native_order(&resting()), vec![0; 48]];
             assert!(world.shown.iter().all(|shown| known.iter().any(|known| **known == **shown)), "{spec}, {seed}");
             let connects = world.calls(operation::CONNECT);
             let distinct: std::collections::BTreeSet<_> = connects.iter().collect();

@@ -13,7 +13,7 @@ use super::super::wire::frame::{Frame, TAG_HIGH};
 use super::super::wire::record::Parameter;
 use super::super::wire::rpc::{Call, Datagram, operation};
 use super::super::wire::status::Status;
-use super::world::{ADDRESS, HERE, MS, Mirror, THERE, World, resting, settings, setup, suite, turned};
+use super::world::{ADDRESS, HERE, MS, Mirror, THERE, World, native_order, resting, settings, setup, suite};
 
 fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
@@ -35,7 +35,7 @@ fn images_travel_both_ways() {
     let generation = world.view().generation;
     let change = world.controller.set_image(generation, &image(3)).unwrap();
     assert!(world.view().sent < change);
-    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *turned(&image(3))));
+    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(3))));
     assert_eq!((world.view().sent, generation), (change, 1));
     let device = world.view().details.device.unwrap();
     assert_eq!((device.mac, device.address, device.id), (THERE, ADDRESS, (0xFFFF, 1)));
@@ -284,7 +284,7 @@ fn other_layouts_are_carried_too() {
         let mut world = World::new(setup, Settings { layout: layout.clone(), ..settings() }, "");
         let size = layout.size(Direction::Input);
         world.until(30_000 * MS, |world| {
-            world.view().input.is_some_and(|input| *input.image == turned(&resting())[..size])
+            world.view().input.is_some_and(|input| *input.image == native_order(&resting())[..size])
         });
     }
 }
@@ -293,7 +293,7 @@ fn other_layouts_are_carried_too() {
 fn words_are_swapped_on_the_wire_only() {
     let mut world = World::open(setup(), Settings { swapped: 32, ..settings() }, "");
     world.controller.set_image(1, &image(1)).unwrap();
-    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *turned(&image(1))));
+    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(1))));
     let there = world.device.application().image.clone().unwrap();
     assert_eq!((&there[..4], &there[30..]), (&[2, 1, 4, 3][..], &[&[32, 31][..], &image(1)[32..]].concat()[..]));
 }

@@ -6,7 +6,7 @@ use super::super::device::{Device, Fault, Setup};
 use super::super::error::ProfinetError;
 use super::super::interface::Interface;
 use super::super::simulated::{Link, Network};
-use super::world::{Mirror, resting, settings, setup, turned};
+use super::world::{Mirror, native_order, resting, settings, setup};
 use crate::image::ImagePeer as _;
 
 fn network(fault: Option<Fault>) -> Network {
@@ -37,7 +37,7 @@ fn what_is_shown_arrives_and_the_device_answers() {
     image[0] = 7;
     link.input(Duration::from_millis(5), Some(&image));
     let shown = link.output(Duration::from_millis(40)).unwrap();
-    assert_eq!(shown, turned(&image));
+    assert_eq!(shown, native_order(&image));
     assert!(link.wake().is_some_and(|wake| wake > Duration::from_millis(40)));
     link.input(Duration::from_millis(50), None);
     assert_eq!(link.output(Duration::from_secs(9)), None);
@@ -53,7 +53,7 @@ fn after_a_loss_the_device_is_shown_the_resting_image() {
     assert!((Duration::from_millis(900)..Duration::from_millis(1300)).contains(&lost), "{lost:?}");
     until(&mut link, true);
     let after = |ms| Duration::from_secs(3) + Duration::from_millis(ms);
-    assert!((0..2000).any(|ms| link.output(after(ms)) == Some(turned(&resting()))));
+    assert!((0..2000).any(|ms| link.output(after(ms)) == Some(native_order(&resting()))));
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn an_image_arrives_whatever_gets_lost_late_or_doubled_on_the_way() {
                     link.input(now, Some(&image));
                 }
                 now += Duration::from_millis(1);
-                link.output(now) == Some(turned(&image))
+                link.output(now) == Some(native_order(&image))
             });
             assert!(arrives, "seed {seed}, round {round}");
         }

@@ -86,7 +86,7 @@ pub fn resting() -> Vec<u8> {
     image
 }
 
-pub fn turned(image: &[u8]) -> Vec<u8> {
+pub fn native_order(image: &[u8]) -> Vec<u8> {
     image.iter().map(|byte| !byte).collect()
 }
 
@@ -151,7 +151,7 @@ impl World {
     pub fn until_open(&mut self) {
         self.until(60_000 * MS, |world| {
             let view = world.view();
-            view.state == State::Open && view.input.is_some_and(|input| *input.image == *turned(&resting()))
+            view.state == State::Open && view.input.is_some_and(|input| *input.image == *native_order(&resting()))
         });
     }
 

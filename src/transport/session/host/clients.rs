@@ -12,14 +12,14 @@ use crate::session::socket::{ReadHalf, WriteHalf};
 use crate::session::wire::{Change, Control, Frame, Peer, Purpose, Reader};
 
 /// Client and its frame; `None` when it is gone.
-pub type Letter = (u64, Option<Frame>);
+pub type ClientFrame = (u64, Option<Frame>);
 
 /// Limit of frames that wait for a client. Above it, the client is dropped.
-const MOST_WAITING: usize = 1024;
+const MAX_QUEUE: usize = 1024;
 /// Time limit for the hello of a client.
-const FIRST_WORDS: Duration = Duration::from_secs(3);
+const HELLO_WITHIN: Duration = Duration::from_secs(3);
 /// Time limit for the last frame to a client.
-const LAST_WORDS: Duration = Duration::from_millis(300);
+const LAST_FRAME_WITHIN: Duration = Duration::from_millis(300);
 
 /// A client of the session.
 #[derive(Debug)]
@@ -45,18 +45,18 @@ pub struct Client {
 }
 
 impl Client {
-    /// Starts the tasks of a connection. Received frames go to `letterbox`.
+    /// Starts the tasks of a connection. Received frames go to `inbox_sender`.
     pub fn new(
         id: u64,
         (read, write, pid): (ReadHalf, WriteHalf, Option<u32>),
-        letterbox: mpsc::Sender<Letter>,
+        inbox_sender: mpsc::Sender<ClientFrame>,
     ) -> Self {
         let outbox = Arc::new(Outbox::default());
         let now = Instant::now();
         // This task ends when the outbox is closed.
         tokio::spawn(write_all(write, Arc::clone(&outbox)));
         Self {
-            reading: tokio::spawn(read_all(id, Reader::new(read), letterbox)),
+            reading: tokio::spawn(read_all(id, Reader::new(read), inbox_sender)),
             outbox,
             pid,
             name: None,
@@ -70,7 +70,7 @@ impl Client {
     }
 
     /// Stores the data of its hello.
-    pub fn named(&mut self, pid: u32, command: String) {
+    pub fn set_name(&mut self, pid: u32, command: String) {
         self.name = Some((self.pid.unwrap_or(pid), command));
     }
 
@@ -89,15 +89,15 @@ impl Client {
         self.outbox.push(frame);
     }
 
-    pub fn tell(&self, control: Control) {
+    pub fn send_control(&self, control: Control) {
         self.send(Frame::Control(control));
     }
 
     /// Sends a last frame. The connection stays open until the client is dropped.
     pub async fn dismiss(&self, control: Control) {
-        self.tell(control);
+        self.send_control(control);
         // A client that does not read must not delay the close.
-        let _ = timeout_at(Instant::now() + LAST_WORDS, self.outbox.emptied()).await;
+        let _ = timeout_at(Instant::now() + LAST_FRAME_WITHIN, self.outbox.wait_until_written()).await;
     }
 }
 
@@ -113,18 +113,18 @@ pub fn milliseconds(since: Instant) -> u64 {
     u64::try_from(since.elapsed().as_millis()).unwrap_or(u64::MAX)
 }
 
-async fn read_all(id: u64, mut reader: Reader, letterbox: mpsc::Sender<Letter>) {
+async fn read_all(id: u64, mut reader: Reader, inbox_sender: mpsc::Sender<ClientFrame>) {
     let mut is_named = false;
     loop {
         // After its hello a client can be silent. Before it, the client only blocks a place.
-        let deadline = Instant::now() + FIRST_WORDS;
+        let deadline = Instant::now() + HELLO_WITHIN;
         let frame =
             if is_named { reader.next().await } else { timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)) };
         // An invalid frame also ends the connection.
         let frame = frame.unwrap_or(None);
         let is_end = frame.is_none();
         is_named = is_named || matches!(frame, Some(Frame::Control(Control::Hello(_))));
-        if letterbox.send((id, frame)).await.is_err() || is_end {
+        if inbox_sender.send((id, frame)).await.is_err() || is_end {
             return;
         }
     }
@@ -152,7 +152,7 @@ async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
             return;
         }
         if frames.is_empty() {
-            outbox.news.notified().await;
+            outbox.changed.notified().await;
         }
     }
 }
@@ -160,14 +160,14 @@ async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
 /// Queue of frames to a client. Of consecutive images, only the newest is sent.
 #[derive(Debug, Default)]
 struct Outbox {
-    waiting: Mutex<Waiting>,
-    news: Notify,
+    queue: Mutex<Queue>,
+    changed: Notify,
     /// Notified when everything is written.
     empty: Notify,
 }
 
 #[derive(Debug, Default)]
-struct Waiting {
+struct Queue {
     frames: VecDeque<Frame>,
     is_closed: bool,
     /// Whether frames taken from the queue are being written.
@@ -175,45 +175,45 @@ struct Waiting {
 }
 
 impl Outbox {
-    fn waiting(&self) -> MutexGuard<'_, Waiting> {
-        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    fn queue(&self) -> MutexGuard<'_, Queue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn push(&self, frame: Frame) {
-        let mut waiting = self.waiting();
-        if waiting.frames.len() >= MOST_WAITING {
-            waiting.frames.clear();
-            waiting.is_closed = true;
+        let mut queue = self.queue();
+        if queue.frames.len() >= MAX_QUEUE {
+            queue.frames.clear();
+            queue.is_closed = true;
         }
-        if !waiting.is_closed {
-            if matches!((waiting.frames.back(), &frame), (Some(Frame::Image(_)), Frame::Image(_))) {
-                waiting.frames.pop_back();
+        if !queue.is_closed {
+            if matches!((queue.frames.back(), &frame), (Some(Frame::Image(_)), Frame::Image(_))) {
+                queue.frames.pop_back();
             }
-            waiting.frames.push_back(frame);
+            queue.frames.push_back(frame);
         }
-        self.news.notify_one();
+        self.changed.notify_one();
     }
 
     fn close(&self) {
-        self.waiting().is_closed = true;
-        self.news.notify_one();
+        self.queue().is_closed = true;
+        self.changed.notify_one();
     }
 
     fn take(&self) -> (VecDeque<Frame>, bool) {
-        let mut waiting = self.waiting();
-        waiting.is_writing = !waiting.frames.is_empty();
-        if !waiting.is_writing {
+        let mut queue = self.queue();
+        queue.is_writing = !queue.frames.is_empty();
+        if !queue.is_writing {
             self.empty.notify_waiters();
         }
-        (std::mem::take(&mut waiting.frames), waiting.is_closed)
+        (std::mem::take(&mut queue.frames), queue.is_closed)
     }
 
-    async fn emptied(&self) {
+    async fn wait_until_written(&self) {
         loop {
             let empty = self.empty.notified();
             {
-                let waiting = self.waiting();
-                if waiting.frames.is_empty() && !waiting.is_writing {
+                let queue = self.queue();
+                if queue.frames.is_empty() && !queue.is_writing {
                     return;
                 }
             }
@@ -242,7 +242,7 @@ mod tests {
     #[test]
     fn a_client_that_never_reads_is_given_up() {
         let outbox = Outbox::default();
-        for _ in 0..=MOST_WAITING {
+        for _ in 0..=MAX_QUEUE {
             outbox.push(Frame::Control(Control::Sent));
         }
         assert!(outbox.take().1);

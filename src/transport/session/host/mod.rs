@@ -1,7 +1,7 @@
 //! Session host: holds the link, and gives clients access one at a time.
 
 mod clients;
-pub mod held;
+pub mod shared_link;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io;
@@ -11,19 +11,19 @@ use futures_util::future::join_all;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 
-use self::clients::{Client, Letter, milliseconds};
-use self::held::{Happening, Held};
-use super::place::Claim;
+use self::clients::{Client, ClientFrame, milliseconds};
+use self::shared_link::{LinkEvent, SharedLink};
+use super::location::Claim;
 use super::socket::{Listener, ReadHalf, WriteHalf};
 use super::wire::{
-    Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Purpose, Status, VERSION, Welcome, short,
+    Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Purpose, Status, VERSION, Welcome, shorten,
 };
 
 /// Size of the queue of received frames.
-const LETTERS: usize = 64;
+const INBOX_SIZE: usize = 64;
 /// How long the line is reserved for the client that stops the robot.
 const STOP_FIRST: Duration = Duration::from_secs(10);
-const MOST_CLIENTS: usize = 64;
+const MAX_CLIENTS: usize = 64;
 
 /// A session.
 pub struct Host {
@@ -31,23 +31,23 @@ pub struct Host {
     listener: Listener,
     key: String,
     info: Info,
-    held: Held,
+    link: SharedLink,
     clients: BTreeMap<u64, Client>,
     last: u64,
-    letters: mpsc::Receiver<Letter>,
-    letterbox: mpsc::Sender<Letter>,
+    inbox: mpsc::Receiver<ClientFrame>,
+    inbox_sender: mpsc::Sender<ClientFrame>,
     /// Client with the line, and the queue for it.
     line: Option<u64>,
     queue: VecDeque<(u64, u32)>,
     /// Client that moves the robot.
     motion: Option<u64>,
     /// Clients whose images were not sent yet.
-    showing: Vec<u64>,
+    awaiting_sent: Vec<u64>,
     leftover: Option<(Leftover, Instant)>,
-    began: Instant,
+    started: Instant,
     reopenings: u32,
     /// Log of events.
-    say: Box<dyn FnMut(&str)>,
+    log: Box<dyn FnMut(&str)>,
     /// Filter for a read-only robot.
     lock: Option<Lock>,
     /// Stops the robot after the client that moved it died; gets the reason.
@@ -55,8 +55,8 @@ pub struct Host {
     /// Until this time, only a client that stops the robot gets the line.
     stop_first: Option<Instant>,
     /// Reports whether a client of another process moves the robot, and the last reported value.
-    guard: Option<Guarding>,
-    is_guarding: bool,
+    guard: Option<GuardSwitch>,
+    is_guarded: bool,
     /// Whether the link was lost while a client moved the robot.
     was_lost_in_motion: bool,
     /// Idle time without clients after which the session ends (`None`: never), and the start of the current one.
@@ -66,9 +66,9 @@ pub struct Host {
 
 /// Reason for the end of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Why {
+pub enum EndReason {
     /// A client has closed it.
-    Asked,
+    Requested,
     /// No client for the idle time.
     Idle,
 }
@@ -77,51 +77,57 @@ pub enum Why {
 #[derive(Debug, Clone, Copy)]
 pub struct Guard {
     /// Whether these bytes can be sent.
-    pub sends: fn(&[u8]) -> bool,
+    pub is_harmless_data: fn(&[u8]) -> bool,
     /// Whether the second image can replace the first one.
-    pub shows: fn(&[u8], &[u8]) -> bool,
+    pub is_harmless_image: fn(&[u8], &[u8]) -> bool,
 }
 
 /// Stops the robot, with the reason.
 type Stop = Box<dyn FnMut(&str)>;
 /// Reports whether the motion of a client must be stopped when this process ends. The error is a text.
-type Guarding = Box<dyn FnMut(bool) -> Result<(), String>>;
+type GuardSwitch = Box<dyn FnMut(bool) -> Result<(), String>>;
 
 /// Read-only lock, closed or still open.
 struct Lock {
     guard: Guard,
-    is_closed: bool,
+    is_locked: bool,
     /// Whether it must be closed now.
-    must_close: Box<dyn FnMut() -> Result<bool, String>>,
+    is_read_only: Box<dyn FnMut() -> Result<bool, String>>,
 }
 
 impl Host {
     /// Starts to accept clients.
-    pub fn new(claim: Claim, key: String, info: Info, held: Held, say: impl FnMut(&str) + 'static) -> io::Result<Self> {
-        let (letterbox, letters) = mpsc::channel(LETTERS);
+    pub fn new(
+        claim: Claim,
+        key: String,
+        info: Info,
+        link: SharedLink,
+        log: impl FnMut(&str) + 'static,
+    ) -> io::Result<Self> {
+        let (inbox_sender, inbox) = mpsc::channel(INBOX_SIZE);
         Ok(Self {
             listener: claim.listen()?,
             claim,
             key,
             info,
-            held,
+            link,
             clients: BTreeMap::new(),
             last: 0,
-            letters,
-            letterbox,
+            inbox,
+            inbox_sender,
             line: None,
             queue: VecDeque::new(),
             motion: None,
-            showing: Vec::new(),
+            awaiting_sent: Vec::new(),
             leftover: None,
-            began: Instant::now(),
+            started: Instant::now(),
             reopenings: 0,
-            say: Box::new(say),
+            log: Box::new(log),
             lock: None,
             stop: None,
             stop_first: None,
             guard: None,
-            is_guarding: false,
+            is_guarded: false,
             was_lost_in_motion: false,
             idle: None,
             idle_since: Instant::now(),
@@ -131,56 +137,60 @@ impl Host {
     /// Installs a read-only filter. `is_read_only` is called before every frame that changes something. After its first
     /// `true`, the filter stays active for the rest of the session.
     #[must_use]
-    pub fn guarded(self, guard: Guard, is_read_only: impl FnMut() -> Result<bool, String> + 'static) -> Self {
-        Self { lock: Some(Lock { guard, is_closed: false, must_close: Box::new(is_read_only) }), ..self }
+    pub fn with_read_only_check(
+        self,
+        guard: Guard,
+        is_read_only: impl FnMut() -> Result<bool, String> + 'static,
+    ) -> Self {
+        Self { lock: Some(Lock { guard, is_locked: false, is_read_only: Box::new(is_read_only) }), ..self }
     }
 
     /// Sets the function that stops the robot. It is called after the client that moved the robot died, or when a link
     /// is open again that was lost during a motion.
     #[must_use]
-    pub fn stopped_by(self, stop: impl FnMut(&str) + 'static) -> Self {
+    pub fn with_stop(self, stop: impl FnMut(&str) + 'static) -> Self {
         Self { stop: Some(Box::new(stop)), ..self }
     }
 
     /// Sets the function that reports whether the motion of a client from another process must be stopped when this
     /// process ends.
     #[must_use]
-    pub fn watched_by(self, guard: impl FnMut(bool) -> Result<(), String> + 'static) -> Self {
+    pub fn with_guard(self, guard: impl FnMut(bool) -> Result<(), String> + 'static) -> Self {
         Self { guard: Some(Box::new(guard)), ..self }
     }
 
     /// Sets the idle time after which the session ends.
     #[must_use]
-    pub fn ending_after(self, idle: Option<Duration>) -> Self {
+    pub fn with_idle_limit(self, idle: Option<Duration>) -> Self {
         Self { idle, ..self }
     }
 
     /// Serves clients until one of them closes the session, or until the idle time is over. Cancel safe: [`Host::end`]
     /// continues from there.
-    pub async fn serve(&mut self) -> Why {
+    pub async fn serve(&mut self) -> EndReason {
         loop {
             let idle = self.idle.filter(|_| self.clients.is_empty()).map(|idle| self.idle_since + idle);
             tokio::select! {
-                Some((client, frame)) = self.letters.recv() => {
-                    if self.heard(client, frame).await {
-                        return Why::Asked;
+                Some((client, frame)) = self.inbox.recv() => {
+                    if self.handle_frame(client, frame).await {
+                        return EndReason::Requested;
                     }
                 }
                 Ok(connection) = self.listener.accept() => self.accept(connection),
-                happening = self.held.next() => self.happened(happening),
+                event = self.link.next() => self.handle_link_event(event),
                 () = sleep_until(self.stop_first.unwrap_or_else(Instant::now)), if self.stop_first.is_some() => {
                     self.stop_first = None;
-                    self.keep_guard();
-                    self.next_in_queue();
+                    self.update_guard();
+                    self.serve_queue();
                 }
-                () = sleep_until(idle.unwrap_or_else(Instant::now)), if idle.is_some() => return Why::Idle,
+                () = sleep_until(idle.unwrap_or_else(Instant::now)), if idle.is_some() => return EndReason::Idle,
             }
         }
     }
 
     /// Whether the robot moves.
-    pub fn under_way(&mut self) -> bool {
-        self.held.images().is_some_and(|images| images.under_way())
+    pub fn is_moving(&mut self) -> bool {
+        self.link.images().is_some_and(|images| images.is_moving())
     }
 
     /// Ends the session: accepts no new clients, informs all clients, closes the link.
@@ -191,7 +201,7 @@ impl Host {
         self.claim.hide();
         drop(self.listener);
         join_all(self.clients.values().map(|client| client.dismiss(Control::Ended(why.to_owned())))).await;
-        let closed = self.held.close().await;
+        let closed = self.link.close().await;
         // Connections are closed last, because a client that closes the session waits for that.
         drop(self.claim);
         drop(self.clients);
@@ -199,37 +209,37 @@ impl Host {
     }
 
     fn accept(&mut self, connection: (ReadHalf, WriteHalf, Option<u32>)) {
-        if self.clients.len() < MOST_CLIENTS {
+        if self.clients.len() < MAX_CLIENTS {
             self.last += 1;
-            self.clients.insert(self.last, Client::new(self.last, connection, self.letterbox.clone()));
+            self.clients.insert(self.last, Client::new(self.last, connection, self.inbox_sender.clone()));
         }
     }
 
     /// Handles a frame of a client. Returns whether the session must end.
-    async fn heard(&mut self, id: u64, frame: Option<Frame>) -> bool {
+    async fn handle_frame(&mut self, id: u64, frame: Option<Frame>) -> bool {
         let Some(client) = self.clients.get_mut(&id) else { return false };
         let is_named = client.is_named();
         let Some(frame) = frame else {
-            self.gone(id);
+            self.remove_client(id);
             return false;
         };
         match frame {
             Frame::Control(Control::Hello(hello)) => self.welcome(id, &hello),
-            Frame::Control(Control::Ask) => self.tell_status(id),
-            Frame::Control(Control::Close { force }) => return self.may_close(id, force),
+            Frame::Control(Control::Ask) => self.send_status(id),
+            Frame::Control(Control::Close { force }) => return self.answer_close(id, force),
             // All other frames need a hello first.
-            _ if !is_named => self.gone(id),
+            _ if !is_named => self.remove_client(id),
             Frame::Control(Control::Bye) => client.has_left = true,
             Frame::Control(Control::Will(will)) => client.will = will,
-            Frame::Control(Control::Take { number, channel }) => self.queue_up(id, number, channel),
+            Frame::Control(Control::Take { number, channel }) => self.enqueue(id, number, channel),
             Frame::Control(Control::Over) => self.release(id),
             Frame::Control(Control::Motion) => self.claim_motion(id),
-            Frame::Control(Control::Renew(channel)) => self.held.renew(id, channel),
-            Frame::Show(change) if !self.may_show(&change) => self.refuse(id),
-            Frame::Data { bytes, .. } if !self.passes(|guard| (guard.sends)(&bytes)) => self.refuse(id),
+            Frame::Control(Control::Renew(channel)) => self.link.renew(id, channel),
+            Frame::Show(change) if !self.is_change_allowed(&change) => self.refuse(id),
+            Frame::Data { bytes, .. } if !self.is_allowed(|guard| (guard.is_harmless_data)(&bytes)) => self.refuse(id),
             Frame::Show(change) => {
                 let has_line = self.line == Some(id);
-                let changed = self.held.images().and_then(|images| {
+                let changed = self.link.images().and_then(|images| {
                     let before = images.shown.clone();
                     let change = images.change(change, has_line)?;
                     Some((images.shown != before, images.is_clear(), change))
@@ -239,17 +249,17 @@ impl Host {
                     if is_clear {
                         self.leftover = None;
                     }
-                    if !self.showing.contains(&id) {
-                        self.showing.push(id);
+                    if !self.awaiting_sent.contains(&id) {
+                        self.awaiting_sent.push(id);
                     }
                     if is_new {
                         self.others(id).for_each(|other| other.send(Frame::Show(change.clone())));
                     }
                 }
             }
-            Frame::Data { channel, bytes } if self.line == Some(id) || self.held.is_parallel(channel) => {
-                if let Err(error) = self.held.send(id, channel, &bytes).await {
-                    self.break_to(id, &error);
+            Frame::Data { channel, bytes } if self.line == Some(id) || self.link.is_parallel(channel) => {
+                if let Err(error) = self.link.send(id, channel, &bytes).await {
+                    self.send_error(id, &error);
                 }
             }
             // Data without the line is dropped, and so are frames that only a host sends.
@@ -258,44 +268,44 @@ impl Host {
         false
     }
 
-    fn may_show(&mut self, change: &Change) -> bool {
-        let Some(before) = self.held.images().map(|images| images.shown.clone()) else { return true };
+    fn is_change_allowed(&mut self, change: &Change) -> bool {
+        let Some(before) = self.link.images().map(|images| images.shown.clone()) else { return true };
         let mut after = before.clone();
         change.apply(&mut after);
-        self.passes(|guard| (guard.shows)(&before, &after))
+        self.is_allowed(|guard| (guard.is_harmless_image)(&before, &after))
     }
 
     /// Whether a frame can pass: reads and stops always, anything else only if the robot is not read-only.
-    fn passes(&mut self, is_harmless: impl Fn(&Guard) -> bool) -> bool {
+    fn is_allowed(&mut self, is_harmless: impl Fn(&Guard) -> bool) -> bool {
         let Some(lock) = &mut self.lock else { return true };
         if is_harmless(&lock.guard) {
             return true;
         }
-        if !lock.is_closed {
-            match (lock.must_close)() {
+        if !lock.is_locked {
+            match (lock.is_read_only)() {
                 Ok(false) => {}
-                Ok(true) => lock.is_closed = true,
-                Err(why) => (self.say)(&why),
+                Ok(true) => lock.is_locked = true,
+                Err(why) => (self.log)(&why),
             }
         }
-        !lock.is_closed
+        !lock.is_locked
     }
 
     /// Refuses a frame, because the robot is read-only.
     fn refuse(&mut self, id: u64) {
         if let Some(client) = self.clients.get(&id) {
             let by = client.peer(client.since);
-            (self.say)(&format!("refused client {}: the robot is read-only ({})", by.pid, by.command));
+            (self.log)(&format!("refused client {}: the robot is read-only ({})", by.pid, by.command));
         }
-        let shown = self.held.images().map(|images| images.shown.clone());
+        let shown = self.link.images().map(|images| images.shown.clone());
         if let Some(client) = self.clients.get(&id) {
-            client.tell(Control::Denied { shown });
+            client.send_control(Control::Denied { shown });
         }
     }
 
-    fn break_to(&self, id: u64, error: &io::Error) {
+    fn send_error(&self, id: u64, error: &io::Error) {
         if let Some(client) = self.clients.get(&id) {
-            client.tell(Control::Broken(Broken::from(error)));
+            client.send_control(Control::Broken(Broken::from(error)));
         }
     }
 
@@ -307,10 +317,10 @@ impl Host {
         let welcome = Welcome {
             version: VERSION,
             pid: std::process::id(),
-            for_ms: milliseconds(self.began),
-            down: self.held.down().map(str::to_owned),
+            for_ms: milliseconds(self.started),
+            down: self.link.down().map(str::to_owned),
             leftover: self.leftover(),
-            images: self.held.images().map(|images| images.welcome()),
+            images: self.link.images().map(|images| images.welcome()),
         };
         let refused = if hello.version != VERSION {
             let host = std::process::id();
@@ -325,25 +335,25 @@ impl Host {
         let Some(client) = self.clients.get_mut(&id) else { return };
         if let Some(why) = refused {
             // The refusal is still sent.
-            client.tell(Control::Refused(why));
-            self.gone(id);
+            client.send_control(Control::Refused(why));
+            self.remove_client(id);
             return;
         }
-        client.named(hello.pid, short(&hello.command));
+        client.set_name(hello.pid, shorten(&hello.command));
         client.purpose = hello.purpose;
-        client.tell(Control::Welcome(Box::new(welcome)));
+        client.send_control(Control::Welcome(Box::new(welcome)));
     }
 
-    fn queue_up(&mut self, id: u64, take: u32, channel: u8) {
-        if self.held.is_parallel(channel) {
+    fn enqueue(&mut self, id: u64, take: u32, channel: u8) {
+        if self.link.is_parallel(channel) {
             if let Some(client) = self.clients.get(&id) {
-                client.tell(Control::Taken(take));
+                client.send_control(Control::Taken(take));
             }
             return;
         }
         let holder = self.line.and_then(|holder| self.clients.get(&holder));
         if let (Some(holder), Some(client)) = (holder, self.clients.get(&id)) {
-            client.tell(Control::Queued(holder.peer(holder.line_since)));
+            client.send_control(Control::Queued(holder.peer(holder.line_since)));
         }
         self.queue.retain(|(other, _)| *other != id);
         if self.is_stop(id) {
@@ -351,10 +361,10 @@ impl Host {
         } else {
             self.queue.push_back((id, take));
         }
-        self.next_in_queue();
+        self.serve_queue();
     }
 
-    fn next_in_queue(&mut self) {
+    fn serve_queue(&mut self) {
         while self.line.is_none() {
             // A client that stops the robot is first in the queue.
             let first = self.queue.front().map(|(id, _)| *id);
@@ -365,10 +375,10 @@ impl Host {
             let Some(client) = self.clients.get_mut(&id) else { continue };
             self.line = Some(id);
             client.line_since = Instant::now();
-            self.held.begin();
-            client.tell(Control::Taken(take));
-            if let Some(why) = self.held.down().filter(|_| !matches!(self.held, Held::Images(_))) {
-                client.tell(Control::Lost(why.to_owned()));
+            self.link.begin();
+            client.send_control(Control::Taken(take));
+            if let Some(why) = self.link.down().filter(|_| !matches!(self.link, SharedLink::Images(_))) {
+                client.send_control(Control::Lost(why.to_owned()));
             }
         }
     }
@@ -378,25 +388,25 @@ impl Host {
     }
 
     /// Starts a stop before any other client gets the line. The current owner loses it.
-    fn stop_before_all(&mut self, why: &str) {
+    fn start_stop(&mut self, why: &str) {
         let Some(stop) = &mut self.stop else { return };
         stop(why);
         self.stop_first = Some(Instant::now() + STOP_FIRST);
         if let Some(id) = self.line.filter(|id| !self.is_stop(*id)) {
-            self.break_to(id, &io::Error::new(io::ErrorKind::NotConnected, "armctl stops the robot first"));
-            self.held.pause(id);
+            self.send_error(id, &io::Error::new(io::ErrorKind::NotConnected, "armctl stops the robot first"));
+            self.link.pause(id);
             self.line = None;
         }
-        self.next_in_queue();
+        self.serve_queue();
     }
 
     /// The client releases the line, or loses it.
     fn release(&mut self, id: u64) {
         self.queue.retain(|(other, _)| *other != id);
-        self.held.pause(id);
+        self.link.pause(id);
         if self.line == Some(id) {
             self.line = None;
-            self.next_in_queue();
+            self.serve_queue();
         }
     }
 
@@ -412,78 +422,80 @@ impl Host {
         {
             client.motion_since = Instant::now();
             self.motion = Some(id);
-            self.keep_guard();
+            self.update_guard();
         }
         if let Some(client) = self.clients.get(&id) {
-            client.tell(answer);
+            client.send_control(answer);
         }
     }
 
     /// Updates the guardian of this process. It is not needed for an image link, because the device stops by itself
     /// after a loss. A client in this process has its own guardian.
-    fn keep_guard(&mut self) {
+    fn update_guard(&mut self) {
         let mover = self.motion.and_then(|id| self.clients.get(&id));
         let is_foreign = |mover: &Client| mover.peer(mover.since).pid != std::process::id();
         let is_left = |mover: &Client| mover.purpose == Purpose::LeavesMotion;
         let is_foreign_motion = mover.is_some_and(|mover| is_foreign(mover) && !is_left(mover));
-        let must_guard = (is_foreign_motion || self.stop_first.is_some()) && self.held.images().is_none();
-        if must_guard != self.is_guarding
+        let must_guard = (is_foreign_motion || self.stop_first.is_some()) && self.link.images().is_none();
+        if must_guard != self.is_guarded
             && let Some(guard) = &mut self.guard
         {
-            self.is_guarding = must_guard;
+            self.is_guarded = must_guard;
             if let Err(why) = guard(must_guard) {
-                (self.say)(&why);
+                (self.log)(&why);
             }
         }
     }
 
     /// Removes a client and releases all it has. Its changes of the image stay, except that its last will is sent if it
     /// died.
-    fn gone(&mut self, id: u64) {
+    fn remove_client(&mut self, id: u64) {
         let Some(client) = self.clients.remove(&id) else { return };
         self.idle_since = Instant::now();
         let died = client.is_named() && !client.has_left;
-        let leaves = self.line == Some(id) && self.held.images().is_some_and(|images| !images.is_clear());
+        let leaves_command = self.line == Some(id) && self.link.images().is_some_and(|images| !images.is_clear());
         let by = client.peer(client.since);
-        let mut orphans =
-            died && self.motion == Some(id) && client.purpose != Purpose::LeavesMotion && self.may_be_moving(leaves);
+        let mut leaves_motion = died
+            && self.motion == Some(id)
+            && client.purpose != Purpose::LeavesMotion
+            && self.may_be_moving(leaves_command);
         if died {
-            let mut what = vec![format!("client {} has died ({})", by.pid, by.command)];
+            let mut events = vec![format!("client {} has died ({})", by.pid, by.command)];
             if self.motion == Some(id) {
-                what.push("it moved the robot".to_owned());
+                events.push("it moved the robot".to_owned());
             }
-            if leaves && !orphans {
-                what.push("its command stays active".to_owned());
+            if leaves_command && !leaves_motion {
+                events.push("its command stays active".to_owned());
             }
-            let will = client.will.clone().filter(|will| self.may_show(will));
-            if let Some(will) = will.and_then(|will| self.held.images()?.change(will, false)) {
-                what.push("armctl sends its stop signals".to_owned());
-                orphans = false;
+            let will = client.will.clone().filter(|will| self.is_change_allowed(will));
+            if let Some(will) = will.and_then(|will| self.link.images()?.change(will, false)) {
+                events.push("armctl sends its stop signals".to_owned());
+                leaves_motion = false;
                 self.others(id).for_each(|other| other.send(Frame::Show(will.clone())));
             }
-            (self.say)(&what.join("; "));
+            (self.log)(&events.join("; "));
         }
-        if leaves {
+        if leaves_command {
             self.leftover = Some((Leftover { by, died }, Instant::now()));
         }
         if self.motion == Some(id) {
             self.motion = None;
         }
-        self.held.forget(id);
-        if orphans {
-            self.stop_before_all("the client that moved the robot has died");
+        self.link.forget(id);
+        if leaves_motion {
+            self.start_stop("the client that moved the robot has died");
         }
         if client.purpose == Purpose::Stop {
             self.stop_first = None;
         }
-        self.keep_guard();
+        self.update_guard();
         self.release(id);
-        self.next_in_queue();
+        self.serve_queue();
     }
 
     /// Whether the robot can still move without the client. An image link shows it by the active command.
     fn may_be_moving(&mut self, leaves_command: bool) -> bool {
-        leaves_command || self.held.images().is_none()
+        leaves_command || self.link.images().is_none()
     }
 
     fn leftover(&self) -> Option<Leftover> {
@@ -497,8 +509,8 @@ impl Host {
             version: VERSION,
             motion: mover.map(|client| client.peer(client.motion_since)),
             info: self.info.clone(),
-            for_ms: milliseconds(self.began),
-            down: self.held.down().map(str::to_owned),
+            for_ms: milliseconds(self.started),
+            down: self.link.down().map(str::to_owned),
             reopenings: self.reopenings,
             clients: self
                 .clients
@@ -507,18 +519,18 @@ impl Host {
                 .map(|client| client.peer(client.since))
                 .collect(),
             leftover: self.leftover(),
-            under_way: self.under_way(),
+            under_way: self.is_moving(),
         }
     }
 
-    fn tell_status(&mut self, id: u64) {
+    fn send_status(&mut self, id: u64) {
         let status = Control::Status(Box::new(self.status()));
         if let Some(client) = self.clients.get(&id) {
-            client.tell(status);
+            client.send_control(status);
         }
     }
 
-    fn may_close(&mut self, id: u64, force: bool) -> bool {
+    fn answer_close(&mut self, id: u64, force: bool) -> bool {
         let status = self.status();
         let moves = match &status.motion {
             Some(Peer { pid, command, .. }) => Some(format!("client {pid} moves the robot ({command})")),
@@ -528,55 +540,55 @@ impl Host {
         let Some(client) = self.clients.get(&id) else { return false };
         let refused = moves.filter(|_| !force);
         let closes = refused.is_none();
-        client.tell(refused.map_or(Control::Closing, Control::Refused));
+        client.send_control(refused.map_or(Control::Closing, Control::Refused));
         closes
     }
 
     /// Handles an event of the link.
-    fn happened(&mut self, happening: Happening) {
-        match happening {
-            Happening::Sent => {
-                for id in std::mem::take(&mut self.showing) {
+    fn handle_link_event(&mut self, event: LinkEvent) {
+        match event {
+            LinkEvent::Sent => {
+                for id in std::mem::take(&mut self.awaiting_sent) {
                     if let Some(client) = self.clients.get(&id) {
-                        client.tell(Control::Sent);
+                        client.send_control(Control::Sent);
                     }
                 }
             }
-            Happening::Image(image) => self.everybody(|| Frame::Image(image.to_vec())),
-            Happening::Data { to, channel, bytes } => {
+            LinkEvent::Image(image) => self.broadcast(|| Frame::Image(image.to_vec())),
+            LinkEvent::Data { to, channel, bytes } => {
                 // Data without a request is dropped.
                 if let Some(client) = to.or(self.line).and_then(|id| self.clients.get(&id)) {
                     client.send(Frame::Data { channel, bytes });
                 }
             }
-            Happening::Broken { to, error } => self.break_to(to, &error),
-            Happening::Lost(why) => {
-                (self.say)(&format!("the connection was lost: {why}; armctl opens it again"));
-                self.showing.clear();
+            LinkEvent::Broken { to, error } => self.send_error(to, &error),
+            LinkEvent::Lost(why) => {
+                (self.log)(&format!("the connection was lost: {why}; armctl opens it again"));
+                self.awaiting_sent.clear();
                 let mover = self.motion.and_then(|id| self.clients.get(&id));
                 // A device with an image link stops by itself after a loss.
                 self.was_lost_in_motion |=
-                    mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion) && self.held.images().is_none();
+                    mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion) && self.link.images().is_none();
                 if self.leftover.take().is_some() {
-                    (self.say)("the command that a client left active has ended too");
+                    (self.log)("the command that a client left active has ended too");
                 }
-                self.everybody(|| Frame::Control(Control::Lost(why.clone())));
+                self.broadcast(|| Frame::Control(Control::Lost(why.clone())));
             }
-            Happening::Reopened => {
+            LinkEvent::Reopened => {
                 self.reopenings = self.reopenings.saturating_add(1);
-                (self.say)("the connection is open again");
+                (self.log)("the connection is open again");
                 if std::mem::take(&mut self.was_lost_in_motion) {
-                    self.stop_before_all("the connection was lost while a client moved the robot");
+                    self.start_stop("the connection was lost while a client moved the robot");
                 }
-                if let Some(images) = self.held.images() {
+                if let Some(images) = self.link.images() {
                     let (generation, shown) = (images.generation, images.shown.clone());
-                    self.everybody(|| Frame::Control(Control::Reopened { generation, shown: shown.clone() }));
+                    self.broadcast(|| Frame::Control(Control::Reopened { generation, shown: shown.clone() }));
                 }
             }
         }
     }
 
-    fn everybody(&self, frame: impl Fn() -> Frame) {
+    fn broadcast(&self, frame: impl Fn() -> Frame) {
         self.clients.values().filter(|client| client.is_named()).for_each(|client| client.send(frame()));
     }
 }

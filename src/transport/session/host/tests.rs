@@ -8,11 +8,11 @@ use std::time::Duration;
 use tokio::io::AsyncReadExt as _;
 use tokio::time::Instant;
 
-use super::held::{Datagrams, Held, Images, Line, Opened, Rules};
+use super::shared_link::{Datagrams, Images, Line, OpenResult, Rules, SharedLink};
 use super::*;
 use crate::image::{Event, ImageLink, ImagePeer};
-use crate::session::client::{Attached, Found, SessionBusy, attach_at, status};
-use crate::session::place::Spot;
+use crate::session::client::{AttachResult, Attached, SessionBusy, attach_at, status};
+use crate::session::location::SessionPath;
 use crate::sim;
 use crate::stream::Stream;
 use crate::tcp::Tcp;
@@ -54,31 +54,31 @@ impl sim::Peer for Echo {
 }
 
 /// Images with two exclusive bytes and one shared byte. The robot moves while the first byte is not 0.
-fn images() -> Held {
+fn images() -> SharedLink {
     let rules = Rules {
         is_owner: true,
         exclusive: 2,
         command: 2,
         resting: vec![0, 0, 0x41],
-        rest: <[u8]>::to_vec,
-        under_way: |_, seen| seen.first().is_some_and(|byte| *byte != 0),
+        after_loss: <[u8]>::to_vec,
+        is_moving: |_, seen| seen.first().is_some_and(|byte| *byte != 0),
     };
-    Held::Images(Images::new(ImageLink::in_process(Box::new(Mirror::default())), rules).unwrap())
+    SharedLink::Images(Images::new(ImageLink::in_process(Box::new(Mirror::default())), rules).unwrap())
 }
 
 fn info() -> Info {
     Info { pid: 1, ..Info::own("cell", "yrcx", "sim:", "armctl session open") }
 }
 
-fn host(folder: &Path, held: Held) -> (Host, Spot) {
-    let spot = Spot::at(folder.join("key"));
-    let claim = spot.claim(&info()).unwrap().unwrap();
-    (Host::new(claim, "key".to_owned(), info(), held, |_| {}).unwrap(), spot)
+fn host(folder: &Path, held: SharedLink) -> (Host, SessionPath) {
+    let location = SessionPath::at(folder.join("key"));
+    let claim = location.claim(&info()).unwrap().unwrap();
+    (Host::new(claim, "key".to_owned(), info(), held, |_| {}).unwrap(), location)
 }
 
-async fn client(spot: &Spot, name: &str) -> Box<Attached> {
-    match attach_at(spot, "key", name, Purpose::Any).await.unwrap() {
-        Found::Session(attached) => attached,
+async fn client(location: &SessionPath, name: &str) -> Box<Attached> {
+    match attach_at(location, "key", name, Purpose::Any).await.unwrap() {
+        AttachResult::Session(attached) => attached,
         found => panic!("{found:?}"),
     }
 }
@@ -96,7 +96,7 @@ async fn served<T>(host: &mut Host, clients: impl Future<Output = T>) -> T {
 }
 
 async fn shows(link: &mut ImageLink, image: &[u8]) {
-    link.show(image).unwrap();
+    link.set_output(image).unwrap();
     while link.next(soon()).await != Event::Sent {}
 }
 
@@ -113,17 +113,17 @@ async fn sees(link: &mut ImageLink, wanted: &[u8]) {
 #[tokio::test]
 async fn the_exclusive_part_is_one_clients_and_bits_are_everybodys() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut host, spot) = host(folder.path(), images());
+    let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
-        let mut mover = ImageLink::in_session(client(&spot, "mover").await);
-        let mut other = ImageLink::in_session(client(&spot, "other").await);
-        assert_eq!(mover.shown().unwrap(), [0, 0, 0x41]);
-        mover.take(soon()).await.unwrap();
+        let mut mover = ImageLink::in_session(client(&location, "mover").await);
+        let mut other = ImageLink::in_session(client(&location, "other").await);
+        assert_eq!(mover.output().unwrap(), [0, 0, 0x41]);
+        mover.acquire(soon()).await.unwrap();
         shows(&mut mover, &[7, 8, 0x41]).await;
         // Without the line, only shared bits are changed.
         shows(&mut other, &[9, 9, 0x01]).await;
         sees(&mut mover, &[7, 8, 0x01]).await;
-        assert_eq!(mover.shown().unwrap(), [7, 8, 0x01], "it knows of the bit that went off");
+        assert_eq!(mover.output().unwrap(), [7, 8, 0x01], "it knows of the bit that went off");
         shows(&mut mover, &[0, 0, 0x01]).await;
         sees(&mut other, &[0, 0, 0x01]).await;
     })
@@ -133,21 +133,21 @@ async fn the_exclusive_part_is_one_clients_and_bits_are_everybodys() {
 #[tokio::test]
 async fn the_line_and_motion_have_one_owner() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut host, spot) = host(folder.path(), images());
+    let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
-        let (mut first, mut second) = (client(&spot, "first").await, client(&spot, "second").await);
-        first.take(soon()).await.unwrap();
+        let (mut first, mut second) = (client(&location, "first").await, client(&location, "second").await);
+        first.acquire(soon()).await.unwrap();
         first.claim_motion().await.unwrap();
         assert!(matches!(second.claim_motion().await, Err(SessionBusy::Moved(peer)) if peer.command == "first"));
-        let busy = second.take(Instant::now() + Duration::from_millis(20)).await;
+        let busy = second.acquire(Instant::now() + Duration::from_millis(20)).await;
         assert!(matches!(busy, Err(SessionBusy::Busy(Some(peer))) if peer.command == "first"));
         // A request that timed out is dropped; a new request gets the line.
-        first.over();
-        first.take(soon()).await.unwrap();
-        let waiting = status(&spot).await.unwrap().unwrap();
+        first.release();
+        first.acquire(soon()).await.unwrap();
+        let waiting = status(&location).await.unwrap().unwrap();
         assert_eq!((waiting.clients.len(), waiting.motion.unwrap().command), (2, "first".to_owned()));
         drop(first);
-        second.take(soon()).await.unwrap();
+        second.acquire(soon()).await.unwrap();
         second.claim_motion().await.unwrap();
     })
     .await;
@@ -156,23 +156,23 @@ async fn the_line_and_motion_have_one_owner() {
 #[tokio::test]
 async fn what_somebody_leaves_on_the_image_stays_and_is_told() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut host, spot) = host(folder.path(), images());
+    let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
-        let mut mover = ImageLink::in_session(client(&spot, "mover").await);
-        mover.take(soon()).await.unwrap();
+        let mut mover = ImageLink::in_session(client(&location, "mover").await);
+        mover.acquire(soon()).await.unwrap();
         shows(&mut mover, &[7, 0, 0x41]).await;
         drop(mover);
-        let mut next = client(&spot, "next").await;
+        let mut next = client(&location, "next").await;
         while next.welcome.leftover.is_none() {
-            next = client(&spot, "next").await;
+            next = client(&location, "next").await;
         }
         let leftover = next.welcome.leftover.clone().unwrap();
         assert_eq!((leftover.by.command.as_str(), leftover.died), ("mover", false));
-        assert_eq!(next.shown().unwrap(), [7, 0, 0x41]);
+        assert_eq!(next.output().unwrap(), [7, 0, 0x41]);
         let mut next = ImageLink::in_session(next);
-        next.take(soon()).await.unwrap();
+        next.acquire(soon()).await.unwrap();
         shows(&mut next, &[0, 0, 0x41]).await;
-        assert_eq!(status(&spot).await.unwrap().unwrap().leftover, None);
+        assert_eq!(status(&location).await.unwrap().unwrap().leftover, None);
     })
     .await;
 }
@@ -181,19 +181,19 @@ async fn what_somebody_leaves_on_the_image_stays_and_is_told() {
 async fn datagrams_are_for_whoever_has_the_line() {
     let folder = tempfile::tempdir().unwrap();
     let echo: Box<dyn sim::Peer> = Box::new(Echo::default());
-    let held = Held::Datagrams(Datagrams::in_process(sim::InProcess::new(echo, None)));
-    let (mut host, spot) = host(folder.path(), held);
+    let held = SharedLink::Datagrams(Datagrams::in_process(sim::InProcess::new(echo, None)));
+    let (mut host, location) = host(folder.path(), held);
     served(&mut host, async {
-        let (mut first, mut second) = (client(&spot, "first").await, client(&spot, "second").await);
+        let (mut first, mut second) = (client(&location, "first").await, client(&location, "second").await);
         let mut buffer = [0; 16];
-        first.take(soon()).await.unwrap();
+        first.acquire(soon()).await.unwrap();
         // Without the line, nothing is sent.
         second.send(0, b"no").await.unwrap();
         first.send(1, b"yes").await.unwrap();
         assert_eq!(first.receive(1, &mut buffer, soon()).await.unwrap(), Some(3));
         assert_eq!(&buffer[..3], b"yes");
-        first.over();
-        second.take(soon()).await.unwrap();
+        first.release();
+        second.acquire(soon()).await.unwrap();
         second.send(0, b"now").await.unwrap();
         assert_eq!(second.receive(0, &mut buffer, soon()).await.unwrap(), Some(3));
         assert_eq!(&buffer[..3], b"now");
@@ -204,8 +204,8 @@ async fn datagrams_are_for_whoever_has_the_line() {
 #[tokio::test]
 async fn the_end_is_told_to_everybody() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut host, spot) = host(folder.path(), images());
-    let mut link = served(&mut host, async { ImageLink::in_session(client(&spot, "first").await) }).await;
+    let (mut host, location) = host(folder.path(), images());
+    let mut link = served(&mut host, async { ImageLink::in_session(client(&location, "first").await) }).await;
     host.end("the session was closed").await.unwrap();
     let lost = loop {
         match link.next(soon()).await {
@@ -215,23 +215,23 @@ async fn the_end_is_told_to_everybody() {
         }
     };
     assert_eq!((lost.to_string().as_str(), link.ended()), ("the session was closed", Some("the session was closed")));
-    assert!(matches!(link.take(soon()).await, Err(SessionBusy::Ended(_))));
-    assert!(matches!(attach_at(&spot, "key", "late", Purpose::Any).await.unwrap(), Found::Nothing));
+    assert!(matches!(link.acquire(soon()).await, Err(SessionBusy::Ended(_))));
+    assert!(matches!(attach_at(&location, "key", "late", Purpose::Any).await.unwrap(), AttachResult::Nothing));
 }
 
 #[tokio::test]
 async fn a_client_for_another_device_is_sent_away() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut host, spot) = host(folder.path(), images());
-    let refused = served(&mut host, attach_at(&spot, "other", "wrong", Purpose::Any)).await;
+    let (mut host, location) = host(folder.path(), images());
+    let refused = served(&mut host, attach_at(&location, "other", "wrong", Purpose::Any)).await;
     assert!(refused.unwrap_err().to_string().contains("another device"));
 }
 
 /// Sends frames to the host. Returns all its frames until the connection is closed.
-async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
+async fn told(location: &SessionPath, frames: &[Control]) -> Vec<Frame> {
     use tokio::io::AsyncWriteExt as _;
 
-    let (read, mut write) = crate::session::socket::connect(&spot.socket()).await.unwrap().unwrap();
+    let (read, mut write) = crate::session::socket::connect(&location.socket()).await.unwrap().unwrap();
     let mut bytes = Vec::new();
     for control in frames {
         Frame::Control(control.clone()).emit(&mut bytes);
@@ -251,18 +251,18 @@ async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
 #[tokio::test(start_paused = true)]
 async fn who_does_not_say_who_he_is_takes_up_no_place() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut host, spot) = host(folder.path(), images());
+    let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
-        let silent: Vec<_> = (0..MOST_CLIENTS).map(|_| told(&spot, &[])).collect();
-        let asking = told(&spot, &[Control::Ask]);
+        let silent: Vec<_> = (0..MAX_CLIENTS).map(|_| told(&location, &[])).collect();
+        let asking = told(&location, &[Control::Ask]);
         // The first ones are accepted, then dropped for lack of a hello. Then there is a free place.
         let (all, _) = tokio::join!(join_all(silent), async {
             tokio::time::sleep(Duration::from_secs(1)).await;
             asking.await
         });
         assert!(all.iter().all(Vec::is_empty));
-        client(&spot, "new").await;
-        let asked = told(&spot, &[Control::Ask]).await;
+        client(&location, "new").await;
+        let asked = told(&location, &[Control::Ask]).await;
         assert!(matches!(asked[..], [Frame::Control(Control::Status(_))]), "{asked:?}");
     })
     .await;
@@ -272,9 +272,9 @@ async fn who_does_not_say_who_he_is_takes_up_no_place() {
 #[tokio::test(start_paused = true)]
 async fn who_has_said_who_he_is_may_be_silent() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut host, spot) = host(folder.path(), images());
+    let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
-        let mut link = ImageLink::in_session(client(&spot, "patient").await);
+        let mut link = ImageLink::in_session(client(&location, "patient").await);
         tokio::time::sleep(Duration::from_secs(3600)).await;
         shows(&mut link, &[0, 0, 0x01]).await;
     })
@@ -284,7 +284,7 @@ async fn who_has_said_who_he_is_may_be_silent() {
 #[tokio::test]
 async fn a_client_of_another_version_is_refused_with_a_word() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut host, spot) = host(folder.path(), images());
+    let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
         let hello = Hello {
             version: VERSION + 1,
@@ -293,7 +293,7 @@ async fn a_client_of_another_version_is_refused_with_a_word() {
             command: "armctl".to_owned(),
             purpose: Purpose::Any,
         };
-        let told = told(&spot, &[Control::Hello(hello)]).await;
+        let told = told(&location, &[Control::Hello(hello)]).await;
         let [Frame::Control(Control::Refused(why))] = &told[..] else { panic!("{told:?}") };
         assert!(why.contains("another version"), "{why}");
     })
@@ -305,7 +305,7 @@ async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
     let folder = tempfile::tempdir().unwrap();
     let device = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = device.local_addr().unwrap().port();
-    let open = move || -> Pin<Box<dyn Future<Output = Opened>>> {
+    let open = move || -> Pin<Box<dyn Future<Output = OpenResult>>> {
         Box::pin(async move {
             let opened = Tcp::open("127.0.0.1", port, soon()).await;
             opened.map(Stream::Tcp).map_err(|error| error.to_string())
@@ -313,29 +313,30 @@ async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
     };
     let stream = open().await.unwrap();
     let (mut line, _) = device.accept().await.unwrap();
-    let (host, spot) = host(folder.path(), Held::Stream(Line::new(stream, open)));
+    let (host, location) = host(folder.path(), SharedLink::Stream(Line::new(stream, open)));
     let (ordered, mut orders) = mpsc::unbounded_channel();
-    let mut host = host.stopped_by(move |why| ordered.send(why.to_owned()).unwrap());
+    let mut host = host.with_stop(move |why| ordered.send(why.to_owned()).unwrap());
     served(&mut host, async {
-        let (mut mover, mut reader) = (client(&spot, "mover").await, client(&spot, "reader").await);
+        let (mut mover, mut reader) = (client(&location, "mover").await, client(&location, "reader").await);
         mover.claim_motion().await.unwrap();
-        mover.take(soon()).await.unwrap();
+        mover.acquire(soon()).await.unwrap();
         mover.send(0, b"go").await.unwrap();
         line.read_exact(&mut [0; 2]).await.unwrap();
         // Another client waits for the line when it is lost. The stop comes last.
         let read = async {
-            reader.take(soon()).await.unwrap();
+            reader.acquire(soon()).await.unwrap();
             reader.send(0, b"read").await.unwrap();
         };
         let stop = async {
             drop(line);
             let (mut line, _) = device.accept().await.unwrap();
             assert!(orders.recv().await.unwrap().contains("the connection was lost"));
-            mover.over();
-            let Found::Session(mut stop) = attach_at(&spot, "key", "stop", Purpose::Stop).await.unwrap() else {
+            mover.release();
+            let AttachResult::Session(mut stop) = attach_at(&location, "key", "stop", Purpose::Stop).await.unwrap()
+            else {
                 panic!("the session is there")
             };
-            stop.take(soon()).await.unwrap();
+            stop.acquire(soon()).await.unwrap();
             stop.send(0, b"stop").await.unwrap();
             stop.leave().await;
             let mut heard = [0; 8];

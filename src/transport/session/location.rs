@@ -13,11 +13,11 @@ use super::wire::Info;
 use armctl_files as files;
 
 /// Size limit of a lock file.
-const LONGEST_LOCK: u64 = 1 << 16;
+const MAX_LOCK_BYTES: u64 = 1 << 16;
 
 /// Error of a session location.
 #[derive(Debug, Error)]
-pub enum PlaceError {
+pub enum LocationError {
     /// Another user could be behind it.
     #[error("{path} is not safe: {why}")]
     Unsafe {
@@ -36,8 +36,8 @@ pub enum PlaceError {
     },
 }
 
-fn failed(path: &Path) -> impl FnOnce(io::Error) -> PlaceError {
-    move |error| PlaceError::Io { path: path.to_owned(), error }
+fn io_error(path: &Path) -> impl FnOnce(io::Error) -> LocationError {
+    move |error| LocationError::Io { path: path.to_owned(), error }
 }
 
 /// Key of a session, the same for all names of a device.
@@ -48,43 +48,44 @@ pub fn key(family: &str, target: &str) -> String {
 
 /// Folder with the session sockets of this user.
 #[derive(Debug)]
-pub struct Place {
+pub struct SessionFolder {
     folder: PathBuf,
 }
 
-impl Place {
+impl SessionFolder {
     /// Finds the folder if it exists. It must be private to this user.
-    pub fn find() -> Result<Option<Self>, PlaceError> {
+    pub fn find() -> Result<Option<Self>, LocationError> {
         let folder = socket::folder();
         match socket::check_private(&folder, true) {
             Ok(Ok(())) => Ok(Some(Self { folder })),
-            Ok(Err(why)) => Err(PlaceError::Unsafe { path: folder, why }),
+            Ok(Err(why)) => Err(LocationError::Unsafe { path: folder, why }),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(failed(&folder)(error)),
+            Err(error) => Err(io_error(&folder)(error)),
         }
     }
 
     /// Finds or creates the folder.
-    pub fn make() -> Result<Self, PlaceError> {
+    pub fn create() -> Result<Self, LocationError> {
         let folder = socket::folder();
-        socket::make_private(&folder).map_err(failed(&folder))?;
-        Self::find()?.ok_or_else(|| failed(&folder)(io::ErrorKind::NotFound.into()))
+        socket::make_private(&folder).map_err(io_error(&folder))?;
+        Self::find()?.ok_or_else(|| io_error(&folder)(io::ErrorKind::NotFound.into()))
     }
 
     /// Location of the session with this key.
-    pub fn spot(&self, key: &str) -> Spot {
-        Spot { stem: self.folder.join(key) }
+    pub fn location(&self, key: &str) -> SessionPath {
+        SessionPath { stem: self.folder.join(key) }
     }
 
     /// Locations of all sessions, alive or dead.
-    pub fn spots(&self) -> Result<Vec<Spot>, PlaceError> {
+    pub fn locations(&self) -> Result<Vec<SessionPath>, LocationError> {
         let entries = std::fs::read_dir(&self.folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
-        let entries = entries.map_err(failed(&self.folder))?;
+        let entries = entries.map_err(io_error(&self.folder))?;
         let sockets = entries.iter().map(std::fs::DirEntry::path);
         let sockets = sockets.filter(|path| path.extension().is_some_and(|extension| extension == SOCKET));
-        let mut spots: Vec<Spot> = sockets.map(|path| Spot { stem: path.with_extension("") }).collect();
-        spots.sort_by(|one, other| one.stem.cmp(&other.stem));
-        Ok(spots)
+        let mut locations: Vec<SessionPath> =
+            sockets.map(|path| SessionPath { stem: path.with_extension("") }).collect();
+        locations.sort_by(|one, other| one.stem.cmp(&other.stem));
+        Ok(locations)
     }
 }
 
@@ -92,11 +93,11 @@ const SOCKET: &str = "sock";
 
 /// Location of one session: socket, lock file, log file.
 #[derive(Debug, Clone)]
-pub struct Spot {
+pub struct SessionPath {
     stem: PathBuf,
 }
 
-impl Spot {
+impl SessionPath {
     /// A custom location; socket, lock and log file start with this path.
     pub fn at(stem: PathBuf) -> Self {
         Self { stem }
@@ -127,100 +128,100 @@ impl Spot {
     }
 
     /// Locks the location for this process; `None` if a living process has it. Leftovers of a dead process are removed.
-    pub fn claim(&self, info: &Info) -> Result<Option<Claim>, PlaceError> {
+    pub fn claim(&self, info: &Info) -> Result<Option<Claim>, LocationError> {
         let text = serde_json::to_vec(info).unwrap_or_default();
-        let Some(lock) = Lock::take(&self.lock(), &text).map_err(failed(&self.lock()))? else { return Ok(None) };
+        let Some(lock) = Lock::take(&self.lock(), &text).map_err(io_error(&self.lock()))? else { return Ok(None) };
         self.remove_socket()?;
-        Ok(Some(Claim { spot: self.clone(), _lock: lock }))
+        Ok(Some(Claim { location: self.clone(), _lock: lock }))
     }
 
     /// Locks the location as soon as its owner releases it, within a short time.
-    pub async fn turn(&self, info: &Info) -> Result<Turn, PlaceError> {
-        let until = Instant::now() + TURN_WITHIN;
+    pub async fn lock_soon(&self, info: &Info) -> Result<LockResult, LocationError> {
+        let until = Instant::now() + LOCK_WITHIN;
         loop {
             if let Some(claim) = self.claim(info)? {
-                return Ok(Turn::Mine(claim));
+                return Ok(LockResult::Locked(claim));
             }
             // The owner can be a short command, or a session that is just opening.
             if self.is_open() {
-                return Ok(Turn::Session);
+                return Ok(LockResult::Session);
             }
             if Instant::now() >= until {
-                return Ok(Turn::Taken);
+                return Ok(LockResult::Busy);
             }
-            sleep(TURN_EVERY).await;
+            sleep(LOCK_EVERY).await;
         }
     }
 
     /// Current or last owner.
     pub fn owner(&self) -> Option<Info> {
-        serde_json::from_slice(&files::read(&self.lock(), LONGEST_LOCK).ok()?).ok()
+        serde_json::from_slice(&files::read(&self.lock(), MAX_LOCK_BYTES).ok()?).ok()
     }
 
     /// Removes leftovers of a dead session, unless a living process has the location.
-    pub fn clear(&self) -> Result<(), PlaceError> {
+    pub fn clear(&self) -> Result<(), LocationError> {
         match self.owner() {
             Some(info) => self.claim(&info).map(|_| ()),
             None => Ok(()),
         }
     }
 
-    fn remove_socket(&self) -> Result<(), PlaceError> {
+    fn remove_socket(&self) -> Result<(), LocationError> {
         match std::fs::remove_file(self.socket()) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(&self.socket())(error)),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(io_error(&self.socket())(error)),
             _ => Ok(()),
         }
     }
 
     /// Whether a private socket exists there.
-    pub(super) fn check(&self) -> Result<bool, PlaceError> {
+    pub(super) fn check(&self) -> Result<bool, LocationError> {
         let path = self.socket();
         match socket::check_private(&path, false) {
             Ok(Ok(())) => Ok(true),
-            Ok(Err(why)) => Err(PlaceError::Unsafe { path, why }),
+            Ok(Err(why)) => Err(LocationError::Unsafe { path, why }),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
-            Err(error) => Err(failed(&path)(error)),
+            Err(error) => Err(io_error(&path)(error)),
         }
     }
 }
 
 /// Time limit and interval of the attempts to lock a location.
-const TURN_WITHIN: Duration = Duration::from_secs(3);
-const TURN_EVERY: Duration = Duration::from_millis(10);
+const LOCK_WITHIN: Duration = Duration::from_secs(3);
+const LOCK_EVERY: Duration = Duration::from_millis(10);
 
 /// Result of an attempt to lock a location.
 #[derive(Debug)]
-pub enum Turn {
+pub enum LockResult {
     /// Locked by this process.
-    Mine(Claim),
+    Locked(Claim),
     /// A session, which accepts clients.
     Session,
     /// Another process did not release it in time.
-    Taken,
+    Busy,
 }
 
 /// A locked location; dropping it releases the lock.
 #[derive(Debug)]
 pub struct Claim {
-    spot: Spot,
+    location: SessionPath,
     _lock: Lock,
 }
 
 impl Claim {
     /// The location.
-    pub fn spot(&self) -> &Spot {
-        &self.spot
+    pub fn location(&self) -> &SessionPath {
+        &self.location
     }
 
     /// Listens for clients.
     pub(super) fn listen(&self) -> io::Result<socket::Listener> {
-        socket::Listener::bind(&self.spot.socket())
+        socket::Listener::bind(&self.location.socket())
     }
 
     /// Removes the socket, so that no new client connects.
     pub(super) fn hide(&self) {
         // If this fails, later clients find the socket dead.
-        let _ = self.spot.remove_socket();
+        let _ = self.location.remove_socket();
     }
 }
 
@@ -241,8 +242,8 @@ mod tests {
         Info { pid: 7, ..Info::own("cell1", "yrcx", "sim:", "armctl status") }
     }
 
-    fn spot(folder: &Path) -> Spot {
-        Spot::at(folder.join(key("yrcx", "sim:")))
+    fn location(folder: &Path) -> SessionPath {
+        SessionPath::at(folder.join(key("yrcx", "sim:")))
     }
 
     #[test]
@@ -254,26 +255,26 @@ mod tests {
     #[test]
     fn one_process_has_a_spot() {
         let folder = tempfile::tempdir().unwrap();
-        let spot = spot(folder.path());
-        assert!(spot.owner().is_none());
-        let claim = spot.claim(&info()).unwrap().unwrap();
-        assert!(spot.owner() == Some(info()));
+        let location = location(folder.path());
+        assert!(location.owner().is_none());
+        let claim = location.claim(&info()).unwrap().unwrap();
+        assert!(location.owner() == Some(info()));
         // Locks belong to open files, so a second one in the same process conflicts as well.
-        assert!(spot.claim(&info()).unwrap().is_none());
+        assert!(location.claim(&info()).unwrap().is_none());
         drop(claim);
-        assert!(spot.claim(&info()).unwrap().is_some());
+        assert!(location.claim(&info()).unwrap().is_some());
     }
 
     #[tokio::test]
     async fn what_lives_is_not_cleared() {
         let folder = tempfile::tempdir().unwrap();
-        let spot = spot(folder.path());
-        let claim = spot.claim(&info()).unwrap().unwrap();
+        let location = location(folder.path());
+        let claim = location.claim(&info()).unwrap().unwrap();
         let _listener = claim.listen().unwrap();
-        spot.clear().unwrap();
-        assert!(spot.check().unwrap());
+        location.clear().unwrap();
+        assert!(location.check().unwrap());
         drop(claim);
-        assert!(!spot.check().unwrap());
+        assert!(!location.check().unwrap());
     }
 
     #[test]
@@ -287,8 +288,8 @@ mod tests {
         let link = folder.path().join("link");
         symlink(folder.path(), &link).unwrap();
         assert_eq!(socket::check_private(&link, true).unwrap(), Err("it is not a folder"));
-        let spot = spot(folder.path());
-        std::fs::write(spot.socket(), "").unwrap();
-        assert!(matches!(spot.check(), Err(PlaceError::Unsafe { why: "it is not a socket", .. })));
+        let location = location(folder.path());
+        std::fs::write(location.socket(), "").unwrap();
+        assert!(matches!(location.check(), Err(LocationError::Unsafe { why: "it is not a socket", .. })));
     }
 }

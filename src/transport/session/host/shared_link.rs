@@ -17,7 +17,7 @@ use crate::stream::Stream;
 use crate::udp::Udp;
 
 /// The link of a session.
-pub enum Held {
+pub enum SharedLink {
     /// An image link.
     Images(Images),
     /// A datagram link.
@@ -28,7 +28,7 @@ pub enum Held {
 
 /// Event of the link.
 #[derive(Debug)]
-pub enum Happening {
+pub enum LinkEvent {
     /// All shown images were sent.
     Sent,
     /// A new image of the device.
@@ -56,7 +56,7 @@ pub enum Happening {
 }
 
 /// Longer than any wait.
-const LONG: Duration = Duration::from_secs(3600);
+const NO_DEADLINE: Duration = Duration::from_secs(3600);
 /// Larger than a frame of any controller, so that oversized datagrams are detected.
 const BUFFER: usize = 4096;
 /// Pauses before another attempt to open a stream. The last one repeats.
@@ -68,9 +68,9 @@ const BACKOFF: [Duration; 5] = [
     Duration::from_secs(5),
 ];
 
-impl Held {
+impl SharedLink {
     /// Waits for the next event. Cancel safe.
-    pub async fn next(&mut self) -> Happening {
+    pub async fn next(&mut self) -> LinkEvent {
         match self {
             Self::Images(images) => images.next().await,
             Self::Datagrams(datagrams) => datagrams.next().await,
@@ -104,7 +104,7 @@ impl Held {
 
     /// Whether clients can use this channel at the same time. A file transfer must not delay a stop.
     pub fn is_parallel(&self, channel: u8) -> bool {
-        matches!(self, Self::Datagrams(Datagrams { way: Way::Udp(_), .. })) && channel > 0
+        matches!(self, Self::Datagrams(Datagrams { carrier: Carrier::Udp(_), .. })) && channel > 0
     }
 
     /// The client expects no more answers.
@@ -165,9 +165,9 @@ pub struct Rules {
     /// First image.
     pub resting: Vec<u8>,
     /// Image after a loss, computed from the one before.
-    pub rest: fn(&[u8]) -> Vec<u8>,
+    pub after_loss: fn(&[u8]) -> Vec<u8>,
     /// Whether the robot moves, from output and input image.
-    pub under_way: fn(&[u8], &[u8]) -> bool,
+    pub is_moving: fn(&[u8], &[u8]) -> bool,
 }
 
 /// An image link with its rules.
@@ -188,7 +188,7 @@ impl Images {
     /// Starts with the resting image.
     pub fn new(mut link: ImageLink, rules: Rules) -> Result<Self, String> {
         if rules.is_owner {
-            link.show(&rules.resting).map_err(|trouble| trouble.to_string())?;
+            link.set_output(&rules.resting).map_err(|trouble| trouble.to_string())?;
         }
         Ok(Self { link, shown: rules.resting.clone(), rules, seen: None, generation: 0, down: None })
     }
@@ -205,28 +205,28 @@ impl Images {
         true
     }
 
-    async fn next(&mut self) -> Happening {
+    async fn next(&mut self) -> LinkEvent {
         loop {
-            match self.link.next(Instant::now() + LONG).await {
-                Event::Sent => return Happening::Sent,
+            match self.link.next(Instant::now() + NO_DEADLINE).await {
+                Event::Sent => return LinkEvent::Sent,
                 Event::Image(image) => {
                     self.seen = Some(Arc::clone(&image));
-                    return Happening::Image(image);
+                    return LinkEvent::Image(image);
                 }
                 Event::Lost(error) => {
                     let why = error.to_string();
                     self.seen = None;
                     self.generation = self.generation.wrapping_add(1);
                     self.down = Some(why.clone());
-                    return Happening::Lost(why);
+                    return LinkEvent::Lost(why);
                 }
                 Event::Reopened => {
                     self.down = None;
-                    self.shown = (self.rules.rest)(&self.shown);
-                    self.show();
-                    return Happening::Reopened;
+                    self.shown = (self.rules.after_loss)(&self.shown);
+                    self.set_output();
+                    return LinkEvent::Reopened;
                 }
-                Event::Shown(_) | Event::Denied | Event::Timeout => {}
+                Event::OutputChanged(_) | Event::Denied | Event::Timeout => {}
             }
         }
     }
@@ -241,14 +241,14 @@ impl Images {
             change.mask.iter_mut().take(self.rules.exclusive).for_each(|mask| *mask = 0);
         }
         change.apply(&mut self.shown);
-        self.show();
+        self.set_output();
         Some(change)
     }
 
-    fn show(&mut self) {
+    fn set_output(&mut self) {
         if self.rules.is_owner {
             // The size was checked with the first image. `next` reports a loss.
-            let _ = self.link.show(&self.shown);
+            let _ = self.link.set_output(&self.shown);
         }
     }
 
@@ -258,8 +258,8 @@ impl Images {
     }
 
     /// Whether the robot moves.
-    pub fn under_way(&self) -> bool {
-        self.seen.as_ref().is_some_and(|seen| (self.rules.under_way)(&self.shown, seen))
+    pub fn is_moving(&self) -> bool {
+        self.seen.as_ref().is_some_and(|seen| (self.rules.is_moving)(&self.shown, seen))
     }
 
     /// Image state for a new client.
@@ -275,13 +275,13 @@ impl Images {
 
 /// A datagram link. Each client has its own sockets, so a late answer never reaches another client.
 pub struct Datagrams {
-    way: Way,
+    carrier: Carrier,
     sockets: BTreeMap<u64, Udp>,
     /// Clients that expect an answer, with the channel.
     expecting: BTreeMap<u64, u8>,
 }
 
-enum Way {
+enum Carrier {
     Udp(Udp),
     InProcess(Box<InProcess<Box<dyn Peer>>>),
 }
@@ -292,16 +292,16 @@ const CHANNELS: u8 = 2;
 impl Datagrams {
     /// To a network host.
     pub fn udp(udp: Udp) -> Self {
-        Self::over(Way::Udp(udp))
+        Self::over(Carrier::Udp(udp))
     }
 
     /// To an in-process peer.
     pub fn in_process(peer: InProcess<Box<dyn Peer>>) -> Self {
-        Self::over(Way::InProcess(Box::new(peer)))
+        Self::over(Carrier::InProcess(Box::new(peer)))
     }
 
-    fn over(way: Way) -> Self {
-        Self { way, sockets: BTreeMap::new(), expecting: BTreeMap::new() }
+    fn over(carrier: Carrier) -> Self {
+        Self { carrier, sockets: BTreeMap::new(), expecting: BTreeMap::new() }
     }
 
     async fn send(&mut self, client: u64, channel: u8, bytes: &[u8]) -> io::Result<()> {
@@ -309,25 +309,25 @@ impl Datagrams {
             return Ok(());
         }
         self.expecting.insert(client, channel);
-        match &mut self.way {
-            Way::Udp(udp) => {
-                let own = self.sockets.entry(client).or_insert_with(|| udp.another());
-                own.send(channel.into(), bytes).await
+        match &mut self.carrier {
+            Carrier::Udp(udp) => {
+                let socket = self.sockets.entry(client).or_insert_with(|| udp.another());
+                socket.send(channel.into(), bytes).await
             }
-            Way::InProcess(peer) => {
+            Carrier::InProcess(peer) => {
                 peer.send(channel.into(), bytes);
                 Ok(())
             }
         }
     }
 
-    async fn next(&mut self) -> Happening {
-        let (to, channel, received) = match &mut self.way {
-            Way::Udp(_) => {
+    async fn next(&mut self) -> LinkEvent {
+        let (to, channel, received) = match &mut self.carrier {
+            Carrier::Udp(_) => {
                 let expecting = &self.expecting;
-                let expected = self.sockets.iter_mut().filter_map(|(client, own)| {
+                let expected = self.sockets.iter_mut().filter_map(|(client, socket)| {
                     let channel = *expecting.get(client)?;
-                    Some(Box::pin(async move { (*client, channel, datagram(own, channel).await) }))
+                    Some(Box::pin(async move { (*client, channel, datagram(socket, channel).await) }))
                 });
                 let expected: Vec<_> = expected.collect();
                 if expected.is_empty() {
@@ -335,7 +335,7 @@ impl Datagrams {
                 }
                 select_all(expected).await.0
             }
-            Way::InProcess(peer) => {
+            Carrier::InProcess(peer) => {
                 let Some((client, channel)) = self.expecting.first_key_value() else {
                     return std::future::pending().await;
                 };
@@ -346,21 +346,21 @@ impl Datagrams {
             }
         };
         match received {
-            Ok(bytes) => Happening::Data { to: Some(to), channel, bytes },
+            Ok(bytes) => LinkEvent::Data { to: Some(to), channel, bytes },
             Err(error) => {
                 // Nothing more to receive until the next send.
                 self.expecting.remove(&to);
-                Happening::Broken { to, error }
+                LinkEvent::Broken { to, error }
             }
         }
     }
 }
 
 /// Next datagram of a channel.
-async fn datagram(own: &mut Udp, channel: u8) -> io::Result<Vec<u8>> {
+async fn datagram(socket: &mut Udp, channel: u8) -> io::Result<Vec<u8>> {
     let mut buffer = vec![0; BUFFER];
     loop {
-        if let Some(length) = own.receive(channel.into(), &mut buffer, Instant::now() + LONG).await? {
+        if let Some(length) = socket.receive(channel.into(), &mut buffer, Instant::now() + NO_DEADLINE).await? {
             buffer.truncate(length);
             return Ok(buffer);
         }
@@ -368,8 +368,8 @@ async fn datagram(own: &mut Udp, channel: u8) -> io::Result<Vec<u8>> {
 }
 
 /// An opened stream, or the reason of a failure.
-pub type Opened = Result<Stream<Box<dyn Peer + Send>>, String>;
-type Opening = Pin<Box<dyn Future<Output = Opened>>>;
+pub type OpenResult = Result<Stream<Box<dyn Peer + Send>>, String>;
+type Opening = Pin<Box<dyn Future<Output = OpenResult>>>;
 
 /// A byte stream that is opened again after a loss.
 pub struct Line {
@@ -397,21 +397,21 @@ impl Line {
         io::Error::new(io::ErrorKind::NotConnected, self.down.clone().unwrap_or_default())
     }
 
-    async fn next(&mut self) -> Happening {
+    async fn next(&mut self) -> LinkEvent {
         let mut buffer = [0; 1024];
         loop {
             if let Some(stream) = &mut self.stream {
-                match stream.receive(&mut buffer, Instant::now() + LONG).await {
+                match stream.receive(&mut buffer, Instant::now() + NO_DEADLINE).await {
                     Ok(None) => continue,
                     Ok(Some(length)) => {
-                        return Happening::Data { to: None, channel: 0, bytes: buffer[..length].to_vec() };
+                        return LinkEvent::Data { to: None, channel: 0, bytes: buffer[..length].to_vec() };
                     }
                     Err(error) => {
                         // A local port is only free again after this handle is dropped.
                         self.stream = None;
                         self.down = Some(error.to_string());
                         (self.tries, self.due) = (0, Instant::now() + BACKOFF[0]);
-                        return Happening::Lost(error.to_string());
+                        return LinkEvent::Lost(error.to_string());
                     }
                 }
             }
@@ -421,7 +421,7 @@ impl Line {
             match self.opening.get_or_insert_with(|| (self.open)()).await {
                 Ok(stream) => {
                     (self.opening, self.stream, self.down) = (None, Some(stream), None);
-                    return Happening::Reopened;
+                    return LinkEvent::Reopened;
                 }
                 Err(why) => {
                     self.opening = None;

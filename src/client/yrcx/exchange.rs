@@ -72,20 +72,20 @@ impl Client {
     pub async fn raw(&mut self, order: &Order) -> Result<Reply, Error> {
         self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {
-            self.note(order, Reason::default());
+            self.plan_order(order, Reason::default());
             if order.risk() == Risk::Read {
-                return Err(Error::NotKnown);
+                return Err(Error::DryRun);
             }
             let answer = Answer::Done(Values::default());
             return Ok(Reply { answer, words: Words::default(), elapsed: Duration::ZERO });
         }
-        let began = Instant::now();
-        let patience = self.timeout.saturating_mul(self.retries.saturating_add(1));
+        let start = Instant::now();
+        let total_timeout = self.timeout.saturating_mul(self.retries.saturating_add(1));
         let mut repetitions = if order.risk() == Risk::Read { self.retries } else { 0 };
         loop {
             let outcome = self.transact(order).await?;
             match outcome.ended {
-                Ended::NotSent(_) | Ended::NoAnswer(_) if repetitions > 0 && began.elapsed() < patience => {
+                Ended::NotSent(_) | Ended::NoAnswer(_) if repetitions > 0 && start.elapsed() < total_timeout => {
                     repetitions -= 1;
                 }
                 _ => return self.reply(outcome),
@@ -120,10 +120,10 @@ impl Client {
 
     async fn transact(&mut self, order: &Order) -> Result<Outcome, Error> {
         if order.row().pace == Pace::Jog {
-            return Ok(self.see_through(order, None).await?.outcome);
+            return Ok(self.run_jog(order, None).await?.outcome);
         }
         self.start(order).await?;
-        let outcome = self.until_ended(None).await?;
+        let outcome = self.wait_for_outcome(None).await?;
         self.count(order, &outcome);
         Ok(outcome)
     }
@@ -133,7 +133,7 @@ impl Client {
         self.totals.commands += 1;
         self.totals.waited += outcome.elapsed;
         if let Some(status) = outcome.leftover {
-            self.watcher.event(Event::Leftover(order.command(), status));
+            self.watcher.event(Event::StatusReset(order.command(), status));
         }
         if matches!(outcome.ended, Ended::Answered(_)) && !outcome.released {
             self.watcher.event(Event::NotReleased(order.command()));
@@ -158,7 +158,7 @@ impl Client {
             Ended::NoAnswer(why) => Error::NoAnswer { command, why },
             Ended::OutcomeUnknown(why) => {
                 let stop = self.is_up.then(|| input::STOP.is_on(&self.output.next));
-                let ended = match self.still_there() {
+                let ended = match self.check_session() {
                     Err(Error::Session(SessionBusy::Ended(why))) => Some(why),
                     _ => None,
                 };
@@ -172,7 +172,7 @@ impl Client {
     pub(super) fn authorize_command(&self, name: &str, risk: Risk) -> Result<(), Error> {
         self.authorize(name, risk)?;
         if !self.is_owner && !self.is_dry() {
-            return Err(Error::NotCommanding { what: name.to_owned() });
+            return Err(Error::MonitorOnly { what: name.to_owned() });
         }
         Ok(())
     }

@@ -28,14 +28,14 @@ impl Client {
             return Ok(());
         }
         self.catch_up().await?;
-        self.have_words().await?;
-        let shown = self.show_words(changes).await;
-        self.is_over = true;
+        self.reserve_words().await?;
+        let result = self.send_words(changes).await;
+        self.is_turn_over = true;
         self.release();
-        shown
+        result
     }
 
-    async fn show_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Error> {
+    async fn send_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Error> {
         let mut words = general(&self.output.next.command());
         for (register, value) in changes {
             register.write(&mut words, *value);

@@ -11,16 +11,16 @@ use armctl_controller::yrcx::sequence::{self, Sequence};
 use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Silence};
 use armctl_controller::yrcx::signal::{input, output};
 use armctl_controller::yrcx::table::Pace;
-use armctl_transport::image::{Event as Passed, LinkError};
+use armctl_transport::image::{Event as LinkEvent, LinkError};
 use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
 use super::error::Error;
-use super::hold::after_loss;
+use super::session_rules::after_loss;
 use super::{Client, Event, Reply, Transport};
 
 /// Poll interval of a session without a deadline.
-pub(super) const LONG: Duration = Duration::from_secs(3600);
+pub(super) const NO_DEADLINE: Duration = Duration::from_secs(3600);
 /// Time limit for sending the last change before the connection is closed.
 const LEAVE_WITHIN: Duration = Duration::from_secs(1);
 
@@ -47,11 +47,11 @@ impl Client {
 
     pub(super) async fn start(&mut self, order: &Order) -> Result<(), Error> {
         if !self.has_commands() {
-            return Err(Error::SignalsAlone { command: order.command() });
+            return Err(Error::SignalsOnly { command: order.command() });
         }
         self.catch_up().await?;
         self.claim_motion(order.risk()).await?;
-        self.have_words().await?;
+        self.reserve_words().await?;
         self.words = general(&self.output.next.command());
         let mut exchange = Exchange::new(order.clone(), self.policy);
         if let Some(image) = &self.input {
@@ -62,14 +62,14 @@ impl Client {
     }
 
     /// Reserves the words of remote commands, which no other command may use.
-    pub(super) async fn have_words(&mut self) -> Result<(), Error> {
-        self.end_earlier().await?;
+    pub(super) async fn reserve_words(&mut self) -> Result<(), Error> {
+        self.end_previous_command().await?;
         self.acquire().await?;
-        self.end_others().await
+        self.check_other_commands().await
     }
 
-    /// Ends an earlier command of this client and reports its failure. [`Error::UnderWay`] while it runs.
-    async fn end_earlier(&mut self) -> Result<(), Error> {
+    /// Ends an earlier command of this client and reports its failure. [`Error::CommandRunning`] while it runs.
+    async fn end_previous_command(&mut self) -> Result<(), Error> {
         if self.exchange.is_some() {
             self.turn_until(Instant::now()).await?;
         }
@@ -78,7 +78,7 @@ impl Client {
             if exchange.order().is_continuous() {
                 exchange.interrupt(now);
             } else if exchange.is_running() {
-                return Err(Error::UnderWay { command: exchange.order().command() });
+                return Err(Error::CommandRunning { command: exchange.order().command() });
             }
             self.turn().await?;
         }
@@ -86,7 +86,7 @@ impl Client {
             let command = outcome.row.command;
             match self.reply(outcome) {
                 Ok(Reply { answer: Answer::Refused { alarm, .. }, .. }) => {
-                    self.watcher.event(Event::BrokenOff(command, alarm));
+                    self.watcher.event(Event::Aborted(command, alarm));
                 }
                 Ok(_) => {}
                 Err(error) => self.watcher.event(Event::Unanswered(error)),
@@ -96,7 +96,7 @@ impl Client {
     }
 
     /// Runs until the remote command has ended. Waits for a lost link until the deadline.
-    pub(super) async fn until_ended(&mut self, until: Option<Instant>) -> Result<Outcome, Error> {
+    pub(super) async fn wait_for_outcome(&mut self, until: Option<Instant>) -> Result<Outcome, Error> {
         loop {
             if let Some(outcome) = self.ended.take() {
                 self.await_link(&outcome, until).await;
@@ -119,7 +119,7 @@ impl Client {
 
     pub(super) fn start_sequence(&mut self, mut sequence: Sequence) -> Result<(), Error> {
         if self.sequence.is_some() {
-            return Err(Error::SignalsUnderWay);
+            return Err(Error::ProcedureRunning);
         }
         if let Some(image) = &self.input {
             sequence.handle(self.now(), image);
@@ -129,7 +129,7 @@ impl Client {
         Ok(())
     }
 
-    pub(super) async fn until_finished(&mut self) -> Result<sequence::Outcome, Error> {
+    pub(super) async fn wait_for_procedure(&mut self) -> Result<sequence::Outcome, Error> {
         loop {
             if let Some(outcome) = self.finished.take() {
                 return Ok(outcome);
@@ -152,7 +152,7 @@ impl Client {
     pub(super) async fn catch_up(&mut self) -> Result<(), Error> {
         let now = Instant::now();
         while self.event(now).await? {}
-        self.still_there()
+        self.check_session()
     }
 
     /// Waits at most 1 s for short commands to end and for the last change to be sent. A motion that was left running
@@ -184,7 +184,7 @@ impl Client {
 
     /// One turn: returns after an event or a deadline.
     pub(super) async fn turn(&mut self) -> Result<(), Error> {
-        self.turn_until(Instant::now() + LONG).await
+        self.turn_until(Instant::now() + NO_DEADLINE).await
     }
 
     /// [`turn`](Self::turn) with a deadline.
@@ -192,10 +192,10 @@ impl Client {
         let mut due = until;
         if !self.in_flight {
             let next = self.poll();
-            self.show()?;
+            self.send_output()?;
             self.release();
             match next {
-                Some(next) => due = due.min(self.started + next.min(self.now().saturating_add(LONG))),
+                Some(next) => due = due.min(self.started + next.min(self.now().saturating_add(NO_DEADLINE))),
                 // The caller waits for an exchange that has just ended.
                 None => return Ok(()),
             }
@@ -219,7 +219,7 @@ impl Client {
                     self.exchange = None;
                     self.output.next.set_command(&self.words);
                     self.ended = Some(outcome);
-                    self.is_over = true;
+                    self.is_turn_over = true;
                     has_ended = true;
                 }
             }
@@ -238,13 +238,13 @@ impl Client {
     }
 
     /// Passes the output image to the transport, if it has changed.
-    fn show(&mut self) -> Result<(), Error> {
+    fn send_output(&mut self) -> Result<(), Error> {
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
-        if !self.is_up || !self.is_owner || self.shown == Some(self.output.next) {
+        if !self.is_up || !self.is_owner || self.last_output == Some(self.output.next) {
             return Ok(());
         }
-        link.show(&self.output.next.to_link(self.size))?;
-        self.shown = Some(self.output.next);
+        link.set_output(&self.output.next.to_link(self.size))?;
+        self.last_output = Some(self.output.next);
         self.in_flight = true;
         Ok(())
     }
@@ -253,38 +253,38 @@ impl Client {
     async fn event(&mut self, until: Instant) -> Result<bool, Error> {
         let link = match &mut self.transport {
             Transport::Image(link) => link,
-            Transport::Notes(_) => return Err(Error::NotKnown),
+            Transport::DryRun(_) => return Err(Error::DryRun),
             Transport::Nothing => return Err(Error::Silent),
         };
         let event = link.next(until).await;
         let now = self.now();
         match event {
-            Passed::Timeout => return Ok(false),
-            Passed::Sent => {
+            LinkEvent::Timeout => return Ok(false),
+            LinkEvent::Sent => {
                 self.in_flight = false;
                 self.output.sent(now);
-                self.watcher.event(Event::Shown(self.output.next));
+                self.watcher.event(Event::ImageSent(self.output.next));
             }
-            Passed::Image(bytes) => self.take(now, &bytes)?,
-            Passed::Lost(why) => self.lost(now, why),
-            Passed::Reopened => {
+            LinkEvent::Image(bytes) => self.take(now, &bytes)?,
+            LinkEvent::Lost(why) => self.lost(now, why),
+            LinkEvent::Reopened => {
                 self.is_up = true;
                 if self.is_shared {
-                    self.shown_now();
+                    self.adopt_session_output();
                 } else {
                     self.output.next = after_loss(&self.output.next);
                 }
                 let stop = self.is_owner.then(|| input::STOP.is_on(&self.output.next));
                 self.watcher.event(Event::Reopened { stop });
             }
-            Passed::Shown(change) => self.shown_by_others(now, &change),
-            Passed::Denied => {
+            LinkEvent::OutputChanged(change) => self.apply_change(now, &change),
+            LinkEvent::Denied => {
                 self.in_flight = false;
                 // A command that was sent before is still followed to its end.
                 self.exchange.take_if(|exchange| exchange.sent().is_none());
                 self.sequence = None;
                 self.words = Words::default();
-                self.shown_now();
+                self.adopt_session_output();
                 return Err(Error::Session(SessionBusy::ReadOnly));
             }
         }
@@ -293,7 +293,7 @@ impl Client {
 
     fn take(&mut self, now: Now, bytes: &[u8]) -> Result<(), Error> {
         let image = Image::from_link(bytes).ok_or(Error::NoImage { bytes: bytes.len() })?;
-        self.watcher.event(Event::Seen(image));
+        self.watcher.event(Event::ImageReceived(image));
         self.input = Some(image);
         if let Some(exchange) = &mut self.exchange {
             exchange.handle(now, &image);
@@ -305,11 +305,11 @@ impl Client {
     }
 
     fn lost(&mut self, now: Now, why: LinkError) {
-        self.watcher.event(Event::Lost { why, is_reopening: self.still_there().is_ok() });
+        self.watcher.event(Event::Lost { why, is_reopening: self.check_session().is_ok() });
         self.totals.losses += 1;
         self.is_up = false;
         self.in_flight = false;
-        self.shown = None;
+        self.last_output = None;
         self.input = None;
         self.output.unlinked();
         self.words = Words::default();

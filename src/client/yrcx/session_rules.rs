@@ -4,7 +4,7 @@ use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
 use armctl_controller::yrcx::signal::{input, output, resting};
 use armctl_transport::image::{Cause, ImageLink, LinkError};
-use armctl_transport::session::host::held::{Held, Images, Rules};
+use armctl_transport::session::host::shared_link::{Images, Rules, SharedLink};
 use tokio::time::Instant;
 
 use super::Error;
@@ -22,8 +22,8 @@ pub async fn hold(link: ImageLink, commands: bool, until: Instant) -> Result<Ima
         exclusive: if has_commands { 2 * COMMAND_WORDS } else { 0 },
         command: if has_commands { 2 } else { 0 },
         resting: resting().to_link(size),
-        rest: |before| after_loss(&image(before)).to_link(before.len()),
-        under_way: |_, seen| {
+        after_loss: |before| after_loss(&image(before)).to_link(before.len()),
+        is_moving: |_, seen| {
             let seen = image(seen);
             Status::from_word(seen.0[0]) == Status::Running || output::PROGRAM_RUNNING.is_on(&seen)
         },
@@ -33,7 +33,7 @@ pub async fn hold(link: ImageLink, commands: bool, until: Instant) -> Result<Ima
         return Ok(images);
     }
     // The missing image is the useful error, not a failed close.
-    let _ = Held::Images(images).close().await;
+    let _ = SharedLink::Images(images).close().await;
     Err(Error::Silent)
 }
 

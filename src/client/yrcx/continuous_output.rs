@@ -11,14 +11,14 @@ use super::error::Error;
 use super::{Client, Done};
 
 /// The running status may precede its data: within this time, zeros count as missing data.
-const FILLS_WITHIN: Duration = Duration::from_millis(100);
+const DATA_WITHIN: Duration = Duration::from_millis(100);
 
 impl Client {
     /// Returns the next values of continuous output (4.7.4). The first call starts it. It runs until another command,
     /// or the end of the link, resets the status.
     pub async fn next_output(&mut self, order: &Order) -> Result<Done, Error> {
-        let is_under_way = self.exchange.as_ref().is_some_and(|exchange| exchange.order() == order);
-        if self.is_dry() || !is_under_way {
+        let is_running = self.exchange.as_ref().is_some_and(|exchange| exchange.order() == order);
+        if self.is_dry() || !is_running {
             self.authorize_command(order.row().id, order.risk())?;
             if self.is_dry() {
                 return self.ask(order).await;
@@ -26,7 +26,7 @@ impl Client {
             self.start(order).await?;
             self.totals.commands += 1;
         }
-        let mut held: Option<(Done, Instant)> = None;
+        let mut pending: Option<(Done, Instant)> = None;
         loop {
             if let Some(outcome) = self.ended.take() {
                 return self.reply(outcome)?.done(order);
@@ -37,12 +37,12 @@ impl Client {
             {
                 let is_empty = values.iter().all(|(_, value)| *value == Value::Int(0));
                 let done = Done { values, elapsed: exchange.elapsed(now) };
-                if is_under_way || !is_empty {
+                if is_running || !is_empty {
                     return Ok(done);
                 }
-                held = Some((done, Instant::now() + FILLS_WITHIN));
+                pending = Some((done, Instant::now() + DATA_WITHIN));
             }
-            match held {
+            match pending {
                 Some((done, until)) if Instant::now() >= until => return Ok(done),
                 Some((_, until)) => self.turn_until(until).await?,
                 None => self.turn().await?,
