@@ -17,8 +17,8 @@ async fn main() -> Result<(), Box<dyn Error>> {
     // Without a grant a client reads.
     let mut robot = Client::simulated(Start::default(), Options::default().with_risk(Risk::Motion)).await?;
 
-    let shown = robot.look().await?;
-    println!("servo on: {}, alarm: {}", output::SERVO_ON.is_on(&shown), output::ALARM.is_on(&shown));
+    let inputs = robot.input_image().await?;
+    println!("servo on: {}, alarm: {}", output::SERVO_ON.is_on(&inputs), output::ALARM.is_on(&inputs));
 
     let read = Command::PointGet.order().with(Key::Point, 1).build()?;
     println!("point 1: {:?} um", robot.ask(&read).await?.values.axes().ok_or("no position")?);
