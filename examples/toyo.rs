@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use armctl::client::toyo::{Client, Endpoint, Moving, Options, jog};
 use armctl::controller::Risk;
-use armctl::controller::toyo::bulk::points;
 use armctl::controller::toyo::request::Request;
+use armctl::controller::toyo::table::Parameter;
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> Result<(), Box<dyn Error>> {
@@ -20,7 +20,8 @@ async fn main() -> Result<(), Box<dyn Error>> {
     let status = robot.status().await?;
     println!("servo on: {}, host on: {}", status.servo_on(), status.host_on());
 
-    let point = robot.ask(&Request::read_parameter(points::table(), Some(1))?).await?;
+    let point =
+        robot.ask(&Request::read_parameter(Parameter::named("T1").ok_or("no table of points")?, Some(1))?).await?;
     println!("point 1: {}", point.written());
 
     // The host is switched ON for it, and OFF again at the end.

@@ -3,7 +3,6 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-use armctl::controller::toyo::bulk::{Setting, parameters, points};
 use armctl::controller::toyo::describe::{Sender, describe, summary};
 use armctl::controller::toyo::field::{Field, Form, Mask, Value};
 use armctl::controller::toyo::layout::{Layout, Record};
@@ -269,53 +268,6 @@ proptest! {
     }
 
     #[test]
-    fn settings_read_back(all in vec(picks(), PARAMETERS.len()), axes in 1_usize..=4) {
-        let settings: Vec<Setting> = PARAMETERS
-            .iter()
-            .zip(&all)
-            .map(|(parameter, picks)| Setting { parameter, values: values(&parameter.layout, picks) })
-            // Steps of tasks must fit together.
-            .filter(|setting| setting.parameter.id != "E22")
-            .collect();
-        let text = parameters::write(&settings);
-        let back = parameters::read(text.as_bytes()).unwrap_or_else(|errors| panic!("{text}{errors:?}"));
-        prop_assert_eq!(back.into_iter().map(|(setting, _)| setting).collect::<Vec<_>>(), settings);
-        let mut seen = std::collections::BTreeSet::new();
-        let mut rows: Vec<Setting> = all
-            .iter()
-            .map(|picks| Setting { parameter: points::table(), values: values(&points::table().layout, picks) })
-            .filter(|point| seen.insert(point.row()))
-            .collect();
-        for point in &mut rows {
-            point.values[axes + 1..].fill(Value::Number(0));
-        }
-        let back = points::read(points::write(&rows, axes).as_bytes(), axes).unwrap();
-        prop_assert_eq!(back.into_iter().map(|(point, _)| point).collect::<Vec<_>>(), rows);
-    }
-
-    #[test]
-    fn any_bytes_are_settings_or_told(
-        bytes in vec(any::<u8>(), 0..400),
-        rows in vec("[-0-9.,;\" a-z]{0,24}", 0..12),
-        lines in vec(setting_line(), 0..12),
-    ) {
-        let csv = format!("point,x_mm,y_mm,z_mm,r_mm\n{}", rows.join("\n"));
-        let toml = format!("[parameters]\n{}", lines.join("\n"));
-        for text in [&bytes[..], csv.as_bytes(), toml.as_bytes()] {
-            for read in [points::read(text, 4), parameters::read(text)] {
-                match read {
-                    Ok(settings) => {
-                        for (setting, _) in settings {
-                            prop_assert!(setting.write().is_ok() && setting.read().is_ok(), "{setting:?}");
-                        }
-                    }
-                    Err(errors) => prop_assert!(!errors.is_empty()),
-                }
-            }
-        }
-    }
-
-    #[test]
     fn any_bytes_are_a_program_or_told(bytes in vec(any::<u8>(), 0..400), lines in vec(text_line(), 0..40)) {
         for text in [&bytes[..], lines.join("\n").as_bytes()] {
             let checked = program::check(text, 100);
@@ -328,16 +280,6 @@ proptest! {
             }
         }
     }
-}
-
-/// Lines that often look like one of a file of parameters.
-fn setting_line() -> impl Strategy<Value = String> {
-    let whole = (any::<Index>(), picks()).prop_map(|(row, picks)| {
-        let parameter = row.get(&PARAMETERS);
-        let text = parameters::write(&[Setting { parameter, values: values(&parameter.layout, &picks) }]);
-        text.replace("[parameters]\n", "")
-    });
-    prop_oneof![4 => whole, 1 => "[a-zEMPT0-9]{1,4} = [-0-9.\"{}a-z= ]{0,12}", 1 => "\\[[a-zT0-9.-]{1,8}\\]"]
 }
 
 /// Lines that often look like one of a program.

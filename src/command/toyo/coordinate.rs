@@ -4,12 +4,12 @@ use clap::Args;
 
 use super::link::Toyo;
 use super::link::wrong;
+use super::point::table as point_table;
 use super::position::Coordinates;
 use super::values::{Changes, assignment, json};
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
-use crate::controller::toyo::bulk::points;
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
@@ -92,7 +92,7 @@ impl Command for Set {
         let Self { values, task, speed } = self;
         let Context { link, authority, .. } = context;
         let letters = link.letters().await?;
-        let changes = Changes::read_by("coordinates", &points::table().body(), &letters, values)?;
+        let changes = Changes::read_by("coordinates", &point_table().body(), &letters, values)?;
         let place = changes.whole().ok_or_else(|| {
             Failure::usage("coordinates: a value is missing; each axis needs one")
                 .hint("`toyo coordinate set -h` has examples")

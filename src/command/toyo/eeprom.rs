@@ -9,9 +9,9 @@ use serde::Serialize;
 use super::link::Link;
 use super::refusal;
 use crate::controller::toyo::field::Value;
-use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::layout::{LayoutProblem, Record};
 use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table::{Command, Op};
+use crate::controller::toyo::table::{Command, Op, Parameter};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
@@ -105,6 +105,16 @@ impl Link {
         Ok(())
     }
 
+    /// Reads something that only some controllers have; `None` if it is refused twice, because a busy controller also
+    /// refuses.
+    pub async fn read_if_there(&mut self, request: &Request) -> Result<Option<Record>, Failure> {
+        for _ in 0..2 {
+            if let Ok(content) = self.try_ask(request).await? {
+                return Ok(Some(content));
+            }
+        }
+        Ok(None)
+    }
     /// Whether a cell has its new value.
     async fn holds(&mut self, cell: &Cell) -> Result<bool, Failure> {
         Ok(cell.is(&self.ask(&cell.read).await?))
@@ -112,12 +122,6 @@ impl Link {
 }
 
 impl Cell {
-    /// Whether the cell is empty: a NOP, or zeros in a table that is cleared to zeros. The manuals do not list factory
-    /// values of parameters.
-    pub fn is_blank(&self, found: &Record) -> bool {
-        is_blank(&self.read, found)
-    }
-
     /// Whether the content equals the new value.
     pub fn is(&self, found: &Record) -> bool {
         // A step contains an instruction, and several instructions have fields of the same names.
@@ -126,7 +130,27 @@ impl Cell {
     }
 }
 
-/// [`Cell::is_blank`] for the answer to a read request.
+/// Block that writes a parameter or a row of a table; `?` stands for kept values.
+pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Option<Value>]) -> String {
+    let values: Vec<_> = row.map(|row| Some(Value::Number(row))).into_iter().chain(values.iter().cloned()).collect();
+    format!("@WPAR {}", parameter.layout.sketch(&values).unwrap_or_default())
+}
+
+/// Cell of a parameter or of a row of a table, with all fields of its layout.
+pub fn parameter_cell(parameter: &'static Parameter, values: Vec<Value>) -> Result<Cell, LayoutProblem> {
+    let row = parameter
+        .row()
+        .and(values.first())
+        .and_then(|row| if let Value::Number(row) = row { Some(*row) } else { None });
+    Ok(Cell {
+        read: Request::read_parameter(parameter, row)?,
+        write: Request::write_parameter(parameter, &values)?,
+        wanted: parameter.layout.record(values)?,
+    })
+}
+
+/// Whether the answer to a read request is empty: a NOP, or zeros in a table that is cleared to zeros. The manuals do not
+/// list factory values of parameters.
 pub fn is_blank(read: &Request, found: &Record) -> bool {
     let content = read.content().ok().flatten();
     let key = content.as_ref().unwrap_or(read.record());

@@ -25,7 +25,7 @@ const LINES: &[(&str, Risk)] = &[
     ("run point 1", Motion), ("jog X + inch", Motion), ("jog 2 - low --for 500ms", Motion),
     ("param list", Read), ("param get P01", Read), ("param dump", Read),
     ("param set P01 ax2=150", Destroy), ("param set P01 1 2 3 4", Destroy), ("param set E22 1000 0 0 0", Destroy),
-    ("param restore FOLDER/parameters.toml", Destroy),
+    ("param restore FOLDER/parameters.csv", Destroy),
     ("point get 1", Read), ("point list", Read), ("teach 1", Destroy), ("point set 1 z=5", Destroy), ("point set 1 1 2 3 4", Destroy),
     ("point get 1 --task 2", Write), ("point copy 1 2", Destroy), ("point dump FOLDER/taught.csv 1-2", Read),
     ("point restore FOLDER/points.csv --task 2", Destroy),
@@ -82,7 +82,7 @@ const BEFORE: [&str; 9] = [
 fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    write("parameters.toml", "[parameters]\nM09 = 'J'\nE06 = { ax1 = 900, ax2 = 900, ax3 = 900, ax4 = 900 }\n");
+    write("parameters.csv", "name,value\nM09,J\nE06,ax1=900 ax2=900 ax3=900 ax4=900\n");
     write("points.csv", "name,x_mm,y_mm,z_mm,r_mm\n1,5,5,5,5\n2,6,6,6,6\n");
     write("rows.csv", "name,speed_mm_s\n1,77\n");
     write("times.csv", "name,time_s\n1,0.77\n");

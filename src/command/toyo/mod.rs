@@ -56,7 +56,6 @@ mod serve;
 mod sim;
 pub mod simulated;
 mod status;
-mod stores;
 mod task;
 mod tasks;
 #[cfg(test)]

@@ -3,12 +3,11 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::eeprom::Cells;
+use super::eeprom::{Cells, parameter_cell, parameter_sketch};
 use super::items::read_each;
 use super::link::{Link, Toyo, wrong};
 use super::numbers::Numbers;
-use super::rows::{Listed, WRITING, texts};
-use super::stores::{parameter_cell, parameter_sketch};
+use super::rows::{Listed, WRITING, texts, unlisted};
 use super::values::{Changes, word};
 use crate::command::frame::store::{
     Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids, table_commands,
@@ -198,6 +197,10 @@ impl Store for Groups {
 
     fn is_blank(&self, sheets: &Vec<Record>) -> bool {
         sheets.iter().zip(&SHEETS).all(|(sheet, (_, fields))| super::rows::is_zero(sheet, fields.len()))
+    }
+
+    fn unsaved(&self, _group: i32, sheets: Option<&Vec<Record>>) -> Option<String> {
+        sheets.and_then(|sheets| sheets.iter().find_map(|sheet| unlisted(Some(sheet))))
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, groups: &[i32]) -> Result<Answers<Vec<Record>>, Failure> {

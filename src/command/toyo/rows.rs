@@ -7,11 +7,10 @@ use std::marker::PhantomData;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::eeprom::{Cell, Cells};
+use super::eeprom::{Cell, Cells, parameter_cell, parameter_sketch};
 use super::items::read_each;
 use super::link::{Link, Toyo, wrong};
 use super::numbers::Numbers;
-use super::stores::{parameter_cell, parameter_sketch};
 use super::values::{Changes, NOT_IN_MANUAL, word};
 use crate::client::toyo::Letters;
 use crate::command::frame::store::{
@@ -102,6 +101,12 @@ impl Listed {
     }
 }
 
+impl<K: Kind> Default for Rows<K> {
+    fn default() -> Self {
+        Self(PhantomData)
+    }
+}
+
 impl<K: Kind> Store for Rows<K> {
     type Family = Toyo;
     type Key = i32;
@@ -126,7 +131,7 @@ impl<K: Kind> Store for Rows<K> {
     }
 
     async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
-        Ok(Self(PhantomData))
+        Ok(Self::default())
     }
 
     fn fields(&self) -> Vec<Field> {
@@ -147,6 +152,10 @@ impl<K: Kind> Store for Rows<K> {
 
     fn is_blank(&self, record: &Record) -> bool {
         K::ZERO_IS_BLANK && is_zero(record, K::body().fields.len())
+    }
+
+    fn unsaved(&self, _row: i32, record: Option<&Record>) -> Option<String> {
+        unlisted(record)
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, rows: &[i32]) -> Result<Answers<Record>, Failure> {
@@ -206,6 +215,24 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
         Ok(())
     }
 
+    /// See [`Writable::NOT_RESTORED`].
+    const NOT_RESTORED: &'static str = "";
+
+    /// See [`Writable::is_restored`].
+    fn is_restored(_key: Self::Key) -> bool {
+        true
+    }
+
+    /// See [`Writable::is_absent`].
+    fn is_absent(_key: Self::Key) -> bool {
+        false
+    }
+
+    /// Position of a row in the order of the writes.
+    fn rank(_key: Self::Key) -> usize {
+        0
+    }
+
     /// See [`Writable::consequences`].
     fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
         Vec::new()
@@ -221,6 +248,7 @@ impl<T: EepromRow> Writable for T {
     type Draft = Changes;
 
     const RISK: Risk = Risk::Destroy;
+    const NOT_RESTORED: &'static str = <T as EepromRow>::NOT_RESTORED;
 
     fn draft(&self, key: T::Key, texts: &[Option<&str>]) -> Result<Changes, String> {
         if T::IS_MIXED {
@@ -264,7 +292,23 @@ impl<T: EepromRow> Writable for T {
         EepromRow::afterwards(self, written)
     }
 
+    fn is_restored(key: T::Key) -> bool {
+        <T as EepromRow>::is_restored(key)
+    }
+
+    fn is_absent(key: T::Key) -> bool {
+        <T as EepromRow>::is_absent(key)
+    }
+
+    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        order.sort_by_key(|index| T::rank(rows[*index].0));
+        order.into_iter().map(|index| vec![index]).collect()
+    }
+
     async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+        let mut rows: Vec<&Row<Self>> = rows.iter().collect();
+        rows.sort_by_key(|(key, _)| T::rank(*key));
         for (key, changes) in rows {
             link.plan_overwriting(&self.request(*key)?, &self.sketch(*key, changes.values())).await?;
         }
@@ -288,6 +332,11 @@ pub fn texts(record: &Record, fields: usize) -> Vec<String> {
     }
     let keys = record.values().len().saturating_sub(fields);
     record.pairs().skip(keys).map(|(field, value)| plain(field, value)).collect()
+}
+
+/// Reason why a record is not saved: the manual does not list it, so it cannot be written back.
+pub fn unlisted(record: Option<&Record>) -> Option<String> {
+    record.filter(|record| !record.is_listed()).map(|record| format!("'{}' is {NOT_IN_MANUAL}", record.written()))
 }
 
 /// Whether all values after the keys of a record are zero.

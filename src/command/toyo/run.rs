@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::complete;
 use super::link::{self, Link, Toyo};
 use super::numbers::small;
-use super::point::parse_point;
+use super::point::{parse_point, table as point_table};
 use super::position::{Coordinates, UNIT, titled};
 use super::program::steps;
 use super::tasks;
@@ -23,7 +23,6 @@ use crate::command::robot::position::Position;
 use crate::command::robot::program::{self as robot, ProgramState};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
-use crate::controller::toyo::bulk::points;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::RunMode;
@@ -231,8 +230,7 @@ impl Report for Moved {
 impl Point {
     /// Position of the point; `None` if the controller refuses to report it.
     async fn place(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
-        let request =
-            Request::read_parameter(points::table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
+        let request = Request::read_parameter(point_table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
         let letters = link.letters().await?;
         Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }

@@ -3,7 +3,6 @@
 //! References such as "TO 2-4" are sections of the manual. "Ambiguity" refers to a note about an unclear or wrong
 //! place of it.
 
-pub mod bulk;
 pub mod describe;
 pub mod errors;
 pub mod field;

@@ -44,17 +44,27 @@ pub struct Work<'a, S: Store> {
     pub authority: Authority<'a>,
 }
 
-/// A row that was compared with what the controller holds.
-struct Compared<S: Store> {
-    key: S::Key,
+/// A row, compared with the controller.
+#[derive(Debug)]
+pub struct Compared<S: Store> {
+    /// The row.
+    pub key: S::Key,
     old: Option<S::Wire>,
     new: S::Wire,
-    /// What became of it.
-    outcome: Result<bool, Failure>,
+    /// Whether it was written, or why not.
+    pub outcome: Result<bool, Failure>,
+    /// Whether an earlier failure ended the work before this row.
+    pub is_skipped: bool,
 }
 
 impl<S: Store> Compared<S> {
-    fn differs(&self) -> bool {
+    /// Whether the row was refused, so that the controller does not have it yet.
+    pub fn is_undefined(&self) -> bool {
+        self.old.is_none()
+    }
+
+    /// Whether the controller holds something else.
+    pub fn differs(&self) -> bool {
         self.old.as_ref().is_none_or(|old| !S::is_equal(old, &self.new))
     }
 }
@@ -80,7 +90,7 @@ pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<
     let names = names::of(robot, screen);
     let items: Vec<_> = compared
         .into_iter()
-        .map(|Compared { key, old, new, outcome }| {
+        .map(|Compared { key, old, new, outcome, .. }| {
             let (is_written, outcome) = match outcome {
                 Ok(is_written) => (is_written, Ok(Some(new))),
                 Err(failure) => (false, Err(failure)),
@@ -92,7 +102,7 @@ pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<
     Ok(WrittenItems::new(columns(&table), items))
 }
 
-/// Compares rows with what the controller holds, has it confirmed what is overwritten, and writes what differs.
+/// Compares rows with the controller, confirms the change, and writes the rows that differ.
 async fn write_selected<S: Writable>(
     table: &S,
     link: &mut <S::Family as Family>::Link,
@@ -100,6 +110,25 @@ async fn write_selected<S: Writable>(
     authority: Authority<'_>,
     rows: Vec<Row<S>>,
 ) -> Result<Vec<Compared<S>>, Failure> {
+    let Some(mut compared) = compare(table, link, screen, &rows).await? else {
+        table.plan(link, &rows).await?;
+        return Err(unknown());
+    };
+    authority.confirm(&overwritten(table, &differing(&compared))).await?;
+    write_each(table, link, screen, &mut compared).await;
+    Ok(compared)
+}
+
+/// Reads rows and compares them with their new content; `None` in a dry run, which does not know the content.
+///
+/// # Errors
+/// Those of the reads, which state that nothing was written.
+pub async fn compare<S: Writable>(
+    table: &S,
+    link: &mut <S::Family as Family>::Link,
+    screen: &Screen,
+    rows: &[Row<S>],
+) -> Result<Option<Vec<Compared<S>>>, Failure> {
     let keys: Vec<S::Key> = rows.iter().map(|(key, _)| *key).collect();
     let read = match table.read_old(link, screen, &keys).await {
         // All are refused alike: each is judged below.
@@ -109,37 +138,40 @@ async fn write_selected<S: Writable>(
         }
         read => read,
     };
-    let Some(answers) = read.known().map_err(unwritten)? else {
-        table.plan(link, &rows).await?;
-        return Err(unknown());
-    };
+    let Some(answers) = read.known().map_err(unwritten)? else { return Ok(None) };
     let mut compared = Vec::with_capacity(rows.len());
-    for ((key, draft), old) in rows.into_iter().zip(answers.rows) {
+    for ((key, draft), old) in rows.iter().zip(answers.rows) {
         let old = match old {
             Ok(old) => old,
-            Err(failure) if S::risk(key) < Risk::Destroy && failure.kind == Kind::Refused => None,
+            Err(failure) if S::risk(*key) < Risk::Destroy && failure.kind == Kind::Refused => None,
             Err(failure) if S::is_undefined(&failure) => None,
             Err(failure) => return Err(unwritten(failure)),
         };
-        let new = table.whole(key, &draft, old.as_ref())?;
-        compared.push(Compared::<S> { key, old, new, outcome: Ok(false) });
+        let new = table.whole(*key, draft, old.as_ref())?;
+        compared.push(Compared::<S> { key: *key, old, new, outcome: Ok(false), is_skipped: false });
     }
-    let differing: Vec<Differing<'_, S>> =
-        compared.iter().filter(|row| row.differs()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect();
-    authority.confirm(&overwritten(table, &differing)).await?;
-    write_each(table, link, screen, &mut compared).await;
-    Ok(compared)
+    Ok(Some(compared))
 }
 
-/// What is overwritten that a person wrote, for a question.
-pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
+/// Rows that will be written.
+pub fn differing<S: Writable>(rows: &[Compared<S>]) -> Vec<Differing<'_, S>> {
+    rows.iter().filter(|row| row.differs()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
+}
+
+/// Values that a person wrote and that are replaced: name, old value, new value.
+pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[String; 3]> {
     let lost = rows.iter().filter_map(|(key, old, new)| {
         let is_lost = |old: &&S::Wire| S::risk(*key) == S::RISK && !S::is_equal(old, new) && !table.is_blank(old);
         let old = old.filter(is_lost)?;
         let [old, new] = table.difference(old, new);
-        Some((S::asked(*key), old, new))
+        Some([S::asked(*key), old, new])
     });
-    let lost: Vec<_> = lost.collect();
+    lost.collect()
+}
+
+/// What is overwritten that a person wrote, for a question.
+pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
+    let lost = replaced(table, rows);
     let [one, many] = S::WORDS.nouns;
     let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.place());
     let change = match lost.len() {
@@ -148,10 +180,11 @@ pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change 
         count => Change::new(format!("overwrite {count} {many}{place}")),
     };
     let change = table.consequences(rows).into_iter().fold(change, Change::note);
-    lost.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))
+    lost.iter().fold(change, |change, [name, old, new]| change.replaces(name, old, new))
 }
 
-async fn write_each<S: Writable>(
+/// Writes the rows that differ and records the outcome of each.
+pub async fn write_each<S: Writable>(
     table: &S,
     link: &mut <S::Family as Family>::Link,
     screen: &Screen,
@@ -164,6 +197,7 @@ async fn write_each<S: Writable>(
     let mut end: Option<Failure> = None;
     for block in blocks {
         let block: Vec<usize> = block.into_iter().map(|index| differing[index]).collect();
+        let is_skipped = end.is_some();
         let outcome = match &end {
             Some(failure) => Err(not_written(failure)),
             // Ctrl-C ends the work, and what was written is said.
@@ -183,6 +217,7 @@ async fn write_each<S: Writable>(
         }
         for index in block {
             rows[index].outcome = outcome.clone();
+            rows[index].is_skipped = is_skipped;
         }
     }
 }

@@ -58,35 +58,88 @@ impl<S: Store> Command for Dump<S> {
         let old = target.old();
         let keys = old
             .filter(|_| self.rows.is_empty())
-            .map_or_else(|| Ok(Rows::of(&self.rows)), |old| keys_of::<S>(&self.file, old))?;
+            .map_or_else(|| Ok(self.chosen()), |old| keys_of::<S>(&self.file, old))?;
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
-        let (mut rows, mut errors) = (Vec::new(), Vec::new());
+        let mut kept = Kept::default();
         for (key, outcome) in keys.iter().zip(answers.rows) {
-            let name = S::name(*key);
-            match defined::<S>(outcome) {
-                Ok(Some(wire)) if S::SAVES_BLANK || old.is_some() || !table.is_blank(&wire) => {
-                    rows.push([vec![name], table.texts(&wire)].concat());
-                }
-                Ok(None) if old.is_some() => {
-                    rows.push([vec![name], vec![String::new(); table.fields().len()]].concat());
-                }
-                Ok(_) => {}
-                Err(failure) => errors.push(ItemError::new(asked(S::WORDS.nouns[0], &name), failure)),
+            let is_wanted = |wire: &S::Wire| S::SAVES_BLANK || old.is_some() || !table.is_blank(wire);
+            match kept.add(&table, *key, outcome) {
+                Some(Some(wire)) if is_wanted(&wire) => kept.save(&table, *key, Some(&wire)),
+                Some(None) if old.is_some() => kept.save(&table, *key, None),
+                _ => {}
             }
         }
+        let Kept { mut rows, left_out, failed } = kept;
         let mut columns = sheet(&table);
         if old.is_none() {
             leave_out_unused(&table, &mut columns, &mut rows);
         }
         let file = target.write(&columns, &rows, canonical::<S>)?;
-        Ok(Dumped { file, saved: rows.len(), failed: errors })
+        Ok(Dumped { file, saved: rows.len(), left_out, failed })
+    }
+}
+
+impl<S: Store> Dump<S> {
+    fn chosen(&self) -> Vec<S::Key> {
+        if self.rows.is_empty() { S::saved() } else { Rows::of(&self.rows) }
+    }
+}
+
+/// Rows for a file, as they are read.
+#[derive(Debug, Default)]
+pub struct Kept {
+    /// Name and values of each row.
+    pub rows: Vec<Vec<String>>,
+    /// Rows that cannot be written back.
+    pub left_out: Vec<LeftOut>,
+    /// Rows that were not read.
+    pub failed: Vec<ItemError>,
+}
+
+/// A row that is not in the file.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct LeftOut {
+    /// Name of the row.
+    pub name: String,
+    /// Reason.
+    pub why: String,
+}
+
+impl Kept {
+    /// Sorts an answer: `None` for a row that cannot be in a file, `Some(None)` for a row that is not defined.
+    pub fn add<S: Store>(
+        &mut self,
+        table: &S,
+        key: S::Key,
+        outcome: Result<Option<S::Wire>, Failure>,
+    ) -> Option<Option<S::Wire>> {
+        match defined::<S>(outcome) {
+            Ok(wire) => match table.unsaved(key, wire.as_ref()) {
+                Some(why) => {
+                    self.left_out.push(LeftOut { name: S::name(key), why });
+                    None
+                }
+                None => Some(wire),
+            },
+            Err(failure) => {
+                self.failed.push(ItemError::new(asked(S::WORDS.nouns[0], &S::name(key)), failure));
+                None
+            }
+        }
+    }
+
+    /// Adds a row to the file.
+    pub fn save<S: Store>(&mut self, table: &S, key: S::Key, wire: Option<&S::Wire>) {
+        let empty = || vec![String::new(); table.fields().len()];
+        let texts = wire.map_or_else(empty, |wire| table.texts(wire));
+        self.rows.push([vec![S::name(key)], texts].concat());
     }
 }
 
 /// Removes optional columns in which no row has a value.
-fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &mut [Vec<String>]) {
+pub fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &mut [Vec<String>]) {
     let optional = std::iter::once(false).chain(table.fields().into_iter().map(|field| field.is_optional));
     let is_used = |(at, is_optional): (usize, bool)| !is_optional || rows.iter().any(|row| !row[at].is_empty());
     let used: Vec<bool> = optional.enumerate().map(is_used).collect();
@@ -98,8 +151,22 @@ fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &mut [
     }
 }
 
+/// Reads and checks the rows of a file.
+///
+/// # Errors
+/// All mistakes in the file.
+pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<(S::Key, S::Draft)>, Failure> {
+    let bytes = text_files::read(path)?;
+    let mut findings = Findings::default();
+    let rows = parse(table, &bytes, &mut findings);
+    if findings.errors() > 0 {
+        return Err(text_files::faulty(&text_files::shown(path), &findings.into_errors()));
+    }
+    Ok(rows)
+}
+
 /// The rows that a file has, in its order.
-fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failure> {
+pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failure> {
     let (mut findings, mut keys) = (Findings::default(), Vec::new());
     let expected = "the first column is name";
     if let Some(sheet) = Sheet::read(bytes, expected, &mut findings) {
@@ -135,13 +202,20 @@ pub struct Dumped {
     file: String,
     /// How many rows it holds.
     saved: usize,
+    /// Rows that cannot be written back, or that the controller does not have.
+    left_out: Vec<LeftOut>,
     /// Rows that were not read.
     failed: Vec<ItemError>,
 }
 
 impl Report for Dumped {
     fn view(&self) -> View {
-        View::fields([("file", self.file.as_str().into()), ("rows", self.saved.into())])
+        let (file, saved) = (("file", self.file.as_str().into()), ("rows", self.saved.into()));
+        let left_out: Vec<&str> = self.left_out.iter().map(|row| row.name.as_str()).collect();
+        match &left_out[..] {
+            [] => View::fields([file, saved]),
+            names => View::fields([file, saved, ("left out", names.join(", ").into())]),
+        }
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -188,7 +262,12 @@ impl<S: Writable> Command for Restore<S> {
         if findings.errors() > 0 {
             return Err(text_files::faulty(&name, &findings.into_errors()));
         }
-        if !self.rows.is_empty() {
+        if self.rows.is_empty() {
+            let left = rows.extract_if(.., |(key, _)| !S::is_restored(*key)).count();
+            if left > 0 {
+                screen.note(&format!("skipped {left} {}: {}", S::WORDS.nouns[1], S::NOT_RESTORED));
+            }
+        } else {
             let chosen = Rows::of(&self.rows);
             rows.retain(|(key, _)| chosen.contains(key));
         }
@@ -209,7 +288,7 @@ fn has_aliases<S: Store>(table: &S, bytes: &[u8]) -> bool {
 }
 
 /// Rows of a file, with what each shall hold.
-fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> Vec<(S::Key, S::Draft)> {
+pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> Vec<(S::Key, S::Draft)> {
     let mut columns = sheet(table);
     if has_aliases(table, bytes) {
         for (column, field) in columns.iter_mut().skip(1).zip(table.fields()) {

@@ -5,6 +5,7 @@ mod change;
 mod copy;
 mod file;
 mod get;
+mod part;
 mod set;
 
 use std::borrow::Cow;
@@ -17,8 +18,9 @@ use serde::Serialize;
 
 pub use self::change::{Row, Work, overwritten, write};
 pub use self::copy::Copy;
-pub use self::file::{Dump, Restore};
+pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
 pub use self::get::{Get, List};
+pub use self::part::{Part, PartResult, TablePart, Text};
 pub use self::set::Set;
 use super::connection::Family;
 use super::kind::ValueKind;
@@ -201,6 +203,11 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         Vec::new()
     }
 
+    /// Rows that `dump` saves if none is typed.
+    fn saved() -> Vec<Self::Key> {
+        Self::all()
+    }
+
     /// A row that is always there: it stands for a name that is not looked up yet.
     fn any() -> String {
         Self::all().first().map_or_else(String::new, |key| Self::name(*key))
@@ -294,6 +301,11 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         false
     }
 
+    /// Reason why a row is not in a file, although it was read; without `wire`, it is not defined.
+    fn unsaved(&self, _key: Self::Key, _wire: Option<&Self::Wire>) -> Option<String> {
+        None
+    }
+
     /// Whether a refusal to report a row says that it is not defined.
     fn is_undefined(_failure: &Failure) -> bool {
         false
@@ -327,6 +339,19 @@ pub trait Writable: Store {
     /// Risk of writing this row.
     fn risk(_key: Self::Key) -> Risk {
         Self::RISK
+    }
+
+    /// Why `restore` skips rows unless they are typed.
+    const NOT_RESTORED: &'static str = "type them to write them";
+
+    /// Whether `restore` writes this row if no rows are typed.
+    fn is_restored(_key: Self::Key) -> bool {
+        true
+    }
+
+    /// Whether this controller does not have the row, if it was not read; a backup without it is complete.
+    fn is_absent(_key: Self::Key) -> bool {
+        false
     }
 
     /// What a row shall hold, from the text of each field; a field without text stays.

@@ -1,4 +1,4 @@
-//! The parts of a controller as texts, and texts as what is to be stored.
+//! The parts of a controller as tables and texts.
 
 use std::path::Path;
 
@@ -6,22 +6,25 @@ use super::manifest::Controller;
 use super::parts::Part;
 use crate::client::toyo::{Letters, letters_request};
 use crate::command::backup::manifest::LeftOut;
-use crate::command::toyo::eeprom::Cell;
-use crate::command::toyo::items::{Answers, read_each};
-use crate::command::toyo::link::{Link, wrong};
+use crate::command::frame::store::{self, TablePart};
+use crate::command::toyo::easy::Numbered;
+use crate::command::toyo::link::{Link, Toyo};
+use crate::command::toyo::palletizing::Records;
+use crate::command::toyo::param::{Parameters, is_machine};
+use crate::command::toyo::point::Points;
+use crate::command::toyo::program::table::Steps;
 use crate::command::toyo::program::{steps, text};
-use crate::command::toyo::stores::{Store, StoreTask};
+use crate::command::toyo::rows::Rows as TableRows;
 use crate::command::toyo::values::NOT_IN_MANUAL;
-use crate::command::toyo::{easy, files, numbers, palletizing, param, point, tasks};
-use crate::controller::toyo::bulk::{Setting, easy as easy_text, pallets, parameters, points};
+use crate::command::toyo::{files, numbers, tasks};
+use crate::controller::findings::Finding;
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::program::{MOST_STEPS, Program, Rows, Style, check_kept, listing, used};
 use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table::palletizing::RECORDS;
-use crate::controller::toyo::table::{Command, Group, Parameter};
-use crate::failure::{Failure, Kind};
-use crate::output::{Screen, escape};
+use crate::controller::toyo::table::{Command, Parameter};
+use crate::failure::Failure;
+use crate::output::Screen;
 
 /// A part as text.
 pub struct Text {
@@ -29,15 +32,6 @@ pub struct Text {
     pub text: String,
     /// What it does not hold.
     pub left_out: Vec<LeftOut>,
-}
-
-/// A part that is to be restored.
-pub enum Content {
-    Parameters(Vec<Setting>),
-    Points(Vec<Setting>),
-    Program(Program),
-    Palletizing(i32, Vec<pallets::Filled>),
-    Easy(Vec<easy_text::Filled>),
 }
 
 /// Asks type and version of the controller.
@@ -100,221 +94,107 @@ impl Controller {
     }
 }
 
-/// What reads a part first, for a dry run.
-pub fn first_read(part: Part) -> Result<Request, Failure> {
-    let request = match part {
-        Part::Parameters => {
-            let first = Parameter::named("M01").expect("the table has M01");
-            Request::read_parameter(first, None)
-        }
-        Part::Easy => return easy::read(1),
-        Part::Palletizing(number) => Request::read_pallet(number.into(), &RECORDS[0]),
-        Part::Points(_) => Request::read_parameter(points::table(), Some(1)),
-        Part::Program(_) => Request::read_step(1),
-    };
-    request.map_err(|error| wrong(&error))
+/// A table of rows.
+pub type Table = Box<dyn TablePart<Toyo>>;
+
+/// The table of a part, to read it; none for a program.
+fn table(part: Part, letters: Letters) -> Option<Table> {
+    // Columns by axis number, where letters would mean other axes to `point restore`.
+    let columns = if letters.are_usual() { Letters::USUAL } else { Letters::UNKNOWN };
+    Some(match part {
+        Part::Parameters => Box::new(store::Part::new(Parameters, Vec::new())),
+        Part::Easy => Box::new(store::Part::new(TableRows::<Numbered>::default(), Vec::new())),
+        Part::Palletizing(number) => Box::new(store::Part::new(Records::new(number.into(), columns), Vec::new())),
+        Part::Points(task) => Box::new(store::Part::new(Points::with_letters(task, columns), Vec::new())),
+        Part::Program(_) => return None,
+    })
 }
 
-/// Reads a part.
+/// Reads a part. A dry run notes the requests.
 pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text, Failure> {
-    match part {
-        Part::Parameters => parameters_text(link, screen).await,
-        Part::Easy => {
-            let requests = (1..=8).map(easy::read).collect::<Result<Vec<_>, _>>()?;
-            let answers = read_each(link, screen, "reading easy programs", &requests).await?;
-            let (records, left_out) = sorted((1..).map(|program: i32| program.to_string()), answers)?;
-            let values = |(key, record): (String, Record)| {
-                (key.parse().unwrap_or_default(), record.values().get(2..).unwrap_or_default().to_vec())
-            };
-            let text = easy_text::write(&records.into_iter().map(values).collect::<Vec<_>>());
-            Ok(Text { text: text + &remarks(&left_out), left_out })
-        }
-        Part::Palletizing(number) => {
-            let all: Vec<_> = RECORDS.iter().collect();
-            let requests = palletizing::reads(number.into(), &all)?;
-            let answers = read_each(link, screen, "reading records", &requests).await?;
-            let (records, left_out) = sorted(all.iter().map(|record| record.name.to_owned()), answers)?;
-            let named = |name: &str| all.iter().find(|record| record.name == name).copied();
-            let filled: Vec<_> = records.into_iter().filter_map(|(key, record)| Some((named(&key)?, record))).collect();
-            Ok(Text { text: pallets::write(&filled) + &remarks(&left_out), left_out })
-        }
-        Part::Points(task) => {
-            tasks::choose(link, Some(task)).await?;
-            let answers = point::read(link, screen, &(1..=999).collect::<Vec<_>>()).await;
-            let answers = tasks::done(link, answers).await?;
-            let (records, left_out) = sorted((1..=999).map(|point: i32| point.to_string()), answers)?;
-            let setting = |(_, record): &(String, Record)| Setting {
-                parameter: points::table(),
-                values: record.values().to_vec(),
-            };
-            let settings: Vec<Setting> = records.iter().map(setting).collect();
-            // As columns of letters the file would mean other axes to `point set`.
-            let is_usual = controller.letters().are_usual();
-            let text = if is_usual { points::write(&settings, point::AXES) } else { points::write_numbered(&settings) };
-            Ok(Text { text, left_out })
-        }
-        Part::Program(task) => {
-            tasks::choose(link, Some(task)).await?;
-            let room = controller.task_steps[usize::from(task) - 1];
-            let read = steps::read_all(link, screen, 1..=room).await?;
-            let text = listing(&read, Style { first: 1, is_whole: true, is_numbered: false }, &Rows::new()).text;
-            let foreign = (1..).zip(&read).filter(|(_, record)| !record.is_listed());
-            let left_out = foreign.map(|(step, record): (i32, _)| LeftOut {
-                key: step.to_string(),
-                why: format!(
-                    "'{}' is {NOT_IN_MANUAL}; the backup has its text, but a restore cannot write it",
-                    record.written()
-                ),
-            });
-            Ok(Text { text, left_out: left_out.collect() })
-        }
+    if let Some(mut table) = table(part, controller.letters()) {
+        let store::Text { text, left_out } = table.read(link, screen).await?;
+        return Ok(Text { text, left_out: left_out.into_iter().map(left_out_row).collect() });
     }
-}
-
-async fn parameters_text(link: &mut Link, screen: &Screen) -> Result<Text, Failure> {
-    let kept = param::DumpReport::read(link, screen).await?;
-    let text = kept.text();
-    let refused = kept.refused.into_iter().map(|key| LeftOut { key, why: "the controller refused it".to_owned() });
-    let unfit = kept.unfit.into_iter().map(|param::Unfit { key, value, why, .. }| LeftOut {
-        key,
-        why: format!("its value {value} cannot be written back: {why}"),
+    let Part::Program(task) = part else { unreachable!("all other parts are tables") };
+    tasks::choose(link, Some(task)).await?;
+    let room = controller.task_steps[usize::from(task) - 1];
+    let read = steps::read_all(link, screen, 1..=room).await?;
+    let text = listing(&read, Style { first: 1, is_whole: true, is_numbered: false }, &Rows::new()).text;
+    let foreign = (1..).zip(&read).filter(|(_, record)| !record.is_listed());
+    let left_out = foreign.map(|(step, record): (i32, _)| LeftOut {
+        key: step.to_string(),
+        why: format!(
+            "'{}' is {NOT_IN_MANUAL}; the backup has its text, but a restore cannot write it",
+            record.written()
+        ),
     });
-    let failed = kept.failed.into_iter().map(|param::Failed { key, error }| LeftOut { key, why: error.message });
-    Ok(Text { text, left_out: refused.chain(unfit).chain(failed).collect() })
+    Ok(Text { text, left_out: left_out.collect() })
 }
 
-/// A record by its key.
-type Keyed = (String, Record);
-
-/// What was answered, each by its key, as far as it can be written again; and what is left out. That the line fell silent
-/// is a failure of the whole part.
-fn sorted(keys: impl IntoIterator<Item = String>, answers: Answers) -> Result<(Vec<Keyed>, Vec<LeftOut>), Failure> {
-    let (mut kept, mut left_out) = (Vec::with_capacity(answers.len()), Vec::new());
-    for (key, answer) in keys.into_iter().zip(answers) {
-        match answer {
-            Ok(record) if record.is_listed() => kept.push((key, record)),
-            Ok(record) => left_out.push(LeftOut { key, why: format!("'{}' is {NOT_IN_MANUAL}", record.written()) }),
-            Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
-            Err(failure) => left_out.push(LeftOut { key, why: failure.message }),
-        }
-    }
-    Ok((kept, left_out))
+/// A row that is not in a file, for the manifest.
+pub fn left_out_row(store::LeftOut { name, why }: store::LeftOut) -> LeftOut {
+    LeftOut { key: name, why }
 }
 
-/// What is not in a TOML file, as comments of it.
-fn remarks(left_out: &[LeftOut]) -> String {
-    left_out.iter().map(|LeftOut { key, why }| format!("\n# {key} is missing: {}\n", escape::line(why))).collect()
+/// The content of the file of a part.
+#[derive(Debug)]
+pub enum Content {
+    /// Rows of a table.
+    Table(Table),
+    /// Parameters of the machine itself, and all others.
+    Parameters([store::Part<Parameters>; 2]),
+    /// Program of a task.
+    Program(u8, Program),
 }
 
 impl Content {
-    /// Reads and checks the file of a part.
-    pub fn load(part: Part, folder: &Path, screen: &Screen) -> Result<Self, Failure> {
+    /// Reads and checks the file of a part of a machine with these letters.
+    pub fn load(part: Part, folder: &Path, letters: Letters, screen: &Screen) -> Result<Self, Failure> {
         let path = folder.join(part.file());
         let (name, bytes) = (files::shown(&path), files::read(&path)?);
-        let settings = |read: Vec<(Setting, usize)>| read.into_iter().map(|(setting, _)| setting).collect();
-        let faulty = |errors: Vec<_>| files::faulty(&name, &errors);
+        let faulty = |errors: Vec<Finding>| files::faulty(&name, &errors);
         Ok(match part {
-            Part::Parameters => Self::Parameters(parameters::read(&bytes).map(settings).map_err(faulty)?),
-            Part::Points(_) => Self::Points(points::read(&bytes, point::AXES).map(settings).map_err(faulty)?),
-            Part::Program(_) => {
-                // What a backup has was on a controller: warnings are nothing new.
-                Self::Program(text::program(&name, check_kept(&bytes, MOST_STEPS), &screen.silenced())?)
+            Part::Parameters => {
+                let all = store::Part::parse(Parameters, &bytes).map_err(faulty)?;
+                Self::Parameters(all.split(Parameters, is_machine))
             }
-            Part::Palletizing(number) => Self::Palletizing(number.into(), pallets::read(&bytes).map_err(faulty)?),
-            Part::Easy => Self::Easy(easy_text::read(&bytes).map_err(faulty)?),
+            Part::Easy => {
+                let table = TableRows::<Numbered>::default();
+                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(faulty)?))
+            }
+            Part::Palletizing(number) => {
+                let table = Records::new(number.into(), letters);
+                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(faulty)?))
+            }
+            Part::Points(task) => {
+                let table = Points::with_letters(task, letters);
+                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(faulty)?))
+            }
+            Part::Program(task) => {
+                // The program of a backup was on a controller: warnings are nothing new.
+                Self::Program(task, text::program(&name, check_kept(&bytes, MOST_STEPS), &screen.silenced())?)
+            }
         })
     }
 
-    /// Its cells; those of a program fill the room that the task has.
-    pub fn stores(&self, room: u16) -> Result<Vec<Store>, Failure> {
-        match self {
-            Self::Parameters(settings) => {
-                settings.iter().filter(|setting| !is_machine(setting)).map(of_setting).collect()
-            }
-            Self::Points(settings) => settings
-                .iter()
-                .map(|setting| {
-                    let key = setting.row().unwrap_or_default().to_string();
-                    Ok(Store { key, ..of_setting(setting)? })
-                })
-                .collect(),
-            Self::Program(program) => {
-                let wanted = program.steps.iter().map(|step| step.record.clone());
-                let wanted = wanted.chain(std::iter::repeat_with(steps::nop));
-                (1..=room)
-                    .zip(wanted)
-                    .filter(|(_, record)| record.is_listed())
-                    .map(|(step, record)| stored(step.to_string(), steps::cell(step, &record)))
-                    .collect()
-            }
-            Self::Palletizing(number, records) => {
-                let store = |(record, values): &pallets::Filled| {
-                    stored(record.name.to_owned(), palletizing::cell(*number, record, values.clone()))
-                };
-                records.iter().map(store).collect()
-            }
-            Self::Easy(programs) => {
-                let cell = |(program, values): &easy_text::Filled| {
-                    stored(program.to_string(), easy::cell(*program, values.clone()))
-                };
-                programs.iter().map(cell).collect()
-            }
-        }
-    }
-
-    /// The cells of machine parameters (E) and special ones (U), the latter first.
-    pub fn machine_stores(&self) -> Result<Vec<Store>, Failure> {
-        let Self::Parameters(settings) = self else { return Ok(Vec::new()) };
-        let mut settings: Vec<&Setting> = settings.iter().filter(|setting| is_machine(setting)).collect();
-        settings.sort_by_key(|setting| setting.parameter.group() == Group::Machine);
-        settings.into_iter().map(of_setting).collect()
-    }
-
-    /// Steps that the manual does not list, which are never written: number and text.
-    pub fn unlisted_steps(&self) -> Vec<(u16, String)> {
-        let Self::Program(program) = self else { return Vec::new() };
-        let steps = (1..).zip(&program.steps).filter(|(_, step)| !step.record.is_listed());
-        steps.map(|(number, step)| (number, step.record.written())).collect()
-    }
-
-    /// The work in words.
-    pub fn work(&self) -> StoreTask {
-        let (doing, noun, things) = match self {
-            Self::Parameters(_) => ("storing parameters", "", ["a parameter", "parameters"]),
-            Self::Points(_) => ("storing points", "point", ["a point", "points"]),
-            Self::Program(_) => ("storing steps", "step", ["a step", "steps"]),
-            Self::Palletizing(..) => ("storing records", "", ["a record", "records"]),
-            Self::Easy(_) => ("storing easy programs", "program", ["a program", "programs"]),
-        };
-        StoreTask { doing, noun, things }
-    }
-
-    /// The steps that it needs room for: up to the last that is no NOP.
+    /// Steps that it needs: up to the last that is not a NOP.
     pub fn steps(&self) -> u16 {
-        let Self::Program(program) = self else { return 0 };
+        let Self::Program(_, program) = self else { return 0 };
         let records: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
         u16::try_from(used(&records)).unwrap_or(u16::MAX)
     }
-}
 
-/// Whether a parameter makes the controller another machine.
-fn is_machine(setting: &Setting) -> bool {
-    matches!(setting.parameter.group(), Group::Machine | Group::Special)
-}
-
-/// A parameter, or a row of a table, as something that is stored.
-fn of_setting(setting: &Setting) -> Result<Store, Failure> {
-    let wrong = |error| wrong(&error);
-    let cell = Cell {
-        read: setting.read().map_err(wrong)?,
-        write: setting.write().map_err(wrong)?,
-        wanted: setting.parameter.layout.record(setting.values.clone()).map_err(wrong)?,
-    };
-    let key = param::Key { parameter: setting.parameter, row: setting.row() };
-    let is_optional = !setting.parameter.only_on.is_empty();
-    Ok(Store { is_optional, ..Store::new(param::key_text(key), cell) })
-}
-
-fn stored(key: String, cell: Result<Cell, Failure>) -> Result<Store, Failure> {
-    Ok(Store::new(key, cell?))
+    /// Parameters of the machine itself, and the table of the part. A program becomes all steps of its task.
+    pub fn tables(self, room: u16) -> [Option<Table>; 2] {
+        match self {
+            Self::Table(table) => [None, Some(table)],
+            Self::Parameters([machine, rest]) => [Some(Box::new(machine)), Some(Box::new(rest))],
+            Self::Program(task, program) => {
+                let wanted = program.steps.into_iter().map(|step| step.record);
+                let rows = (1..=room).zip(wanted.chain(std::iter::repeat_with(steps::nop))).collect();
+                [None, Some(Box::new(store::Part::new(Steps::of_task(task), rows)))]
+            }
+        }
+    }
 }

@@ -70,7 +70,7 @@ mod tests {
         for (name, file) in [
             ("points-1", "points-2.csv"),
             ("points", "points-1.csv"),
-            ("palletizing-3", "palletizing-03.toml"),
+            ("palletizing-3", "palletizing-03.csv"),
             ("pictures", "pictures.csv"),
         ] {
             assert!(entry(name, file).is_err(), "{name}");

@@ -35,8 +35,7 @@ impl Part {
     /// Its file in the folder.
     pub fn file(self) -> String {
         let ending = match self {
-            Self::Parameters | Self::Easy | Self::Palletizing(_) => "toml",
-            Self::Points(_) => "csv",
+            Self::Parameters | Self::Easy | Self::Palletizing(_) | Self::Points(_) => "csv",
             Self::Program(_) => "txt",
         };
         format!("{self}.{ending}")
@@ -117,7 +116,7 @@ mod tests {
     fn parts_are_called_by_number_or_by_kind() {
         let part = |name: &str| name.parse::<Part>();
         assert_eq!((part("points-2"), part("palletizing-3")), (Ok(Part::Points(2)), Ok(Part::Palletizing(3))));
-        assert_eq!(part("point-2").unwrap_err(), "there is no part 'point-2'; did you mean points-2?");
+        assert_eq!(part("point-2").unwrap_err(), "unknown part 'point-2'; did you mean points-2?");
         assert_eq!(Part::Palletizing(3).names(), ["palletizing-03", "palletizing-3", "palletizing"]);
     }
 }

@@ -2,27 +2,30 @@
 
 use clap::Args;
 
-use super::content::{self, Content};
+use super::content::{self, Content, Table, left_out_row};
 use super::manifest::{Controller, Manifest};
 use super::parts::Part;
 use crate::command::backup::manifest;
-use crate::command::backup::manifest::{LeftOut, MANIFEST, Saved};
+use crate::command::backup::manifest::{MANIFEST, Saved};
 use crate::command::backup::options::RestoreOptions;
 use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Only, Restored, Restoring, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
+use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::local::own_folder;
+use crate::command::frame::orders::unwritten;
+use crate::command::frame::store::PartResult;
 use crate::command::robot::file::{FileItem, State};
 use crate::command::toyo::eeprom::{Cell, Cells};
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::{Link, wrong};
+use crate::command::toyo::numbers::small;
 use crate::command::toyo::program::steps;
-use crate::command::toyo::stores::{self, Store, StoreResult, StoreTask};
-use crate::command::toyo::values::NOT_IN_MANUAL;
-use crate::command::toyo::{param, tasks};
+use crate::command::toyo::tasks;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{self, Group, Parameter};
 use crate::failure::{Failure, Kind};
@@ -52,29 +55,27 @@ struct Asked {
     resume: Option<Part>,
 }
 
-/// A part with what is to be stored.
+/// A part to restore.
 struct Job {
     part: Part,
     saved: Saved,
-    content: Content,
+    /// Steps that a program needs.
+    steps: u16,
+    /// Its rows.
+    table: Table,
 }
 
-const MACHINE: StoreTask = StoreTask {
-    doing: "storing machine parameters",
-    noun: "",
-    things: ["a machine or special parameter", "machine and special parameters"],
-};
-const SPEED: StoreTask = StoreTask { doing: "storing the override", noun: "", things: ["the override", "overrides"] };
-/// Values that a question shows one by one; more are counted by parts.
+/// Everything to restore, in the order of the writes.
+struct Jobs {
+    /// Parameters of the machine itself, if they are wanted.
+    machine: Option<Table>,
+    parts: Vec<Job>,
+    /// Speed override, and the present one.
+    speed: Option<(Cell, Option<u8>)>,
+}
+
+/// Number of values that a question shows one by one; more are counted by parts.
 const SHOWN: usize = 10;
-
-/// A part of which is known what is there.
-struct Looked<'j> {
-    /// Its place among the jobs.
-    index: usize,
-    job: &'j Job,
-    stores: Vec<Store>,
-}
 
 impl Command for Restore {
     type Family = Toyo;
@@ -108,18 +109,19 @@ impl Asked {
             return Err(Failure::usage("--machine needs the parameters, which --only excludes")
                 .hint("remove --machine, or add `parameters` to --only"));
         }
-        let mut jobs = Vec::new();
+        let mut contents = Vec::new();
         for part in parts {
             if let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) {
                 copy.check(folder)?;
-                jobs.push(Job { part, saved: copy.clone(), content: Content::load(part, folder, screen)? });
+                let content = Content::load(part, folder, manifest.controller.letters(), screen)?;
+                contents.push((part, copy.clone(), content));
             }
         }
         if link.is_dry() {
-            self.plan_items(link, &manifest, &jobs)?;
-            return self.dry_run(link, screen, &manifest.controller, &jobs).await;
+            let jobs = self.jobs(&manifest.controller, contents, None)?;
+            return self.dry_run(link, screen, &manifest, jobs).await;
         }
-        let outcome = self.restore((link, screen, &authority), &manifest.controller, &jobs).await;
+        let outcome = self.restore((link, screen, &authority), &manifest.controller, contents).await;
         match outcome {
             // Nothing more is sent then but what puts things back at the end of the link.
             Ok(report) if report.is_interrupted() => Ok(report),
@@ -127,9 +129,32 @@ impl Asked {
         }
     }
 
-    /// Whether all of the backup is restored.
-    fn is_whole(&self) -> bool {
-        self.restoring.only == Only::default()
+    /// The tables of the parts. Programs fill the steps of their tasks, which a dry run does not know.
+    fn jobs(
+        &self,
+        backup: &Controller,
+        contents: Vec<(Part, Saved, Content)>,
+        found: Option<&Controller>,
+    ) -> Result<Jobs, Failure> {
+        let mut jobs = Jobs { machine: None, parts: Vec::new(), speed: None };
+        for (part, saved, content) in contents {
+            let steps = content.steps();
+            let room = match (part, found) {
+                (Part::Program(task), Some(found)) => found.task_steps[usize::from(task) - 1],
+                _ => steps,
+            };
+            let [machine, table] = content.tables(room);
+            if let Some(machine) = machine {
+                jobs.machine = Some(machine);
+            }
+            if let Some(table) = table {
+                jobs.parts.push(Job { part, saved, steps, table });
+            }
+        }
+        if self.restoring.only == Only::default() {
+            jobs.speed = speed(backup)?.map(|cell| (cell, None));
+        }
+        Ok(jobs)
     }
 
     /// The parts to restore, in the order of writing.
@@ -160,214 +185,217 @@ impl Asked {
         &self,
         (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
         backup: &Controller,
-        jobs: &[Job],
+        contents: Vec<(Part, Saved, Content)>,
     ) -> Result<Restored, Failure> {
         let found = content::controller(link).await?;
         if !self.restoring.force {
             identify(backup, &found, self.restoring.machine)?;
         }
+        let Jobs { mut machine, mut parts, mut speed } = self.jobs(backup, contents, Some(&found))?;
         let folder = &self.restoring.folder;
         let pending = |job: &Job| FileItem::values(job.part).of_copy(folder, &job.saved);
-        let mut results: Vec<FileItem> = jobs.iter().map(pending).collect();
-        let mut machine = self.machine_stores(jobs)?;
-        stores::look(link, screen, &mut machine).await?;
-        let changed: Vec<&Parameter> = machine.iter().filter(|store| store.differs()).filter_map(parameter).collect();
-        let needs_power_cycle = changed.iter().any(|parameter| parameter.group() == Group::Machine);
-        let (mut looked, mut speed) = (Vec::new(), Vec::new());
-        if !needs_power_cycle {
-            check_room(jobs, &found)?;
-            looked = look_at(link, screen, jobs, &found, &mut results).await?;
-            speed.extend(self::speed(backup)?.filter(|_| self.is_whole()));
-            stores::look(link, screen, &mut speed).await?;
+        let mut results: Vec<FileItem> = parts.iter().map(pending).collect();
+        machine.take_if(|_| !self.restoring.machine);
+        if let Some(machine) = &mut machine {
+            interruptible(machine.compare(link, screen)).await.and_then(|compared| compared).map_err(unwritten)?;
         }
-        let mut change = replacing(&machine, &looked, &speed);
+        let needs_power_cycle = machine.iter().any(changes_machine);
         if needs_power_cycle {
-            change = change.note(param::consequence_of(&changed));
-        }
-        authority.confirm(&change).await?;
-        steps::open(link).await?;
-        let stored = stores::store_all(link, screen, MACHINE, &machine).await;
-        if needs_power_cycle || stored.is_err() {
-            let parameters = jobs.iter().position(|job| job.part == Part::Parameters);
-            let needs_power_cycle = stored.is_ok();
-            if let Some(result) = parameters.and_then(|index| results.get_mut(index)) {
-                match stored {
-                    Ok(fates) => count(result, stores::sum(&fates)),
-                    Err(failure) => drop(result.fail(failure)),
-                }
+            speed = None;
+        } else {
+            check_room(&parts, &found)?;
+            compare_all(link, screen, &mut parts, &mut results).await?;
+            if let Some((cell, present)) = &mut speed {
+                *present = link.read_if_there(&cell.read).await.map_err(unwritten)?.map(|record| percent(&record));
             }
-            let mut restored = Restored::new(folder, results);
-            restored.needs_power_cycle = needs_power_cycle;
-            return Ok(restored);
         }
-        for Looked { index, job, stores } in &looked {
-            let outcome = store(link, screen, job, stores).await;
-            if !settle(&mut results[*index], outcome) {
+        let compared = || parts.iter().zip(&results).filter(|(_, result)| !needs_power_cycle && result.error.is_none());
+        authority.confirm(&replacing(machine.as_ref(), compared(), speed.as_ref())).await?;
+        let is_ready: Vec<bool> = parts.iter().zip(&results).map(|(_, result)| result.error.is_none()).collect();
+        steps::open(link).await?;
+        if let Some(machine) = &mut machine {
+            let written = interruptible(machine.write(link, screen)).await.and_then(|written| written);
+            let is_whole = written.as_ref().is_ok_and(|written| written.failure.is_none());
+            if needs_power_cycle || !is_whole {
+                if let Some(result) = results.iter_mut().find(|result| result.name == Part::Parameters.to_string()) {
+                    settle(result, written);
+                    // The other parameters were not written.
+                    if is_whole {
+                        (result.more.state, result.ok) = (State::NotTried, false);
+                    }
+                }
+                let mut restored = Restored::new(folder, results);
+                restored.needs_power_cycle = is_whole;
+                return Ok(restored);
+            }
+        }
+        for ((job, result), _) in parts.iter_mut().zip(&mut results).zip(is_ready).filter(|(_, is_ready)| *is_ready) {
+            if !settle(result, job.table.write(link, screen).await) {
                 break;
             }
         }
-        if !speed.is_empty() {
+        if let Some((cell, present)) = speed {
             let mut result = FileItem::values("override");
             if results.iter().all(|result| result.more.state != State::NotTried) {
-                settle(&mut result, store_all(link, screen, SPEED, &speed).await);
+                settle(&mut result, write_speed(link, screen, &cell, present).await);
             }
             results.push(result);
         }
         Ok(Restored::new(folder, results))
     }
 
-    /// Machine and special parameters, where they are wanted.
-    fn machine_stores(&self, jobs: &[Job]) -> Result<Vec<Store>, Failure> {
-        let stores = jobs.iter().filter(|_| self.restoring.machine).map(|job| job.content.machine_stores());
-        Ok(stores.collect::<Result<Vec<_>, _>>()?.concat())
-    }
-
-    /// What a dry run says of each part of the backup.
-    fn plan_items(&self, link: &mut Link, manifest: &Manifest, jobs: &[Job]) -> Result<(), Failure> {
-        const ON: &str = "the comparison: values that differ are written";
-        for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
-            let Some(job) = jobs.iter().find(|job| job.part.to_string() == entry.name) else {
-                link.plan_item(would_leave(&entry.name, NOT_CHOSEN));
-                continue;
-            };
-            let count = job.content.stores(job.content.steps())?.len() as u64;
-            link.plan_item(would_write(&entry.name, ("values", count), ON));
-            let machine = job.content.machine_stores()?.len() as u64;
-            if machine > 0 {
-                let name = format!("{}: machine and special", entry.name);
-                let written = || would_write(&name, ("values", machine), ON);
-                link.plan_item(if self.restoring.machine { written() } else { would_leave(&name, NOT_MACHINE) });
-            }
-        }
-        Ok(())
-    }
-
     async fn dry_run(
         &self,
         link: &mut Link,
         screen: &Screen,
-        backup: &Controller,
-        jobs: &[Job],
+        manifest: &Manifest,
+        jobs: Jobs,
     ) -> Result<Restored, Failure> {
+        const ON: &str = "the comparison: values that differ are written";
+        let Jobs { machine, mut parts, speed } = jobs;
+        for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
+            let Some(job) = parts.iter().find(|job| job.part.to_string() == entry.name) else {
+                link.plan_item(would_leave(&entry.name, NOT_CHOSEN));
+                continue;
+            };
+            link.plan_item(would_write(&entry.name, ("values", job.table.count() as u64), ON));
+            if let Some(machine) = machine.as_ref().filter(|table| job.part == Part::Parameters && table.count() > 0) {
+                let name = format!("{}: machine and special", entry.name);
+                let written = || would_write(&name, ("values", machine.count() as u64), ON);
+                link.plan_item(if self.restoring.machine { written() } else { would_leave(&name, NOT_MACHINE) });
+            }
+        }
         content::plan_controller(link);
-        let mut machine = self.machine_stores(jobs)?;
-        stores::look(link, screen, &mut machine).await?;
-        let mut looked = Vec::new();
-        for (index, job) in jobs.iter().enumerate() {
-            choose(link, job.part).await?;
-            let mut stores = job.content.stores(job.content.steps())?;
-            stores::look(link, screen, &mut stores).await?;
+        let mut machine = machine.filter(|_| self.restoring.machine);
+        if let Some(machine) = &mut machine {
+            machine.compare(link, screen).await?;
+        }
+        for job in &mut parts {
+            job.table.compare(link, screen).await?;
             if let Part::Program(_) = job.part {
-                let behind = steps::read_request(job.content.steps().saturating_add(1).min(5000));
+                let behind = steps::read_request(job.steps.saturating_add(1).min(5000));
                 link.plan(&behind, "and so on to the end of the task");
             }
-            looked.push(Looked { index, job, stores });
         }
-        let mut speed: Vec<Store> = speed(backup)?.filter(|_| self.is_whole()).into_iter().collect();
-        stores::look(link, screen, &mut speed).await?;
+        if let Some((cell, _)) = &speed {
+            link.plan(&cell.read, "the override");
+        }
         steps::plan_open(link).await?;
-        stores::store_all(link, screen, MACHINE, &machine).await?;
-        for Looked { job, stores, .. } in &looked {
-            choose(link, job.part).await?;
-            stores::store_all(link, screen, job.content.work(), stores).await?;
+        if let Some(machine) = &mut machine {
+            machine.write(link, screen).await?;
+        }
+        for job in &mut parts {
+            job.table.write(link, screen).await?;
             if let Part::Program(_) = job.part {
                 link.then(&format!("steps behind those of {} that are no NOP become one", job.part));
             }
         }
-        stores::store_all(link, screen, SPEED, &speed).await?;
+        if let Some((cell, _)) = &speed {
+            link.plan_overwriting(&cell.read, &cell.write.text()).await?;
+        }
         link.put_back().await?;
         Err(unknown())
     }
 }
 
-/// Makes the task of a part the current one, where it has one.
-async fn choose(link: &mut Link, part: Part) -> Result<(), Failure> {
-    if let Part::Points(task) | Part::Program(task) = part {
-        tasks::choose(link, Some(task)).await?;
-    }
-    Ok(())
+/// Whether a part changes the machine itself, so that the controller needs a restart.
+fn changes_machine(table: &Table) -> bool {
+    let parameter = |name: &String| Parameter::named(name).is_some_and(|found| found.group() == Group::Machine);
+    table.differing().iter().any(parameter)
 }
 
-/// What is there of all parts. One that cannot be read fails alone; nothing of it is written.
-async fn look_at<'j>(
+/// Compares all parts with the controller. A part that cannot be read fails alone; nothing of it is written.
+async fn compare_all(
     link: &mut Link,
     screen: &Screen,
-    jobs: &'j [Job],
-    found: &Controller,
+    jobs: &mut [Job],
     results: &mut [FileItem],
-) -> Result<Vec<Looked<'j>>, Failure> {
-    let (mut looked, mut read) = (Vec::new(), screen.parts_progress("parts read", jobs.len()));
-    for ((index, job), result) in jobs.iter().enumerate().zip(results) {
-        match look_at_one(link, screen, job, found).await {
-            Ok(stores) => looked.push(Looked { index, job, stores }),
-            Err(failure) if failure.kind == Kind::Interrupted => return Err(failure),
+) -> Result<(), Failure> {
+    let mut read = screen.parts_progress("parts read", jobs.len());
+    let mut lost = None;
+    for (job, result) in jobs.iter_mut().zip(results) {
+        if let Some(failure) = &lost {
+            result.fail(Failure::clone(failure));
+            continue;
+        }
+        match interruptible(job.table.compare(link, screen)).await.and_then(|compared| compared) {
+            Ok(()) => {}
+            Err(failure) if failure.kind == Kind::Interrupted => return Err(unwritten(failure)),
             Err(failure) => {
-                if !result.fail(failure) {
-                    looked.clear();
-                    break;
+                if !result.fail(failure.clone()) {
+                    lost = Some(failure);
                 }
             }
         }
         read.advance(1);
     }
-    Ok(looked)
+    Ok(())
 }
 
-async fn look_at_one(link: &mut Link, screen: &Screen, job: &Job, found: &Controller) -> Result<Vec<Store>, Failure> {
-    let Job { part, content, .. } = job;
-    choose(link, *part).await?;
-    let room = match part {
-        Part::Points(task) | Part::Program(task) => found.task_steps[usize::from(*task) - 1],
-        _ => 0,
-    };
-    for (step, text) in content.unlisted_steps() {
-        must_be_there(link, step, &text).await?;
+/// Change to confirm: a few values one by one, many by parts.
+fn replacing<'j>(
+    machine: Option<&Table>,
+    parts: impl Iterator<Item = (&'j Job, &'j FileItem)>,
+    speed: Option<&(Cell, Option<u8>)>,
+) -> Change {
+    let lost_of = |part: String, table: &Table| (part, table.nouns(), table.replaced());
+    let mut lost: Vec<(String, [&str; 2], Vec<[String; 3]>)> = Vec::new();
+    lost.extend(machine.map(|table| lost_of("machine".to_owned(), table)));
+    lost.extend(parts.map(|(job, _)| lost_of(job.part.to_string(), &job.table)));
+    if let Some((cell, Some(present))) = speed {
+        let new = percent(&cell.wanted);
+        if new != *present {
+            let row = ["override".to_owned(), format!("{present} %"), format!("{new} %")];
+            lost.push(("override".to_owned(), ["override", "overrides"], vec![row]));
+        }
     }
-    let stores = content.stores(room)?;
-    let mut stores: Vec<Store> = stores.into_iter().map(|store| store.by(found.letters())).collect();
-    stores::look(link, screen, &mut stores).await?;
-    Ok(stores)
-}
-
-/// What is replaced, for a person to confirm: a few values one by one, many by parts.
-fn replacing(machine: &[Store], looked: &[Looked<'_>], speed: &[Store]) -> Change {
-    let of = |part: String, work: StoreTask, stores: &[Store]| (part, work.things, stores::replaced(work, stores));
-    let mut parts = vec![of("machine".to_owned(), MACHINE, machine)];
-    parts.extend(looked.iter().map(|Looked { job, stores, .. }| of(job.part.to_string(), job.content.work(), stores)));
-    parts.push(of("override".to_owned(), SPEED, speed));
-    parts.retain(|(_, _, replaced)| !replaced.is_empty());
-    let total: usize = parts.iter().map(|(_, _, replaced)| replaced.len()).sum();
+    lost.retain(|(_, _, replaced)| !replaced.is_empty());
+    let total: usize = lost.iter().map(|(_, _, replaced)| replaced.len()).sum();
     let values = if total == 1 { "a value" } else { &format!("{total} values") };
     let change = match total {
         0 => return Change::nothing(),
         _ => Change::new(format!("overwrite {values} by the backup")),
     };
-    parts.iter().fold(change, |change, (part, [one, several], replaced)| {
+    let notes = machine.map(|table| table.consequences()).unwrap_or_default();
+    let change = notes.into_iter().fold(change, Change::note);
+    lost.iter().fold(change, |change, (part, [one, many], replaced)| {
         if total > SHOWN {
             let count = replaced.len();
-            let what = if count == 1 { (*one).to_owned() } else { format!("{count} {several}") };
-            return change.item(format!("{part}: {what}"));
+            return change.item(format!("{part}: {count} {}", if count == 1 { one } else { many }));
         }
         replaced.iter().fold(change, |change, [what, old, new]| change.replaces(&format!("{part}, {what}"), old, new))
     })
 }
 
-/// The parameter of a cell.
-fn parameter(store: &Store) -> Option<&'static Parameter> {
-    store.cell.read.parameter()
+/// Override in an answer or a request.
+fn percent(record: &Record) -> u8 {
+    small(record, "override")
 }
 
-/// The override that the backup has.
-fn speed(backup: &Controller) -> Result<Option<Store>, Failure> {
+/// The override of the backup.
+fn speed(backup: &Controller) -> Result<Option<Cell>, Failure> {
     let Some(percent) = backup.speed_override_percent else { return Ok(None) };
     let values = vec![Value::Number(percent.into())];
     let wanted = table::Command::Rovr.row().answers[0].record(values.clone());
-    let cell = Cell {
+    Ok(Some(Cell {
         read: Request::bare(table::Command::Rovr),
         write: Request::new(table::Command::Wovr, values).map_err(|error| wrong(&error))?,
         wanted: wanted.map_err(|error| wrong(&error))?,
-    };
-    Ok(Some(Store { is_optional: true, ..Store::new("override", cell) }))
+    }))
+}
+
+/// Writes the override if it differs.
+async fn write_speed(
+    link: &mut Link,
+    screen: &Screen,
+    cell: &Cell,
+    present: Option<u8>,
+) -> Result<PartResult, Failure> {
+    if present.is_none_or(|present| present == percent(&cell.wanted)) {
+        return Ok(PartResult { unchanged: usize::from(present.is_some()), ..PartResult::default() });
+    }
+    interruptible(link.overwrite(screen, cell, &mut Cells::default())).await.and_then(|written| written)?;
+    Ok(PartResult { written: 1, ..PartResult::default() })
 }
 
 /// Whether the controller is the machine that the backup is of: its robot type (SYSP), which task has which axes (E19), and
@@ -397,11 +425,11 @@ fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()
 
 /// Whether all programs fit the tasks; before anything is written.
 fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
-    for Job { part, content, .. } in jobs {
+    for Job { part, steps, .. } in jobs {
         let Part::Program(task) = part else { continue };
         let room = found.task_steps[usize::from(*task) - 1];
-        if content.steps() > room {
-            let message = format!("{part} needs {} steps, but task {task} has {room}", content.steps());
+        if *steps > room {
+            let message = format!("{part} needs {steps} steps, but task {task} has {room}");
             return Err(Failure::usage(message)
                 .hint("restore E22 (task-steps) with --machine, or exclude the part with --only"));
         }
@@ -409,61 +437,19 @@ fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Stores a part.
-async fn store(
-    link: &mut Link,
-    screen: &Screen,
-    job: &Job,
-    stores: &[Store],
-) -> Result<(Cells, Vec<LeftOut>), Failure> {
-    choose(link, job.part).await?;
-    store_all(link, screen, job.content.work(), stores).await
-}
-
-/// A step that the manual does not list is not written. Where something else is in its place, the program would be another
-/// one, and none of it is written.
-async fn must_be_there(link: &mut Link, step: u16, text: &str) -> Result<(), Failure> {
-    let found = link.ask(&steps::read_request(step)).await?.written();
-    if found == text {
-        return Ok(());
-    }
-    let message = format!(
-        "step {step} is '{text}' in the backup, which is {NOT_IN_MANUAL} and cannot be written; the controller has '{found}'"
-    );
-    Err(Failure::new(Kind::Rejected, message)
-        .hint("write the step with the teach pendant, then restore again; nothing of this program was written"))
-}
-
-/// Stores cells: how many were written, and which the controller does not have.
-async fn store_all(
-    link: &mut Link,
-    screen: &Screen,
-    work: StoreTask,
-    stores: &[Store],
-) -> Result<(Cells, Vec<LeftOut>), Failure> {
-    let fates = stores::store_all(link, screen, work, stores).await?;
-    let absent = stores.iter().zip(&fates).filter(|(_, fate)| **fate == StoreResult::NotThere);
-    let why = "missing on the controller";
-    let absent = absent.map(|(store, _)| LeftOut { key: store.key.clone(), why: why.to_owned() });
-    Ok((stores::sum(&fates), absent.collect()))
-}
-
-/// Writes down what became of a part, and says whether the next one can be tried.
-fn settle(result: &mut FileItem, outcome: Result<(Cells, Vec<LeftOut>), Failure>) -> bool {
-    match outcome {
-        Ok((cells, left_out)) => {
+/// Records the result of a part. Returns whether the next one can be tried.
+fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bool {
+    let PartResult { written, unchanged, left_out, failure } = match outcome {
+        Ok(outcome) => outcome,
+        Err(failure) => return result.fail(failure),
+    };
+    (result.more.written, result.more.unchanged) = (Some(written), Some(unchanged));
+    result.more.left_out = left_out.into_iter().map(left_out_row).collect();
+    match failure {
+        Some(failure) => result.fail(failure),
+        None => {
             result.succeed(State::Done);
-            count(result, cells);
-            result.more.left_out = left_out;
             true
         }
-        Err(failure) => result.fail(failure),
     }
-}
-
-/// Reports how many values were written and how many were equal.
-fn count(result: &mut FileItem, cells: Cells) {
-    let number = |cells: u32| usize::try_from(cells).unwrap_or(usize::MAX);
-    (result.more.written, result.more.unchanged) =
-        (Some(number(cells.cells_written)), Some(number(cells.cells_unchanged)));
 }

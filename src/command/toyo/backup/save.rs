@@ -17,7 +17,7 @@ use crate::command::toyo::tasks;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table;
+use crate::controller::toyo::table::{self, Parameter};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -113,7 +113,8 @@ async fn save(
 async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackedUp, Failure> {
     content::plan_controller(link);
     link.plan(&Request::bare(table::Command::Mtsk), "the current task");
-    link.plan(&content::first_read(Part::Parameters)?, "the first of the parameters");
+    let first = Parameter::named("M01").and_then(|first| Request::read_parameter(first, None).ok());
+    link.plan(&first.expect("the table has M01"), "the first of the parameters");
     if !current_task {
         tasks::choose(link, Some(1)).await?;
     }

@@ -14,7 +14,7 @@ use super::items::read_each;
 use super::link::{Link, Toyo, wrong};
 use super::numbers;
 use super::programs::{Copy, Kind, Select};
-use super::rows::{EepromRow, Listed, is_zero};
+use super::rows::{EepromRow, Listed, is_zero, unlisted};
 use super::values::{self, Shown};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
@@ -103,6 +103,13 @@ pub fn cell(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result
 pub struct Records {
     program: i32,
     letters: Letters,
+}
+
+impl Records {
+    /// Records of a program of a machine whose axes have these letters.
+    pub const fn new(program: i32, letters: Letters) -> Self {
+        Self { program, letters }
+    }
 }
 
 /// Program to use.
@@ -224,6 +231,10 @@ impl Store for Records {
 
     fn is_blank(&self, record: &Record) -> bool {
         is_zero(record, record.values().len())
+    }
+
+    fn unsaved(&self, _key: Key, record: Option<&Record>) -> Option<String> {
+        unlisted(record)
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {

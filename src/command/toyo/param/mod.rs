@@ -1,10 +1,7 @@
 //! `toyo param`: parameters.
 
-mod dump;
 mod machine;
-mod restore;
 
-pub use dump::{DumpReport, Failed, Unfit, key_text};
 pub use machine::{POWER_CYCLE, consequence_of};
 
 use std::hash::{Hash, Hasher};
@@ -13,16 +10,19 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::complete;
-use super::eeprom::Cell;
+use super::eeprom::{Cell, parameter_cell, parameter_sketch};
 use super::items::{Answers as Records, read_each_twice};
 use super::link::{Link, Toyo, wrong};
-use super::rows::{EepromRow, Listed};
-use super::stores::{parameter_cell, parameter_sketch};
+use super::numbers::Numbers;
+use super::rows::{EepromRow, Listed, unlisted};
 use super::values::{self, Shown};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::commands;
-use crate::command::frame::store::{Answers, Differing, Field, Get, Ids, List, Set, Single, Store, Words, ids};
+use crate::command::frame::store::{
+    Answers, Differing, Dump, Field, Get, Ids, List, Restore, Set, Single, Store, Words, ids,
+};
+use crate::command::frame::watch::Watch;
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{Layout, Record};
@@ -38,14 +38,16 @@ commands! {
     pub enum Param {
         /// Read parameters by name, id or group: soft-limit-plus P01 axis
         Get(Get<Parameters>),
-        /// Change a parameter: soft-limit-plus 100 200 0 0
-        Set(Set<Parameters>),
         /// Read all parameters, or a group of them
         List(List<Parameters>),
-        /// Save all parameters and tables as TOML
-        Dump(dump::Dump),
-        /// Write parameters from a file
-        Restore(restore::Restore),
+        /// Print each change
+        Watch(Watch<Get<Parameters>>),
+        /// Change a parameter: soft-limit-plus 100 200 0 0
+        Set(Set<Parameters>),
+        /// Save all parameters and tables to a CSV file
+        Dump(Dump<Parameters>),
+        /// Write parameters and tables from a CSV file
+        Restore(Restore<Parameters>),
     }
 }
 
@@ -97,18 +99,40 @@ pub struct About {
     listed: Listed,
 }
 
-/// Groups that include all parameters.
-const GROUPS: [Group; 4] = [Group::Mode, Group::Axis, Group::Machine, Group::Special];
+/// Groups, in the order of the writes: after a machine parameter, a controller can refuse all others.
+const GROUPS: [Group; 5] = [Group::Mode, Group::Axis, Group::Table, Group::Special, Group::Machine];
+
+/// The table of points, which `point` reads.
+const POINTS: &str = "T1";
+
+/// Rows of all tables except the points.
+fn rows() -> impl Iterator<Item = Key> {
+    let tables = PARAMETERS.iter().filter(|parameter| parameter.id != POINTS);
+    tables.filter_map(|table| Some((table, table.row()?))).flat_map(|(table, field)| {
+        Numbers::of(&[], field).into_iter().map(move |row| Key { parameter: table, row: Some(row) })
+    })
+}
+
+/// Whether a parameter describes the machine itself (E), or is not for normal use (U).
+pub fn is_machine(key: Key) -> bool {
+    matches!(key.parameter.group(), Group::Machine | Group::Special)
+}
 
 /// Parameters without rows.
 fn singles() -> impl Iterator<Item = &'static Parameter> {
     PARAMETERS.iter().filter(|parameter| parameter.row().is_none())
 }
 
-/// A parameter by name or id, or all parameters of a group.
+/// A parameter by name or id, a row of a table such as `T2.5`, or all of a group.
 fn parse(name: &str) -> Result<Vec<Key>, String> {
     if let Some(group) = GROUPS.iter().find(|group| group.name().eq_ignore_ascii_case(name)) {
+        if *group == Group::Table {
+            return Ok(rows().collect());
+        }
         return Ok(singles().filter(|parameter| parameter.group() == *group).map(Key::single).collect());
+    }
+    if let Some(row) = rows().find(|row| key_text(*row).eq_ignore_ascii_case(name)) {
+        return Ok(vec![row]);
     }
     match Parameter::named(name) {
         Some(parameter) if parameter.row().is_some() => {
@@ -122,6 +146,24 @@ fn parse(name: &str) -> Result<Vec<Key>, String> {
             Err(format!("unknown parameter{near}"))
         }
     }
+}
+
+/// `P01`, or a row as `T2.5`.
+pub fn key_text(Key { parameter, row }: Key) -> String {
+    match row {
+        Some(row) => format!("{}.{row}", parameter.id),
+        None => parameter.id.to_owned(),
+    }
+}
+
+/// Values of a parameter, without the number of a row.
+fn values_of(record: &Record) -> Vec<Shown> {
+    let table = PARAMETERS.iter().find(|parameter| parameter.row().is_some() && parameter.layout == record.layout());
+    let body = table.and_then(|table| {
+        let values = record.values()[table.key.fields.len()..].to_vec();
+        table.body().record(values).ok()
+    });
+    values::shown(body.as_ref().unwrap_or(record))
 }
 
 /// Command name for the rows of a table.
@@ -169,7 +211,7 @@ impl Store for Parameters {
     const WORDS: Words = Words {
         nouns: ["parameter", "parameters"],
         placeholder: "NAME",
-        range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, machine, special",
+        range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, table, machine, special",
         reading: Some(
             "`param list` shows the names of the parameters of this controller. In JSON, each value has its unit, \
              its protocol text and its meaning.",
@@ -193,6 +235,12 @@ impl Store for Parameters {
         singles().map(Key::single).collect()
     }
 
+    fn saved() -> Vec<Key> {
+        let mut keys: Vec<Key> = singles().map(Key::single).chain(rows()).collect();
+        keys.sort_by_key(|key| Self::rank(*key));
+        keys
+    }
+
     fn name(key: Key) -> String {
         if key.row.is_some() { key_text(key) } else { key.parameter.name.to_owned() }
     }
@@ -210,7 +258,7 @@ impl Store for Parameters {
     }
 
     fn texts(&self, record: &Record) -> Vec<String> {
-        vec![values::as_typed(&values::shown(record))]
+        vec![values::as_typed(&values_of(record))]
     }
 
     fn headings(&self) -> Vec<&'static str> {
@@ -218,7 +266,7 @@ impl Store for Parameters {
     }
 
     fn cells(&self, key: Key, record: &Record) -> Vec<view::Cell> {
-        let body = values::shown(record);
+        let body = values_of(record);
         vec![view::Cell::from(key.parameter.id).whole(), values::in_a_line(&body).into()]
     }
 
@@ -227,7 +275,7 @@ impl Store for Parameters {
     }
 
     fn value(&self, record: &Record) -> Option<Vec<Shown>> {
-        Some(values::shown(record))
+        Some(values_of(record))
     }
 
     fn more(&self, key: Key, record: Option<&Record>) -> About {
@@ -239,6 +287,17 @@ impl Store for Parameters {
         failure.kind == Kind::Refused
     }
 
+    fn unsaved(&self, key: Key, record: Option<&Record>) -> Option<String> {
+        let Some(record) = record else { return Some("the controller refused it".to_owned()) };
+        let values = &record.values()[key.parameter.key.fields.len()..];
+        let unwritable = || {
+            let error = self.cell(key, values.to_vec()).err()?;
+            let value = values::in_a_line(&values_of(record));
+            Some(format!("its value {value} cannot be written back: {}", error.message))
+        };
+        unlisted(Some(record)).or_else(unwritable)
+    }
+
     async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
         Ok(Answers::of(read(link, screen, keys).await?))
     }
@@ -246,6 +305,20 @@ impl Store for Parameters {
 
 impl EepromRow for Parameters {
     const IS_MIXED: bool = true;
+    const NOT_RESTORED: &'static str = "machine and special parameters are written if their group is typed, such as \
+                                        `param restore FILE machine special`";
+
+    fn is_restored(key: Key) -> bool {
+        !is_machine(key)
+    }
+
+    fn is_absent(key: Key) -> bool {
+        !key.parameter.only_on.is_empty()
+    }
+
+    fn rank(key: Key) -> usize {
+        GROUPS.iter().position(|group| *group == key.parameter.group()).unwrap_or_default()
+    }
 
     fn body(&self, key: Key) -> Layout {
         key.parameter.body()

@@ -10,13 +10,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::eeprom::Cell;
+use super::eeprom::{Cell, parameter_cell, parameter_sketch};
 use super::items::{Answers as Records, read_each};
 use super::link::{Link, Toyo, wrong};
 use super::numbers::{Numbers, named, number};
 use super::position::{Coordinates, heading};
-use super::rows::{EepromRow, Listed, is_zero, texts};
-use super::stores::{parameter_cell, parameter_sketch};
+use super::rows::{EepromRow, Listed, is_zero, texts, unlisted};
 use super::{complete, tasks, values};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
@@ -25,11 +24,11 @@ use crate::command::frame::teach::printed_position;
 use crate::command::robot::position::Position;
 use crate::controller::Risk;
 use crate::controller::names::Kind;
-use crate::controller::toyo::bulk::points::table;
 use crate::controller::toyo::field::{self, Value};
 use crate::controller::toyo::layout::{Layout, Record};
 use crate::controller::toyo::names as names_of;
 use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table::Parameter;
 use crate::failure::Failure;
 use crate::output::Screen;
 
@@ -54,6 +53,11 @@ impl Points {
     /// Table of a task, or of the current task.
     pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
         Ok(Self { letters: link.letters().await?, wanted: task, task: task.unwrap_or_default() })
+    }
+
+    /// Table of a task of a machine whose axes have these letters.
+    pub const fn with_letters(task: u8, letters: Letters) -> Self {
+        Self { letters, wanted: Some(task), task }
     }
 
     /// The letters of the axes.
@@ -82,6 +86,11 @@ pub struct OfTask {
     pub task: u8,
     #[serde(flatten)]
     listed: Listed,
+}
+
+/// The coordinate table, T1.
+pub fn table() -> &'static Parameter {
+    Parameter::named("T1").expect("the parameter table has the coordinate table")
 }
 
 /// Field of the point number, 1 to 999.
@@ -198,6 +207,10 @@ impl Store for Points {
 
     fn is_blank(&self, record: &Record) -> bool {
         is_zero(record, AXES)
+    }
+
+    fn unsaved(&self, _point: i32, record: Option<&Record>) -> Option<String> {
+        unlisted(record)
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Answers<Record>, Failure> {

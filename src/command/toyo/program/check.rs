@@ -7,12 +7,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::text::{self, Remark};
+use crate::command::frame::store::keys_of;
 use crate::command::toyo::files;
+use crate::command::toyo::point::Points;
 use crate::command::toyo::sim::{self, Stop};
 use crate::command::{OfflineCommand, Report};
 use crate::controller::findings::{Finding, Severity};
 use crate::controller::names::{Name, Names};
-use crate::controller::toyo::bulk::points;
 use crate::controller::toyo::errors;
 use crate::controller::toyo::program::{self, Checked, Known, MOST_STEPS};
 use crate::failure::{Failure, Kind};
@@ -58,10 +59,7 @@ impl OfflineCommand for Check {
     fn run(&self, _screen: &Screen) -> Result<Verdict, Failure> {
         let room = usize::from(self.room).min(MOST_STEPS);
         let names = Names::new(self.name.clone());
-        let points = self.points.as_ref().map(|path| {
-            let name = files::shown(path);
-            points::numbers(&files::read(path)?).map_err(|errors| files::faulty(&name, &errors))
-        });
+        let points = self.points.as_ref().map(|path| keys_of::<Points>(path, &files::read(path)?));
         let known = Known { points: points.transpose()?.map(|points| points.into_iter().collect()) };
         let verdict = |path: &PathBuf| {
             let (bytes, name) = (files::read(path)?, files::shown(path));

@@ -11,7 +11,6 @@ use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
-use crate::command::toyo::stores::{Replaced, overwriting};
 use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -138,9 +137,9 @@ impl Copy {
         }
         let lost = (self.at..).zip(wanted.iter().zip(&found));
         let lost = lost.filter(|(_, (wanted, found))| wanted != found && **found != steps::nop());
-        let lost: Vec<Replaced> =
+        let lost: Vec<[String; 3]> =
             lost.map(|(step, (wanted, found))| [format!("step {step}"), found.written(), wanted.written()]).collect();
-        authority.confirm(&overwriting(["a step", "steps"], &lost, &format!(" of task {target}"))).await?;
+        authority.confirm(&steps::overwriting(target, &lost)).await?;
         steps::open(link).await?;
         link.ask(&self.order(source, target)).await?;
         let found = steps::read_all(link, screen, self.at..=self.end()).await?;

@@ -13,6 +13,7 @@ mod put;
 mod search;
 mod show;
 pub mod steps;
+pub mod table;
 #[cfg(test)]
 mod tests;
 pub mod text;

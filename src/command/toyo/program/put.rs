@@ -22,7 +22,6 @@ use crate::command::robot::item::Plain;
 use crate::command::toyo::eeprom::{Cells, THERE};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
-use crate::command::toyo::stores::{Replaced, overwriting};
 use crate::command::toyo::{files, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -273,10 +272,10 @@ impl Put {
 /// Change to confirm.
 fn replacing(edits: &[Edit], task: u8) -> Change {
     let lost = edits.iter().filter(|edit| edit.found != steps::nop());
-    let lost: Vec<Replaced> = lost
+    let lost: Vec<[String; 3]> = lost
         .map(|Edit { step, instruction, found }| [format!("step {step}"), found.written(), instruction.written()])
         .collect();
-    overwriting(["a step", "steps"], &lost, &format!(" of task {task}"))
+    steps::overwriting(task, &lost)
 }
 
 /// Whether a step defines or uses a tag.

@@ -11,6 +11,7 @@ use crate::controller::toyo::request::{Answer, Request};
 use crate::controller::toyo::status::RunMode;
 use crate::controller::toyo::table::{Command, Op, Parameter};
 use crate::failure::{Failure, Kind};
+use crate::gate::Change;
 use crate::output::Screen;
 
 const READING: &str = "reading steps";
@@ -79,6 +80,16 @@ pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u1
 pub fn cell(step: u16, instruction: &Record) -> Result<Cell, Failure> {
     let write = Request::write_step(step.into(), instruction).map_err(|error| misuse(&error.into()))?;
     Ok(Cell { read: read_request(step), write, wanted: instruction.clone() })
+}
+
+/// Change to confirm: replaced steps with old and new text.
+pub fn overwriting(task: u8, replaced: &[[String; 3]]) -> Change {
+    let change = match replaced.len() {
+        0 => return Change::nothing(),
+        1 => Change::new(format!("overwrite a step of task {task}")),
+        many => Change::new(format!("overwrite {many} steps of task {task}")),
+    };
+    replaced.iter().fold(change, |change, [what, old, new]| change.replaces(what, old, new))
 }
 
 /// The instruction without effect.

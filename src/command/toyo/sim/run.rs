@@ -6,13 +6,16 @@ use std::time::Duration;
 use clap::Args;
 
 use super::trace::{End, Recorder, Source, Stop, Trace};
+use crate::client::toyo::Letters;
 use crate::command::OfflineCommand;
+use crate::command::frame::store::rows_of_file;
 use crate::command::toyo::files;
-use crate::command::toyo::point::AXES;
+use crate::command::toyo::param::{Parameters, key_text};
+use crate::command::toyo::point::Points;
 use crate::command::toyo::program::text;
-use crate::controller::findings::Finding;
+use crate::command::toyo::rows::EepromRow;
+use crate::command::toyo::values::Changes;
 use crate::controller::names::{Name, Names};
-use crate::controller::toyo::bulk::{self, Placed, Setting};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::program::{MOST_STEPS, Program, check_named};
 use crate::controller::toyo::simulator::{Simulator, Start, What};
@@ -36,7 +39,7 @@ pub struct Run {
     /// Points (CSV) from `point dump`, for another task than 1 with its number: 2=gate.csv (repeatable)
     #[arg(long, value_name = "[TASK=]FILE", value_parser = points_of)]
     points: Vec<(usize, PathBuf)>,
-    /// Parameters and tables (TOML) from `param dump`
+    /// Parameters and tables (CSV) from `param dump`
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
     /// Start state of the simulator (TOML), as for `armctl sim toyo`
@@ -188,7 +191,7 @@ impl Run {
         };
         let mut written = Vec::new();
         if let Some(path) = &self.params {
-            written.extend(writes(path, bulk::parameters::read(&files::read(path)?))?);
+            written.extend(writes(path)?);
         }
         // These writes precede the power-on, so that parameter 2 is active.
         let mut document: toml::Table = state.parse().map_err(|error| {
@@ -198,10 +201,10 @@ impl Run {
             list.extend(written.into_iter().map(toml::Value::String));
         }
         for (task, path) in &self.points {
-            let name = files::shown(path);
-            let read = bulk::points::read(&files::read(path)?, AXES).map_err(|errors| files::faulty(&name, &errors))?;
-            for (point, _) in read {
-                place(&mut document, *task, &point);
+            let points = Points::with_letters(1, Letters::USUAL);
+            for (point, changes) in rows_of_file(&points, path)? {
+                let values = whole(path, &format!("point {point}"), &changes)?;
+                place(&mut document, *task, point, &values);
             }
         }
         if let toml::Value::Table(steps) = document.entry("steps").or_insert_with(|| toml::Table::new().into()) {
@@ -265,27 +268,34 @@ impl Run {
     }
 }
 
-/// Commands that write the settings of a file, without `@`.
-fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<String>, Failure> {
-    let name = files::shown(path);
-    let settings = read.map_err(|errors| files::faulty(&name, &errors))?;
+/// Commands that write the parameters of a file.
+fn writes(path: &Path) -> Result<Vec<String>, Failure> {
     let mut start = Start::default();
-    let mut commands = Vec::with_capacity(settings.len());
-    for (setting, line) in settings {
-        let request = setting.write().map_err(|error| {
-            Failure::usage(format!("{name}:{line}: {error}")).hint("`toyo param dump` writes a valid file")
-        })?;
-        let command = request.text().trim_start_matches('@').to_owned();
-        start = start.with_written(&command).map_err(|why| {
-            Failure::usage(format!("{name}:{line}: {why}")).hint("`toyo param dump` writes a valid file")
-        })?;
+    let mut commands = Vec::new();
+    let mut rows = rows_of_file(&Parameters, path)?;
+    rows.sort_by_key(|(key, _)| Parameters::rank(*key));
+    for (key, changes) in rows {
+        let values = whole(path, &key_text(key), &changes)?;
+        let cell = Parameters.cell(key, values).map_err(|failure| in_file(path, &failure.message))?;
+        let command = cell.write.text().trim_start_matches('@').to_owned();
+        start = start.with_written(&command).map_err(|why| in_file(path, &why))?;
         commands.push(command);
     }
     Ok(commands)
 }
 
+/// All values of a row of a file.
+fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failure> {
+    changes.whole().ok_or_else(|| in_file(path, &format!("{row}: values are missing")))
+}
+
+/// A row of a file that cannot be used.
+fn in_file(path: &Path, why: &str) -> Failure {
+    Failure::usage(format!("{}: {why}", files::shown(path))).hint("`dump` writes a valid file")
+}
+
 /// Adds a point to a start state.
-fn place(state: &mut toml::Table, task: usize, point: &Setting) {
+fn place(state: &mut toml::Table, task: usize, point: i32, values: &[Value]) {
     fn table(within: &mut toml::Table, key: String) -> Option<&mut toml::Table> {
         within.entry(key).or_insert_with(|| toml::Table::new().into()).as_table_mut()
     }
@@ -293,10 +303,10 @@ fn place(state: &mut toml::Table, task: usize, point: &Setting) {
         let hundredths = if let Value::Number(hundredths) = value { *hundredths } else { 0 };
         toml::Value::Float(f64::from(hundredths) / 100.0)
     };
-    let coordinates = point.values.iter().skip(1).map(millimetres).collect();
+    let coordinates = values.iter().map(millimetres).collect();
     let rows = table(state, "points".to_owned()).and_then(|points| table(points, task.to_string()));
-    if let (Some(rows), Some(row)) = (rows, point.row()) {
-        rows.insert(row.to_string(), toml::Value::Array(coordinates));
+    if let Some(rows) = rows {
+        rows.insert(point.to_string(), toml::Value::Array(coordinates));
     }
 }
 

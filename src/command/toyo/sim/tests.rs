@@ -142,10 +142,10 @@ fn parameters_and_other_tasks_come_from_files() {
         ("b.txt", "OUT STN=0 PN2=1.......\nEND\n"),
         ("points.csv", POINTS),
         ("more.csv", "name,x_mm,y_mm,z_mm,r_mm\n1,1,2,3,4\n"),
-        ("params.toml", "[speed-table]\n5 = 10.0\n"),
+        ("params.csv", "name,value\nT2.5,10\n"),
     ]);
     let words_of = ["./a.txt", "--task", "2=./b.txt", "--points", "./points.csv", "--points", "2=./more.csv"];
-    let words_of = [&words_of[..], &["--params", "./params.toml"]].concat();
+    let words_of = [&words_of[..], &["--params", "./params.csv"]].concat();
     let data = desk.data(&[&words_of[..], &["--input", "at 1s 0/01/1 on"]].concat());
     assert_eq!(data["outputs"][0]["bits"], "10000000");
     assert!(data["elapsed_s"].as_f64().unwrap() > 10.0, "100 mm at 10 mm/s");
@@ -157,13 +157,13 @@ fn faulty_files_are_wrong_arguments() {
         ("a.txt", "EMD\n"),
         ("good.txt", "END\n"),
         ("points.csv", "name,x_mm\n1,0\n"),
-        ("params.toml", "[speed-table]\n5 = 0\n"),
+        ("params.csv", "name,value\nT2.5,0\n"),
         ("state.toml", "axes = 9\n"),
     ]);
     for (words, told) in [
         (&["./a.txt"][..], "a.txt:1:1: unknown instruction 'EMD'"),
-        (&["./good.txt", "--points", "./points.csv"], "points.csv:1:10: column y_mm is missing"),
-        (&["./good.txt", "--params", "./params.toml"], "params.toml:2:5: speed: 0.0 is out of range"),
+        (&["./good.txt", "--points", "./points.csv"], "points.csv: point 1: values are missing"),
+        (&["./good.txt", "--params", "./params.csv"], "params.csv:2:1: T2.5: speed: 0.0 is out of range"),
         (&["./good.txt", "--state", "./state.toml"], "state.toml: line 1: axes must be from 1 to 4"),
     ] {
         let failure = desk.failure(words);
