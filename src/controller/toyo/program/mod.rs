@@ -112,10 +112,10 @@ fn foreign(text: &[u8]) -> Option<(&'static str, &'static str)> {
     let cells = first.split(|byte| matches!(byte, b',' | b';' | b'\t')).count();
     let is_table = first.starts_with(b"name") || first.starts_with(b"\"name");
     if is_table && cells > 1 {
-        return Some(("this is a CSV file of points, not a program", "`toyo point restore FILE` writes points"));
-    }
-    if first.starts_with(b"[parameters]") || first.starts_with(b"# parameters of a toyo") {
-        return Some(("this is a file of parameters, not a program", "`toyo param restore FILE` writes parameters"));
+        return Some((
+            "this is a CSV table, not a program",
+            "`toyo point restore FILE` or `toyo param restore FILE` writes it",
+        ));
     }
     None
 }

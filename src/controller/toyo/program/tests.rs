@@ -379,7 +379,7 @@ fn a_file_of_something_else_is_told_in_one_sentence() {
     let points = format!("name,x_mm,y_mm,z_mm,r_mm\n{}", "1,2,3,4,5\n".repeat(50));
     assert_eq!(
         findings(points),
-        ["line 1, column 1: error: this is a CSV file of points, not a program (`toyo point restore FILE` writes \
+        ["line 1, column 1: error: this is a CSV table, not a program (`toyo point restore FILE` or \
              points)"]
     );
     assert_eq!(findings("\u{FEFF}\"Name\";\"x_mm\"\n").len(), 1);
