@@ -152,7 +152,7 @@ fn stands(controller: Controller) -> Vec<String> {
 
 /// Every way of ending a process that can be heard stops the axis, also that of keys that would suspend it.
 #[test]
-fn an_axis_is_not_left_jogging_whatever_ends_the_process() {
+fn every_signal_that_ends_the_process_stops_the_jog() {
     // A test that is run under nohup hears no SIGHUP.
     let ignored = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = ignored.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
@@ -182,7 +182,7 @@ fn an_axis_is_not_left_jogging_whatever_ends_the_process() {
 
 /// Ctrl-C in every phase: before an answer came, and while a look is not answered.
 #[test]
-fn a_jog_is_stopped_when_ctrl_c_meets_a_silence() {
+fn ctrl_c_during_a_missing_answer_stops_the_jog() {
     for silent in [GO, "@STAS SNO=0", "@MPST"] {
         let (mut goes, mut was_silent) = (false, false);
         let mut controller = Controller::new(move |block| {
@@ -208,7 +208,7 @@ fn a_jog_is_stopped_when_ctrl_c_meets_a_silence() {
 }
 
 #[test]
-fn a_reader_that_went_away_does_not_keep_the_stop_from_going_out() {
+fn a_closed_output_pipe_does_not_prevent_the_stop() {
     let controller = Controller::new(|_| Peculiar::No);
     let mut child = controller.command("jog X + low --for 200ms").spawn().unwrap();
     drop(child.stdout.take());
@@ -218,7 +218,7 @@ fn a_reader_that_went_away_does_not_keep_the_stop_from_going_out() {
 }
 
 #[test]
-fn a_line_that_is_cut_while_an_axis_moves_says_what_to_do() {
+fn a_lost_line_during_a_jog_has_a_hint_to_press_the_emergency_stop() {
     let mut goes = false;
     let controller = Controller::new(move |block| {
         let cut = goes;
@@ -257,7 +257,7 @@ fn ctrl_c_stops_what_runs() {
 }
 
 #[test]
-fn what_is_to_be_left_is_left() {
+fn on_interrupt_leave_does_not_stop_the_program() {
     let mut controller = Controller::new(|_| Peculiar::No);
     let child = controller.command("run sequential 1 --wait --on-interrupt leave").spawn().unwrap();
     controller.wait_for("@SPST 0001", 1);
@@ -272,7 +272,7 @@ fn what_is_to_be_left_is_left() {
 
 /// An order whose answer is lost leaves once, and the outcome is told as unknown.
 #[test]
-fn no_order_leaves_twice() {
+fn an_unanswered_order_is_sent_once() {
     for (words, order) in [
         ("home", "@HOME"),
         ("home --sync 1", "@SORG 1"),
@@ -330,7 +330,7 @@ fn toyo(url: &str, state: &std::path::Path, words: &str) -> Command {
 }
 
 #[test]
-fn what_a_killed_command_has_left_is_told_until_it_is_undone() {
+fn changes_of_a_killed_command_are_reported_until_they_are_undone() {
     let state = tempfile::tempdir().unwrap();
     let (tell, moves) = channel();
     let url = lasting(move |block| {
@@ -365,7 +365,7 @@ fn another_client(url: &str, block: &str) {
 }
 
 #[test]
-fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
+fn a_host_switched_on_by_another_client_is_reported() {
     let state = tempfile::tempdir().unwrap();
     let url = lasting(|_| Peculiar::No);
     let said = |words: &str| {
@@ -401,7 +401,7 @@ fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
 }
 
 #[test]
-fn a_task_that_somebody_else_chose_is_told() {
+fn a_task_selected_by_another_client_is_reported() {
     let state = tempfile::tempdir().unwrap();
     let url = lasting(|_| Peculiar::No);
     let said = |words: &str| errors(&toyo(&url, state.path(), words).output().unwrap());
@@ -419,7 +419,7 @@ fn a_task_that_somebody_else_chose_is_told() {
 }
 
 #[test]
-fn a_watch_goes_on_when_the_line_is_back() {
+fn a_watch_continues_after_a_reconnect() {
     let state = tempfile::tempdir().unwrap();
     let mut places = 0;
     let url = lasting(move |block| {
@@ -444,7 +444,7 @@ fn a_watch_goes_on_when_the_line_is_back() {
 
 /// A serial port has one host: who has it is named, with how to end it.
 #[test]
-fn who_uses_a_serial_port_is_named() {
+fn a_busy_serial_port_names_the_process_that_uses_it() {
     let folder = tempfile::tempdir().unwrap();
     let simulator = Simulator::start_with("toyo", &["--pty"]);
     let mut home = toyo(&simulator.url, folder.path(), "home --no-session -vv").spawn().unwrap();

@@ -155,7 +155,7 @@ impl Client {
         self.host = Host::Unknown;
         let fenced = self.fence_at_end().await;
         let answer = match self.transact(&Request::bare(Command::Hsof), false).await {
-            // The status tells what became of it.
+            // The status shows whether the order was executed.
             Err(Error::OutcomeUnknown(_)) if matches!(self.is_host_on().await, Ok(false)) => Ok(Answer::Done),
             answer => answer,
         };
@@ -164,7 +164,7 @@ impl Client {
         fenced
     }
 
-    /// Whether the host is ON after an order of this client to switch it. The watcher is not told of another host.
+    /// Whether the host is ON after an order of this client to switch it. The watcher gets no event of a foreign host.
     async fn is_host_on(&mut self) -> Result<bool, Error> {
         let before = std::mem::replace(&mut self.host, Host::Taken);
         let status = self.status_of(&[HOST_PAGE]).await;

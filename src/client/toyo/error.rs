@@ -179,7 +179,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_are_a_sentence() {
+    fn each_error_has_a_readable_message() {
         let counters = Counters { sent: 4, ..Counters::default() };
         let request = Some(Request::bare(Command::Mpst));
         let silence = Unanswered { request, waited: Duration::from_secs(1), counters, unfitting: None };

@@ -280,8 +280,8 @@ impl Client {
         }
     }
 
-    /// Confirms that the last order received its own answer: sends a harmless read, unless one was answered since. The
-    /// controller answers in order, so every answer to the order arrives before the answer to the read.
+    /// Confirms that the last order received its own answer: sends a harmless read, unless one was answered since.
+    /// Answers arrive in the order of the requests, so the answers to the order arrive before the answer to the read.
     ///
     /// # Errors
     /// [`Error::OutcomeUnknown`] if the order received two contradictory answers.

@@ -47,8 +47,8 @@ struct Attempt {
 
 impl Client {
     /// Stops the motion and returns the final position, as [`Client::place`] does. The order is repeated until the
-    /// robot stands still, regardless of grant and options. Repeating a stop is harmless; a lost stop lets the robot
-    /// move on.
+    /// robot stands still, regardless of grant and options. Repeating a stop is harmless. After a lost stop the robot
+    /// continues to move.
     ///
     /// # Errors
     /// [`Error::StandUnseen`] if no answer confirms it, [`Error::MovesOn`] if the robot still moves.

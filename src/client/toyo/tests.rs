@@ -19,7 +19,7 @@ fn counter(number: i32, value: i32) -> Request {
 }
 
 #[test]
-fn clients_can_be_sent_to_other_threads() {
+fn client_and_its_futures_are_send() {
     fn send(_: impl Send) {}
     let mut client = Client::dry_run(Options::default());
     send(client.status());
@@ -28,7 +28,7 @@ fn clients_can_be_sent_to_other_threads() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn nothing_leaves_that_was_not_granted_but_a_stop() {
+async fn only_a_stop_is_sent_without_a_grant() {
     let mut client = connected(Risk::Read, "", None).await;
     let denied = client.ask(&Request::bare(Command::Home)).await.unwrap_err();
     assert!(matches!(&denied, Error::NotAuthorized(denied) if denied.risk == Risk::Write), "{denied}: the host first");
@@ -42,7 +42,7 @@ async fn nothing_leaves_that_was_not_granted_but_a_stop() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_refusal_is_an_answer_or_an_error() {
+async fn try_ask_returns_a_refusal_and_ask_fails_with_it() {
     let mut client = connected(Risk::Motion, "host = true\nservo = false\n", None).await;
     let home = Request::bare(Command::Home);
     assert_eq!(client.try_ask(&home).await.unwrap(), Err(Refusal(home.clone())));
@@ -54,7 +54,7 @@ async fn a_refusal_is_an_answer_or_an_error() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn silence_after_an_order_is_not_silence_after_a_question() {
+async fn silence_after_an_order_leaves_its_outcome_unknown() {
     let mut client = connected(Risk::Motion, "", Some("drop=100%")).await;
     let silent = client.place().await.unwrap_err();
     assert!(matches!(&silent, Error::NoAnswer(silent) if silent.counters.sent == 4), "{silent}");
@@ -68,7 +68,7 @@ async fn silence_after_an_order_is_not_silence_after_a_question() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_dry_run_notes_orders_and_knows_no_answers() {
+async fn a_dry_run_plans_orders_and_has_no_answers() {
     let mut client = Client::dry_run(Options::default().with_risk(Risk::Motion));
     client.ask(&counter(1, 2)).await.unwrap();
     assert!(matches!(client.status_of(&[3]).await, Err(Error::DryRun)));
@@ -93,7 +93,7 @@ impl Watcher<Event> for Keeper {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_watcher_is_told_what_is_changed_before_it_is_and_the_end_puts_it_back() {
+async fn a_watcher_gets_each_change_before_it_is_sent_and_close_undoes_it() {
     let mut client = connected(Risk::Write, "", None).await;
     let told = Arc::<Mutex<(String, Vec<Event>)>>::default();
     client.watch(Keeper(Arc::clone(&told)));
@@ -116,7 +116,7 @@ async fn a_watcher_is_told_what_is_changed_before_it_is_and_the_end_puts_it_back
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_jog_is_seen_to_move_and_to_stand() {
+async fn a_jog_moves_until_stop_and_stop_returns_the_final_position() {
     let mut client = connected(Risk::Motion, "", None).await;
     let before = client.place().await.unwrap();
     client.ask(&jog("RS", None)).await.unwrap();

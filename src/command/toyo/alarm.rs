@@ -248,7 +248,7 @@ impl Command for Point {
 /// Point of the alarm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PointReport {
-    /// Text of the controller; null if there is none.
+    /// Text of the controller; null without a text.
     point: Option<String>,
 }
 
@@ -264,7 +264,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault, blocks, objection};
 
     #[test]
-    fn what_is_asked() {
+    fn each_alarm_command_sends_its_blocks() {
         assert_eq!(blocks(&["alarm", "list"]).unwrap(), ["@STAS SNO=0", "@STAS SNO=1"]);
         assert_eq!(blocks(&["alarm", "reset"]).unwrap(), ["@CERR", "@STAS SNO=0"]);
         assert_eq!(blocks(&["alarm", "point"]).unwrap(), ["@MERP"]);
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_is_shown_and_cancelled() {
+    fn alarm_list_shows_an_error_and_alarm_reset_cancels_it() {
         let (mut bench, _) = Bench::with_faults("error = \"28\"\n", |_, _| Fault::None);
         let data = bench.data(&["error", "show"]);
         let error = &data["alarms"][0];
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_that_stays_is_a_failure() {
+    fn alarm_reset_fails_if_the_error_stays() {
         let stays = |block: &str, _| if block == "@CERR" { Fault::Answered("@OK") } else { Fault::None };
         let (data, failure) = Bench::with_faults("error = \"24\"\n", stays).0.run(&["alarm", "reset"]).unwrap();
         assert_eq!(data["alarms"][0]["code"], "24");
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn the_history_ends_where_it_is_empty() {
+    fn the_history_ends_at_its_first_empty_entry() {
         let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
         let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["alarm", "history"]);
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn a_controller_without_history_says_so() {
+    fn a_controller_without_history_has_a_clear_error() {
         let failure =
             Bench::with_faults("model = \"other\"\n", |_, _| Fault::None).0.run(&["alarm", "history"]).unwrap_err();
         assert_eq!(failure.kind, failure::Kind::Refused);

@@ -122,7 +122,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn a_transfer_is_one_order_and_looks() {
+    fn a_transfer_sends_one_order_and_status_reads() {
         assert_eq!(
             all_blocks(&["card", "write"]).unwrap(),
             [
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_transfer_is_waited_for() {
+    fn card_write_waits_for_the_end_of_the_transfer() {
         let (mut bench, _) = Bench::with_faults("card = \"empty\"\n", |_, _| Fault::None);
         let failure = bench.run(&["card", "read"]).unwrap_err();
         assert!(failure.hint.unwrap().contains("nothing on the card"));
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_card_that_is_absent_or_taken_out_is_told() {
+    fn an_absent_or_removed_card_is_an_error() {
         let failure = Bench::with_faults("", |_, _| Fault::None).0.run(&["card", "write"]).unwrap_err();
         assert_eq!(failure.message, "the controller refused WMCA (@NG): there is no memory card");
         let state = "card = \"written\"\n[[event]]\nat_ms = 1000\ndo = \"card out\"\n";

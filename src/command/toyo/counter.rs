@@ -248,7 +248,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn counters_have_their_blocks() {
+    fn counter_commands_send_their_blocks() {
         assert_eq!(
             all_blocks(&["counter", "get", "1", "98-99"]).unwrap(),
             ["@MCNT CN=01", "@MCNT CN=98", "@MCNT CN=99"]
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_counter_that_was_set_is_read_back() {
+    fn a_set_counter_is_read_back() {
         let mut bench = Bench::new("sim:");
         assert_eq!(bench.data(&["counter", "set", "5", "7"])["items"][0]["value"], 7);
         let other =
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_replaced_is_told() {
+    fn counter_set_reports_old_and_new_value() {
         let mut bench = Bench::new("sim:");
         bench.data(&["counter", "set", "5", "7"]);
         let set = bench.data(&["counter", "set", "5", "8"])["items"][0].clone();
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stale_ok_is_not_taken_for_that_of_an_order() {
+    fn a_late_ok_does_not_confirm_the_next_order() {
         // The client gave up the previous command, and its @OK arrives later.
         let late = |block: &str, _| match block {
             "@MCST CN05=0007" => Fault::Late(std::time::Duration::from_millis(3010)),
@@ -308,14 +308,14 @@ mod tests {
     }
 
     #[test]
-    fn ranges_are_checked() {
+    fn numbers_and_values_out_of_range_are_rejected() {
         assert!(objection(&["counter", "get", "0"]).contains("1 to 99"));
         assert!(blocks(&["counter", "set", "1", "10000"]).unwrap_err().message.contains("0 to 9999"));
         assert!(objection(&["counter", "set", "1"]).contains("VALUE"));
     }
 
     #[test]
-    fn timers_have_their_blocks() {
+    fn timer_commands_send_their_blocks() {
         assert_eq!(all_blocks(&["timer", "get", "9"]).unwrap(), ["@MTMR TN=9"]);
         let all: Vec<String> = (1..=9).map(|timer| format!("@MTMR TN={timer}")).collect();
         assert_eq!(all_blocks(&["timer", "get"]).unwrap(), all);

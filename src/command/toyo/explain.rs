@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_code_is_two_digits_and_an_instruction_a_word() {
+    fn explain_accepts_a_code_or_an_instruction() {
         for (text, code) in [("28", 0x28), ("0xa1", 0xA1), ("5", 5)] {
             assert_eq!(subject(text), Ok(Subject::Code(code)));
         }

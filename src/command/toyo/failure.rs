@@ -115,7 +115,7 @@ fn broken(label: &str, is_shared: bool, error: &io::Error) -> Failure {
         _ => format!("the connection failed: {}", plain(error)),
     };
     Failure::new(Kind::NoAnswer, format!("{label}: {what}")).hint(if is_shared {
-        "`armctl session list` shows its state"
+        "`armctl session list` shows the state of the session"
     } else {
         "`toyo ports` lists the serial ports"
     })

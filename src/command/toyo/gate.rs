@@ -121,7 +121,7 @@ fn risk(block: &str) -> Risk {
 }
 
 #[test]
-fn every_command_is_here() {
+fn the_table_has_every_command() {
     let here: BTreeSet<&str> = {
         let (_, _, folder) = prepared("");
         let id = |line: &str| {
@@ -138,7 +138,7 @@ fn every_command_is_here() {
 }
 
 #[test]
-fn nothing_is_changed_that_was_not_confirmed() {
+fn without_confirmation_no_command_changes_anything() {
     let mut wrong = Vec::new();
     for (line, risk_of_it) in LINES {
         let (mut bench, heard, folder) = prepared(line);
@@ -176,7 +176,7 @@ fn nothing_is_changed_that_was_not_confirmed() {
 }
 
 #[test]
-fn a_dry_run_is_what_is_sent() {
+fn a_dry_run_shows_the_blocks_that_are_sent() {
     let mut wrong = Vec::new();
     for (line, risk_of_it) in LINES {
         let (mut bench, heard, folder) = prepared(line);
@@ -191,7 +191,7 @@ fn a_dry_run_is_what_is_sent() {
         };
         let planned = all_frames(&report);
         if !planned.iter().any(|frame| risk(&text(frame)) == *risk_of_it) {
-            wrong.push(format!("{line}: no frame of its own risk in {planned:?}"));
+            wrong.push(format!("{line}: no frame has the risk of the command: {planned:?}"));
         }
         // The simulator refuses some commands; the blocks sent up to then count.
         let is_whole = bench.run(&words).is_ok_and(|(_, failure)| failure.is_none());
@@ -263,7 +263,7 @@ fn fits(planned: &str, sent: &str) -> bool {
 }
 
 #[test]
-fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
+fn a_confirmation_shows_old_and_new_and_empty_cells_need_none() {
     let (mut bench, heard, _folder) = prepared("");
     let mut refused = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();

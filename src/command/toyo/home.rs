@@ -118,7 +118,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn a_dry_run_shows_the_order_and_what_is_asked_meanwhile() {
+    fn a_dry_run_shows_the_order_and_the_status_reads() {
         assert_eq!(
             all_blocks(&["home"]).unwrap(),
             [
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_axes_are_at_their_origin_when_it_is_told() {
+    fn home_ends_with_all_axes_at_their_origin() {
         let (mut bench, heard) = Bench::with_faults("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fault::None);
         let data = bench.data(&["home"]);
         assert!(data["elapsed_ms"].as_u64().unwrap() > 1000, "{data}");
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_return_that_is_stopped_is_a_failure() {
+    fn a_stopped_return_to_origin_fails() {
         let state = "position = [300.0, 0.0, 0.0, 0.0]\n[[event]]\nat_ms = 1000\ndo = \"stop\"\n";
         let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["home"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_waits_who_does_not_want_to() {
+    fn no_wait_ends_while_the_axes_move() {
         let (mut bench, _) = Bench::with_faults("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fault::None);
         assert_eq!(bench.data(&["home", "--no-wait"])["position"], serde_json::Value::Null);
         assert_eq!(bench.data(&["status"])["homing"], true);

@@ -151,13 +151,13 @@ mod tests {
     use crate::controller::toyo::request::Answer;
 
     #[test]
-    fn all_that_tells_is_asked() {
+    fn info_reads_all_identification() {
         let versions = ["@CVER NO=0", "@CVER NO=1", "@CVER NO=2", "@CVER NO=3", "@CVER NO=4"];
         assert_eq!(all_blocks(&["info"]).unwrap(), [&["@SYSP"][..], &versions, &["@MTSK", "@ROVR"]].concat());
     }
 
     #[test]
-    fn a_controller_in_words() {
+    fn the_report_describes_the_controller_as_text() {
         let Ok(Answer::Data(record)) =
             Request::bare(table::Command::Sysp).answer("@SYSP RTYP=000123 VER=03.36 E ARM1=X ARM2=Y ARM3=Z ARM4=R N")
         else {

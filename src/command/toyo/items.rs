@@ -44,7 +44,7 @@ pub type Key = BTreeMap<&'static str, i32>;
 pub type Answers = Vec<Result<Record, Failure>>;
 
 impl<T> Item<T> {
-    /// Item for an answer whose value shows itself whether the manual lists it.
+    /// Item for an answer. The value has the key `in_manual`.
     pub fn kept(name: &'static str, number: i32, answer: Result<T, Failure>) -> Self {
         match answer {
             Ok(value) => Self::Answered { ok: true, value },
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn one_refusal_hides_nothing_and_names_its_block() {
+    fn one_refusal_does_not_hide_other_answers_and_names_its_block() {
         for (words, name, block) in [
             (["counter", "get", "1-3"], "CN02", "MCNT CN=02"),
             (["timer", "get", "1-3"], "TN2", "MTMR TN=2"),
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_silent_is_not_asked_for_ever() {
+    fn after_a_lost_answer_no_more_items_are_read() {
         let (data, failure) = with_faults("@MCNT CN=02", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap();
         let kinds: Vec<_> =
             data["items"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_manual_does_not_list_is_kept_as_it_came() {
+    fn values_outside_the_manual_are_shown_unchanged() {
         for (block, answer, raw) in [
             ("@RPAR M18", "@RPAR M18 STN=01 BRT=156K", "M18 STN=01 BRT=156K"),
             ("@RPAR P06", "@RPAR P06 AX1=+0000.50 AX2=+0000.5 AX3=+0001.234 AX4=+0000.00", "+0000.5"),

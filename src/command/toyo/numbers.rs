@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_and_numbers() {
+    fn numbers_and_ranges_are_parsed_without_repetition() {
         let parse = |text| Numbers::parse(field(), text);
         let given = [parse("7").unwrap(), parse("2-4").unwrap(), parse("3..5").unwrap()];
         assert_eq!(Numbers::of(&given, field()), [7, 2, 3, 4, 5]);

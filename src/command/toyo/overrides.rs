@@ -115,7 +115,7 @@ mod tests {
     use crate::command::toyo::testing::{all_blocks, blocks, objection};
 
     #[test]
-    fn the_override_is_compared_before_it_is_written() {
+    fn an_equal_override_is_not_written() {
         assert_eq!(all_blocks(&["override", "get"]).unwrap(), ["@ROVR"]);
         assert_eq!(blocks(&["override", "set", "5%"]).unwrap(), ["@ROVR", "@WOVR OV=005", "@ROVR"]);
         assert_eq!(
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn the_range_is_checked() {
+    fn an_override_out_of_range_is_rejected() {
         for percent in ["0", "101", "x", "50.5"] {
             assert!(objection(&["override", "set", percent]).contains("1 to 100 %"), "{percent}");
         }

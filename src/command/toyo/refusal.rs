@@ -8,7 +8,7 @@ use crate::controller::toyo::status::{ProgramKind, RunMode, Status};
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::failure::{Failure, Kind};
 
-/// Failure with the reason of a refusal, as far as the status shows it.
+/// Failure with the reason of a refusal, if the status contains one.
 pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     let row = request.row();
     if row.risk == Risk::Read {
@@ -160,7 +160,7 @@ pub fn verification_hint(command: Command) -> &'static str {
         Command::Spst | Command::Ppst | Command::Sesy | Command::Extp | Command::Mrss => {
             "keep clear; `toyo status` and `toyo position` show motion and position"
         }
-        Command::Jgst => "keep clear; `toyo stop --jog` stops the axis, `toyo position` shows where it is",
+        Command::Jgst => "keep clear; `toyo stop --jog` stops the axis, `toyo position` shows the position",
         Command::Svon | Command::Svof => "`toyo status` shows whether servo power is on",
         Command::Wpar => "`toyo param get` shows the stored value",
         Command::Wstx | Command::Istx | Command::Dstx | Command::Dstl | Command::Cpss => {
@@ -183,7 +183,7 @@ mod tests {
     use crate::controller::toyo::field::Value;
 
     #[test]
-    fn the_status_tells_why() {
+    fn the_status_gives_the_reason_of_a_refusal() {
         let fine = Status::default().with(0, 0x30).with(2, 0x80).with(3, 0x11);
         let why = |status: Status, command: Command| reason(status, command.row()).map(|(why, _)| why);
         assert_eq!(why(fine, Command::Home), None);

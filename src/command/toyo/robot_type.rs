@@ -105,7 +105,7 @@ mod tests {
     use crate::command::toyo::testing::{blocks, intent, objection};
 
     #[test]
-    fn the_type_has_its_block() {
+    fn robot_type_sends_its_block() {
         assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123", "@STAS SNO=0"]);
         assert!(objection(&["robot-type", "5", "0"]).contains("1 to 4"));
         assert!(objection(&["robot-type", "1", "1000000"]).contains("999999"));
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_type_that_is_not_taken_is_a_refusal() {
+    fn a_rejected_type_is_a_refusal() {
         let of = |robot_type: &str| InForce {
             axis: 2,
             robot_type: robot_type.into(),

@@ -375,7 +375,7 @@ async fn within(limit: Option<Duration>, end: impl Future<Output = Result<Ran, F
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
         let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
-        Err(Failure::new(Kind::ConditionNotMet, message).hint("the program continues; `toyo status` shows its state"))
+        Err(Failure::new(Kind::ConditionNotMet, message).hint("the program continues; `toyo status` shows the state"))
     })
 }
 
@@ -489,7 +489,7 @@ mod tests {
         steps = { 1 = [\"TIM TM=000.5\", \"MOVP a PT=001 CN=00 S V=01 POST\", \"OUT STN=0 PN01=.......1\", \"END\"] }\n";
 
     #[test]
-    fn dry_runs_show_the_start_and_what_is_asked_meanwhile() {
+    fn dry_runs_show_the_start_and_the_status_reads() {
         assert_eq!(
             all_blocks(&["run", "sequential", "12", "--wait"]).unwrap(),
             [
@@ -521,7 +521,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_is_waited_for() {
+    fn run_with_wait_ends_with_the_program() {
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         let data = bench.data(&["run", "sequential", "1", "--wait"]);
         assert_eq!((&data["state"], &data["position"]["x_mm"]), (&"ended".into(), &100.0.into()));
@@ -531,7 +531,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_was_never_seen_to_run_has_not_ended() {
+    fn a_program_that_never_shows_execution_has_an_unknown_outcome() {
         let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
         let failure =
             Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential", "--wait"]).unwrap_err();
@@ -540,7 +540,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_of_the_program_is_an_end_and_one_of_somebody_is_not() {
+    fn a_stop_instruction_holds_the_program_and_an_external_stop_fails() {
         let state = "origin = true\nsteps = { 1 = [\"NOP\", \"STOP\", \"NOP\", \"TIM TM=010.0\", \"END\"] }\n\
             [[event]]\nat_ms = 3000\ndo = \"stop\"\n";
         let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
@@ -552,14 +552,14 @@ mod tests {
     }
 
     #[test]
-    fn in_step_mode_every_step_is_an_end() {
+    fn in_step_mode_the_wait_ends_after_one_step() {
         let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         bench.data(&["mode", "step"]);
         assert_eq!(bench.data(&["run", "sequential", "1", "--wait"])["state"], "held");
     }
 
     #[test]
-    fn an_error_that_comes_up_is_a_failure() {
+    fn an_error_during_the_program_fails() {
         let state = format!("{PROGRAM}[[event]]\nat_ms = 1000\ndo = \"estop\"\n");
         let failure =
             Bench::with_faults(&state, |_, _| Fault::None).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
@@ -575,7 +575,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_run_needs_is_told_and_not_changed() {
+    fn a_refused_start_names_the_missing_condition_and_changes_nothing() {
         let refused = |state: &str| {
             let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
             let failure = bench.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
@@ -591,7 +591,7 @@ mod tests {
     }
 
     #[test]
-    fn a_start_whose_answer_is_lost_is_sent_once() {
+    fn an_unanswered_start_is_sent_once() {
         for fate in [Fault::Lost, Fault::Unanswered, Fault::Answered("@O")] {
             let (mut bench, heard) =
                 Bench::with_faults(
@@ -606,7 +606,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_contact_leaves_the_outcome_open() {
+    fn after_a_lost_connection_the_outcome_is_unknown() {
         let lost = |block: &str, count| if block == "@STAS SNO=0" && count > 2 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
@@ -619,7 +619,7 @@ mod tests {
     }
 
     #[test]
-    fn a_busy_controller_is_asked_again() {
+    fn a_refused_status_read_is_repeated() {
         let busy = |block: &str, count| {
             if block == "@STAS SNO=0" && count % 2 == 0 { Fault::Answered("@NG") } else { Fault::None }
         };
@@ -648,7 +648,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_ok_to_the_start_is_not_that_to_the_stop() {
+    fn a_late_ok_to_the_start_does_not_confirm_the_stop() {
         // The start is answered after 400 ms; Ctrl-C comes before that, and the first stop is lost.
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |block, count| match block {
             "@SPST 0001" => Fault::Late(Duration::from_millis(400)),
@@ -661,7 +661,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_jog_is_stopped_although_it_was_to_be_left() {
+    fn on_interrupt_leave_still_stops_a_jog() {
         let must_halt = |words: &[&str]| {
             let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
             bench.left(words, Duration::from_millis(450))
@@ -671,7 +671,7 @@ mod tests {
     }
 
     #[test]
-    fn the_host_is_given_back_while_a_program_runs() {
+    fn the_host_is_released_while_a_program_runs() {
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         assert_eq!(bench.data(&["run", "sequential", "1", "--no-wait"])["state"], "running");
         bench.close().unwrap();

@@ -31,7 +31,7 @@ commands! {
 #[derive(Debug, Args)]
 pub struct Get {}
 
-/// Select the current task for all clients, until a client selects another one.
+/// Select the current task for all clients, until a client selects a different task.
 #[derive(Debug, Args)]
 pub struct Set {
     /// 1 to 4
@@ -107,7 +107,7 @@ mod tests {
     use crate::command::toyo::testing::{all_blocks, blocks, objection};
 
     #[test]
-    fn tasks_have_their_blocks() {
+    fn task_commands_send_their_blocks() {
         assert_eq!(all_blocks(&["task", "get"]).unwrap(), ["@MTSK"]);
         assert_eq!(blocks(&["task", "set", "4"]).unwrap(), ["@CTSK TASK=04", "@MTSK"]);
         assert!(objection(&["task", "set", "0"]).contains("1 to 4"));

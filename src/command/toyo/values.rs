@@ -33,7 +33,7 @@ pub struct Shown {
     pub name: String,
     /// A number in its unit, a word of the protocol, or a bit of a port as `station/port/bit`.
     pub value: Json,
-    /// Unit of the number: `mm`, `mm/s`, `s`; null if there is none.
+    /// Unit of the number: `mm`, `mm/s`, `s`; null without a unit.
     pub unit: Option<&'static str>,
     /// Meaning of the word; null if the word is clear.
     pub meaning: Option<&'static str>,
@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn every_parameter_has_places_for_all_its_fields() {
+    fn the_slots_of_each_parameter_cover_all_fields() {
         for row in &crate::controller::toyo::table::parameters::PARAMETERS {
             let (layout, places) = (row.body(), places(&row.body(), &Letters::USUAL));
             let covered: Vec<usize> = places.iter().flat_map(|place| place.fields.clone()).collect();
@@ -445,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_stays() {
+    fn omitted_values_stay_unchanged() {
         let layout = body("P08");
         let changes = Changes::read("P08", &layout, &["high=9".to_owned()]).unwrap();
         assert_eq!(changes.whole(), None);
@@ -453,7 +453,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_name_range_unit_and_choice() {
+    fn error_messages_name_range_unit_and_choices() {
         let error = |name, typed: &[&str]| read(name, typed).unwrap_err();
         assert_eq!(error("P01", &["1", "2"]), "P01: 4 values needed, 2 given");
         assert_eq!(

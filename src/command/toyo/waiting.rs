@@ -160,9 +160,9 @@ impl Accepted {
             WaitFailure::Error => present_error(link, &tell).await,
             WaitFailure::NoOrigin => tell("it ended without the origin")
                 .hint("check the machine: it was stopped without an error. Then repeat `toyo home`"),
-            WaitFailure::NotSeen => Failure { kind: Kind::OutcomeUnknown, ..tell("the status did not show it") }
+            WaitFailure::NotSeen => Failure { kind: Kind::OutcomeUnknown, ..tell("the status never showed execution") }
                 .hint("check `toyo status` and the robot: it ended at once, or it did not begin"),
-            WaitFailure::NotBegun => tell("the status did not show its start")
+            WaitFailure::NotBegun => tell("the status did not show the start")
                 .hint("keep clear, because it can still begin; check `toyo status` and the teach pendant"),
         }
     }
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn a_start_may_show_late() {
+    fn a_late_start_is_awaited() {
         let (idle, runs) = (page0(IDLE), page0(RUNS));
         assert_eq!(
             looks(Work::Program, [(0, idle, 0), (900, idle, 0), (950, runs, 0), (999_999, runs, 0)]),
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_never_seen_has_not_ended() {
+    fn work_that_never_appeared_is_not_an_end() {
         let idle = page0(IDLE);
         assert_eq!(looks(Work::Program, [(0, idle, 0), (1000, idle, 0)]), Look::Failed(WaitFailure::NotSeen));
         assert_eq!(looks(Work::Home, [(0, idle, 0), (1000, idle, 0)]), Look::Ended);
@@ -397,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_that_move_are_not_at_the_end_whatever_the_bits_say() {
+    fn moving_axes_count_as_running() {
         let idle = page0(IDLE);
         assert_eq!(looks(Work::Search, [(0, idle, 0), (100, idle, 5), (5000, idle, 6)]), Look::Running);
         assert_eq!(looks(Work::Search, [(0, idle, 0), (100, idle, 5), (200, idle, 5)]), Look::Ended);
@@ -411,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_ends_the_waiting() {
+    fn an_error_ends_the_wait() {
         assert_eq!(
             looks(Work::Program, [(0, page0(RUNS), 0), (100, page0(RUNS | 1), 0)]),
             Look::Failed(WaitFailure::Error)
@@ -419,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pause_input_holds_and_a_stop_ends() {
+    fn the_pause_input_continues_the_wait_and_a_stop_ends_it() {
         let paused = page0(IDLE | 4);
         let held = paused.with(4, 0x08);
         assert_eq!(looks(Work::Program, [(0, page0(RUNS), 0), (100, held, 0), (9_999, held, 0)]), Look::Running);
@@ -427,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn a_card_is_watched_by_its_own_bits() {
+    fn a_card_transfer_is_watched_by_the_card_bits() {
         let (idle, writes) = (page0(IDLE), page0(IDLE).with(3, 0x80));
         assert_eq!(looks(Work::Card, [(0, idle, 0), (100, writes, 0), (9_999, writes, 3)]), Look::Running);
         assert_eq!(looks(Work::Card, [(0, writes, 0), (100, idle, 0)]), Look::Ended);

@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn three_writes_of_one_cell_over_one_link_are_told_once() {
+    fn three_writes_of_one_cell_in_one_link_give_one_warning() {
         let mut writes = WriteLog::without_file();
         let told: Vec<bool> = (0..5).map(|_| writes.written("@RPAR P01").is_some()).collect();
         assert_eq!(told, [false, false, true, false, false]);
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_script_that_starts_a_command_for_each_write_is_told_from_the_tenth_on() {
+    fn separate_commands_are_warned_from_the_tenth_write_of_a_cell() {
         let folder = tempfile::tempdir().unwrap();
         for count in 1..=11 {
             let mut other = writes(folder.path(), "press");
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_old_or_no_entry_does_not_count_and_goes_when_the_log_is_long() {
+    fn old_and_invalid_entries_do_not_count_and_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         let log = writes(folder.path(), "cell").log.unwrap();
         let cells = HashMap::from([("@RPNT 001".to_owned(), 4)]);

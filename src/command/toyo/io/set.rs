@@ -261,7 +261,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
 
     #[test]
-    fn bits_and_whole_ports() {
+    fn bits_and_whole_ports_are_set() {
         let read = "@MOUT SNO=0 GN=1";
         assert_eq!(blocks(&["io", "set", "1=.......1"]).unwrap(), ["@DOUT STN=0 PN01=.......1", read]);
         assert_eq!(blocks(&["io", "set", "1.3=on"]).unwrap(), ["@DOUT STN=0 PN01=.....1..", read]);
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_told_before_anything_is_sent() {
+    fn wrong_arguments_are_rejected_before_any_block_is_sent() {
         for (words, why) in [
             (["io", "set", "1"], "as in OUT1.3=on"),
             (["io", "set", "1.9=on"], "bits 1 to 8"),
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_tells_what_became_of_each_port() {
+    fn a_failure_reports_the_result_of_each_port() {
         let orders: Vec<Assignment> = ["1=......01", "2.1=on", "3.1=on"].map(|text| text.parse().unwrap()).into();
         let message = |orders: &[Assignment], done| account(Failure::local("no"), orders, done).message;
         assert_eq!(message(&orders[..1], 0), "no");
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_set_is_read_back() {
+    fn set_outputs_are_read_back() {
         let set = Bench::new("sim:").data(&["io", "set", "OUT1.3=on", "18.1=on"]);
         let keys = |item: &Value| [item["name"].clone(), item["old"].clone(), item["value"].clone()];
         assert_eq!(keys(&set["items"][0]), [Value::from("OUT1.3"), false.into(), true.into()], "{set}");

@@ -54,7 +54,7 @@ fn a_dry_run_shows_the_whole_sequence() {
 }
 
 #[test]
-fn a_jog_without_end_is_refused_before_anything_is_sent() {
+fn a_jog_without_time_limit_is_rejected_before_any_block_is_sent() {
     assert!(objection(&["jog", "X", "+", "low"]).contains("--for"));
     assert!(objection(&["jog", "X", "+", "high", "--for", "61s"]).contains("100ms to 1m"));
     assert!(objection(&["jog", "X", "+", "high", "--for", "50ms"]).contains("100ms to 1m"));
@@ -79,7 +79,7 @@ fn an_axis_moves_for_its_time() {
 }
 
 #[test]
-fn small_steps_are_done_one_by_one() {
+fn inching_steps_are_sent_one_by_one() {
     let (mut bench, heard) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&["jog", "y", "-", "inch", "--steps", "3"]);
     assert_eq!((&data["moved_mm"], &data["steps"]), (&(-0.03).into(), &3.into()));
@@ -117,7 +117,7 @@ fn with_faults(
 }
 
 #[test]
-fn an_order_whose_answer_is_lost_is_sent_once_and_stopped() {
+fn an_unanswered_jog_is_sent_once_and_stopped() {
     let (outcome, _, moved) = with_faults(|block, _| if block == GO { Fault::Unanswered } else { Fault::None });
     let failure = outcome.unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
@@ -130,7 +130,7 @@ fn an_order_whose_answer_is_lost_is_sent_once_and_stopped() {
 }
 
 #[test]
-fn a_silence_while_an_axis_moves_ends_it() {
+fn a_lost_answer_during_a_jog_stops_the_axis() {
     for lost in ["@STAS SNO=0", "@MPST"] {
         for fate in [Fault::Lost, Fault::Unanswered, Fault::Late(Duration::from_millis(700))] {
             let (outcome, _, moved) =
@@ -143,7 +143,7 @@ fn a_silence_while_an_axis_moves_ends_it() {
 }
 
 #[test]
-fn a_stop_that_is_lost_is_repeated() {
+fn an_unconfirmed_stop_is_repeated() {
     let late = Fault::Late(Duration::from_millis(450));
     for (fate, least) in [(Fault::Lost, 4), (Fault::Unanswered, 4), (Fault::Answered("@NG"), 4), (late, 2)] {
         let (outcome, heard, moved) =
@@ -155,7 +155,7 @@ fn a_stop_that_is_lost_is_repeated() {
 }
 
 #[test]
-fn a_dead_line_says_what_to_do() {
+fn a_lost_line_has_a_hint_to_press_the_emergency_stop() {
     let dead = Arc::new(AtomicBool::new(false));
     let is_dead = Arc::clone(&dead);
     let (mut bench, heard) = Bench::with_faults(READY, move |block, _| {
@@ -177,7 +177,7 @@ fn a_dead_line_says_what_to_do() {
 }
 
 #[test]
-fn a_controller_that_does_not_stop_is_told() {
+fn a_controller_that_does_not_stop_is_an_error() {
     let (mut bench, heard) =
         Bench::with_faults(READY, |block, _| if block == STOP { Fault::Answered("@OK") } else { Fault::None });
     let failure = bench.run(&LOW).unwrap_err();
@@ -188,7 +188,7 @@ fn a_controller_that_does_not_stop_is_told() {
 }
 
 #[test]
-fn a_refusal_is_explained_and_stopped_all_the_same() {
+fn a_refused_jog_is_explained_and_still_stopped() {
     let (mut bench, heard) = Bench::with_faults("servo = false\n", |_, _| Fault::None);
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.message, "the controller refused JGST X=+L Y=SP Z=SP R=SP (@NG): servo power is off");
@@ -196,7 +196,7 @@ fn a_refusal_is_explained_and_stopped_all_the_same() {
 }
 
 #[test]
-fn an_error_ends_a_jog() {
+fn a_controller_error_ends_a_jog() {
     let state = "origin = true\nposition = [998.0, 0.0, 0.0, 0.0]\n";
     let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
     let failure = bench.run(&LOW).unwrap_err();
@@ -224,7 +224,7 @@ fn ctrl_c_at_any_moment_stops_the_axis() {
 }
 
 #[test]
-fn a_small_step_whose_answer_is_lost_is_not_repeated() {
+fn an_unanswered_inching_step_is_not_repeated() {
     let step = "@JGST X=+C Y=SP Z=SP R=SP";
     let (mut bench, heard) =
         Bench::with_faults(
@@ -240,7 +240,7 @@ fn a_small_step_whose_answer_is_lost_is_not_repeated() {
 }
 
 #[test]
-fn the_shortest_jog_is_one_too() {
+fn the_shortest_jog_moves_the_axis() {
     let (mut bench, heard) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&["jog", "X", "+", "high", "--for", "100ms"]);
     // 50 mm/s, reached after 0.1 s.
@@ -249,7 +249,7 @@ fn the_shortest_jog_is_one_too() {
 }
 
 #[test]
-fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
+fn a_refused_jog_does_not_stop_a_running_program() {
     let program = "origin = true\nsteps = { 1 = [\"SPD V=01\", \"MOV a X=+0500.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=01 \
                    POST\", \"END\"] }\n";
     let (mut bench, heard) = Bench::with_faults(program, |block, _| {
@@ -266,7 +266,7 @@ fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
 }
 
 #[test]
-fn a_letter_is_the_axis_that_the_machine_calls_so() {
+fn a_letter_selects_the_axis_with_this_letter_on_the_machine() {
     let lettered = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\n";
     let (mut bench, heard) = Bench::with_faults(lettered, |_, _| Fault::None);
     let data = bench.data(&["jog", "z", "+", "low", "--for", "300ms"]);
@@ -288,7 +288,7 @@ fn a_letter_is_the_axis_that_the_machine_calls_so() {
 }
 
 #[test]
-fn a_jog_that_somebody_else_stops_says_so() {
+fn a_jog_stopped_by_another_client_reports_it() {
     let state = format!("{READY}[[event]]\nat_ms = 1000\ndo = \"stop\"\n");
     let stopped = Bench::with_faults(&state, |_, _| Fault::None).0.run(&["jog", "X", "+", "low", "--for", "10s"]);
     let failure = stopped.unwrap_err();

@@ -1,5 +1,5 @@
-//! Observer of the client: it records the trace, keeps the journal of temporary changes, and reports a host that is ON
-//! or a current task that this user did not choose. It sends no requests of its own; it uses the answers that commands
+//! Observer of the client: it records the trace, and keeps the journal of temporary changes. It also reports a host that
+//! is ON, or a current task, if this user did not select it. It sends no requests; it uses the answers that commands
 //! read.
 
 use std::sync::{Arc, Mutex};
@@ -134,8 +134,8 @@ impl Onlooker {
         self.chosen.change(|choice| choice.task = Some(task));
     }
 
-    /// Whether a notice must wait: during motion, because a blocked terminal must not delay a stop, and while another
-    /// process of this user has changed the setting temporarily.
+    /// Whether a notice must wait. A blocked terminal must not delay a stop during motion. The setting can also be a
+    /// temporary change of another process of this user.
     fn is_no_time(&self) -> bool {
         self.debts.owed().moving.is_some() || self.debts.others_owe()
     }

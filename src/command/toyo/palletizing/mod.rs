@@ -251,7 +251,7 @@ impl EepromRow for Records {
         cell(self.program, record, values)
     }
 
-    /// Block that writes a record; `?` stands for kept values.
+    /// Block that writes a record, with `?` in place of unchanged values.
     fn sketch(&self, Key(record): Key, values: &[Option<Value>]) -> String {
         let body = record.layout.sketch(values).unwrap_or_default();
         format!("@WPLT {:02} SNO={:02} {body}", self.program, record.number)
@@ -263,7 +263,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, blocks, objection};
 
     #[test]
-    fn a_program_is_sixteen_records() {
+    fn a_program_is_read_from_sixteen_records() {
         let blocks = |words: &[&str]| blocks(words).unwrap();
         assert_eq!(blocks(&["palletizing", "get", "3"]).len(), 16);
         assert_eq!(blocks(&["palletizing", "get", "3", "source-p1", "16"]), ["@RPLT 03 SNO=03", "@RPLT 03 SNO=16"]);
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_is_compared_before_it_is_written() {
+    fn an_equal_record_is_not_written() {
         assert_eq!(
             blocks(&["palletizing", "set", "1", "Source-P1", "1.5", "-2", "0"]).unwrap(),
             ["@RPLT 01 SNO=03", "@WPLT 01 SNO=03 X=+0001.50 Y=-0002.00 Z=+0000.00", "@RPLT 01 SNO=03"]
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_goes_through_a_file_and_is_copied() {
+    fn a_program_is_dumped_restored_and_copied() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
         let (first, second) = (path("first.csv"), path("second.csv"));
@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn progress_tells_the_program_that_was_chosen() {
+    fn progress_reports_the_selected_program() {
         let mut bench = Bench::new("sim:");
         bench.data(&["palletizing", "select", "4"]);
         let progress = bench.data(&["palletizing", "progress"]);

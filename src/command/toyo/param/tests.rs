@@ -53,7 +53,7 @@ fn a_write_compares_first_and_takes_the_host() {
 }
 
 #[test]
-fn what_cannot_be_meant_is_not_sent() {
+fn wrong_arguments_send_nothing() {
     let failed = |words: &[&str]| {
         let failure = blocks(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2, "{words:?}");
@@ -74,7 +74,7 @@ fn what_cannot_be_meant_is_not_sent() {
 }
 
 #[test]
-fn what_follows_from_machine_parameters_is_said() {
+fn the_confirmation_names_the_effects_of_machine_parameters() {
     let told = |id| machine::consequence_of(&[Parameter::named(id).unwrap()]);
     assert_eq!(
         told("E06"),
@@ -84,7 +84,7 @@ fn what_follows_from_machine_parameters_is_said() {
 }
 
 #[test]
-fn what_is_lost_is_said_before() {
+fn the_confirmation_names_steps_that_would_be_lost() {
     let steps = Parameter::named("E22").unwrap();
     let record = |numbers: [i32; 4]| steps.layout.record(numbers.map(Value::Number).into()).unwrap();
     let told = |found, wanted| machine::warnings(steps, Some(&record(found)), record(wanted).values());
@@ -116,7 +116,7 @@ fn file_of(text: &str) -> (tempfile::TempDir, String) {
 }
 
 #[test]
-fn a_restore_leaves_the_machine_for_the_end_or_out() {
+fn restore_writes_machine_parameters_last_or_leaves_them_out() {
     let text = "[parameters]\nE06 = { ax1 = 1000, ax2 = 1000, ax3 = 1000, ax4 = 1000 }\nP16 = { compare = '<=', \
                 place = 1.0, station = 0, port = 1, bit = 0 }\nM09 = 'E'\n[speed-table]\n3 = 99.5\n";
     let (_folder, path) = file_of(text);
@@ -145,7 +145,7 @@ fn a_restore_leaves_the_machine_for_the_end_or_out() {
 }
 
 #[test]
-fn a_dump_is_restored_to_the_last_value() {
+fn restore_of_a_dump_restores_every_value() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (first, second) = (path("first.toml"), path("second.toml"));
@@ -173,7 +173,7 @@ fn a_dump_is_restored_to_the_last_value() {
 }
 
 #[test]
-fn a_busy_controller_is_asked_again() {
+fn a_refused_read_is_repeated_once() {
     let (mut bench, _) = Bench::with_faults("", |block, count| match block {
         "@RPAR U21" if count == 1 => Fault::Answered("@NG"),
         "@RPAR U22" => Fault::Answered("@NG"),
@@ -187,7 +187,7 @@ fn a_busy_controller_is_asked_again() {
 }
 
 #[test]
-fn a_file_of_another_controller_is_stored_as_far_as_it_goes() {
+fn a_file_of_another_controller_restores_the_parameters_that_fit() {
     let (_folder, path) = file_of(
         "[parameters]\nM09 = 'J'\nP17 = { ax1 = 1.00, ax2 = 0.00, ax3 = 0.00, ax4 = 0.00 }\n[speed-table]\n1 = 5.0\n",
     );
@@ -201,7 +201,7 @@ fn a_file_of_another_controller_is_stored_as_far_as_it_goes() {
 }
 
 #[test]
-fn what_may_not_be_written_stands_in_a_dump_as_a_comment() {
+fn a_dump_has_values_that_cannot_be_written_as_comments() {
     let (mut bench, _) = Bench::with_faults("", |block, _| match block {
         "@RPAR M17" => Fault::Answered("@RPAR M17 STN=00 BRT=156K OPT=0000"),
         _ => Fault::None,
@@ -216,7 +216,7 @@ fn what_may_not_be_written_stands_in_a_dump_as_a_comment() {
 }
 
 #[test]
-fn a_machine_parameter_asks_for_the_power_to_be_cycled() {
+fn a_written_machine_parameter_needs_a_power_cycle() {
     let mut bench = Bench::new("sim:");
     let before = bench.data(&["param", "get", "e06"])["items"][0]["value"][0]["value"].clone();
     let same = bench.data(&["param", "set", "e06", &format!("ax1={before}")]);
@@ -227,7 +227,7 @@ fn a_machine_parameter_asks_for_the_power_to_be_cycled() {
 }
 
 #[test]
-fn a_change_of_a_part_reads_once_before_it_writes() {
+fn a_partial_change_reads_the_parameter_once_before_the_write() {
     let (mut bench, heard) = Bench::with_faults("", |_, _| Fault::None);
     for (words, read) in [
         (&["param", "set", "P01", "ax2=150"][..], "@RPAR P01"),

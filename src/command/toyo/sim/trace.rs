@@ -62,7 +62,7 @@ pub struct Recorder {
 pub struct Trace {
     /// `ended`, `stopped`, `error`, `waits` or `time_up`.
     end: &'static str,
-    /// Alarm at the end; null if there is none.
+    /// Alarm at the end; null without an alarm.
     alarm: Option<Alarm>,
     /// Time of the program at the end.
     elapsed_s: f64,

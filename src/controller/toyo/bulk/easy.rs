@@ -58,14 +58,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_reads_back() {
+    fn a_written_file_reads_back_unchanged() {
         let text = "# Easy programs: start tag, end tag and number of runs\n1 = { start = 10, loop = 5, end = 20 \
                     }\n8 = { start = 0, loop = 9999, end = 999 }\n";
         assert_eq!(write(&read(text.as_bytes()).unwrap()), text);
     }
 
     #[test]
-    fn mistakes_are_told_with_their_place() {
+    fn errors_have_line_and_column() {
         let errors = |text: &str| -> Vec<String> {
             read(text.as_bytes()).unwrap_err().iter().map(ToString::to_string).collect()
         };

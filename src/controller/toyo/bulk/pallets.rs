@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_reads_back() {
+    fn a_written_file_reads_back_unchanged() {
         let text = "\
 # 1: start program and mode; M-1 from a matrix to one place, 1-M from one place to a matrix, M-M matrix to matrix
 start = { tag = 5, mode = \"M-M\" }
@@ -79,7 +79,7 @@ end = 7
     }
 
     #[test]
-    fn mistakes_are_told_with_their_place() {
+    fn errors_have_line_and_column() {
         let errors = |text: &str| -> Vec<String> {
             read(text.as_bytes()).unwrap_err().iter().map(ToString::to_string).collect()
         };

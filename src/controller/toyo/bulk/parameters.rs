@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_readable_and_reads_back() {
+    fn a_written_file_is_readable_and_reads_back_unchanged() {
         let settings = [
             setting("M09", "M09 E"),
             setting("P01", "P01 AX1=+0500.00 AX2=+0300.00 AX3=+0200.00 AX4=-0000.05"),
@@ -230,7 +230,7 @@ area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 
     }
 
     #[test]
-    fn ids_and_other_ways_to_write_are_taken() {
+    fn ids_and_other_spellings_are_accepted() {
         let text = "[parameters]\nm09 = 'J'\nE05.ax1 = 0\nE05.ax2 = 1\nE05.ax3 = \"0\"\nE05.ax4 = 0\n\
                     [T4.S1.7]\norigin = 1\np1 = 2\np2 = 3\np3 = 0\n[\"T4.S5\"]\n01 = 5\n[t2]\n\"5\" = 1\n";
         let back = read(text.as_bytes()).unwrap();
@@ -248,7 +248,7 @@ area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 
     }
 
     #[test]
-    fn mistakes_are_told_with_their_place() {
+    fn errors_have_line_and_column() {
         for (text, expected) in [
             (
                 "[parameters]\nsoft-limit-plsu = 1",
@@ -313,7 +313,7 @@ area-output-1 = { compare = \"<=\", place = 10.00, station = 0, port = 1, bit = 
     }
 
     #[test]
-    fn fields_of_a_parameter_have_names_of_their_own() {
+    fn the_fields_of_each_parameter_have_unique_names() {
         for row in &PARAMETERS {
             let names: std::collections::BTreeSet<_> = row.layout.fields.iter().map(|field| field.name).collect();
             assert_eq!(names.len(), row.layout.fields.len(), "{}", row.id);

@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back() {
+    fn a_written_file_reads_back_unchanged() {
         let text = "name,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,-0.05\n999,-8000.00,8000.00,0.00,0.00\n";
         assert_eq!(rows(text, 4), [(1, vec![10_000, 2000, 0, -5], 2), (999, vec![-800_000, 800_000, 0, 0], 3)]);
         let points: Vec<Setting> = read(text.as_bytes(), 4).unwrap().into_iter().map(|(point, _)| point).collect();
@@ -207,20 +207,20 @@ mod tests {
     }
 
     #[test]
-    fn columns_and_quotes_are_free() {
+    fn column_order_and_quotes_do_not_matter() {
         let text = "\u{FEFF}\r\nY_mm , \"x_mm\", name\r\n\r\n1.5,\"2\", 7\r\n,,\r\n";
         assert_eq!(rows(text, 2), [(7, vec![200, 150, 0, 0], 4)]);
     }
 
     #[test]
-    fn columns_are_those_of_the_letters_or_of_the_numbers() {
+    fn columns_are_named_by_axis_letters_or_numbers() {
         let points = read(b"name,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n", 4).unwrap();
         let points: Vec<Setting> = points.into_iter().map(|(point, _)| point).collect();
         assert_eq!(write_numbered(&points), "name,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n");
     }
 
     #[test]
-    fn an_axis_that_is_there_needs_its_column() {
+    fn each_existing_axis_needs_a_column() {
         assert_eq!(
             errors("name,x_mm,y_mm,z_mm\n1,0,0,0"),
             ["line 1, column 20: error: column r_mm is missing (the first line must be name,x_mm,y_mm,z_mm,r_mm)"]
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_told_with_their_place() {
+    fn errors_have_line_and_column() {
         for (text, expected) in [
             ("", "line 1, column 1: error: the file is empty (the first line must be name,x_mm,y_mm,z_mm,r_mm)"),
             ("name,x_mm,y_mm,z_mm,r_mm,x_mn\n", "line 1, column 26: error: unknown column 'x_mn' (did you mean x_mm?)"),
