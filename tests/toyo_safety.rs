@@ -228,7 +228,7 @@ fn a_lost_line_during_a_jog_has_a_hint_to_press_the_emergency_stop() {
     let output = controller.command(JOG).output().unwrap();
     assert_eq!(output.status.code(), Some(6), "{}", errors(&output));
     let told = errors(&output);
-    assert!(told.contains("the axis may still move"), "{told}");
+    assert!(told.contains("the axis can still move"), "{told}");
     assert!(told.contains("press the emergency stop") && told.contains("`toyo stop --jog`"), "{told}");
 }
 
@@ -344,11 +344,11 @@ fn changes_of_a_killed_command_are_reported_until_they_are_undone() {
     signal(&jog, "KILL");
     jog.wait().unwrap();
     let said = || errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(said().contains("the host is still ON, which was OFF; `toyo host off`"));
+    assert!(said().contains("the host is still ON and was OFF before; `toyo host off`"));
     // The guardian stops the jog.
-    assert!((0..1000).any(|_| !said().contains("executed")), "{}", said());
+    assert!((0..1000).any(|_| !said().contains("the robot still runs")), "{}", said());
     let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(!said.contains("executed") && said.contains("the host is still ON"), "{said}");
+    assert!(!said.contains("the robot still runs") && said.contains("the host is still ON"), "{said}");
     assert!(toyo(&url, state.path(), "host off").status().unwrap().success());
     toyo(&url, state.path(), "position").status().unwrap();
     let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
@@ -376,15 +376,19 @@ fn a_host_switched_on_by_another_client_is_reported() {
     assert_eq!(said("status"), "");
     another_client(&url, "@HSON");
     let told = said("status");
-    assert!(told.contains("the host is ON, and no armctl of this user keeps it so"), "{told}");
-    assert!(told.contains("`toyo host off` gives it back"), "{told}");
-    assert_eq!(said("status --watch=20ms --count 3").matches("the host is ON").count(), 1, "once is enough");
+    assert!(told.contains("another client switched the host ON, which disables the start input"), "{told}");
+    assert!(told.contains("`toyo host off` releases the host"), "{told}");
+    assert_eq!(
+        said("status --watch=20ms --count 3").matches("another client switched the host ON").count(),
+        1,
+        "once is enough"
+    );
     // What changes something looks who commands, too; what does not ask is not made to.
     assert!(said("stop").is_empty() && said("position").is_empty());
     another_client(&url, "@SPST 0001");
     let told = said("status");
-    assert!(told.contains("the host is ON and something is executed, and no armctl of this user does that"), "{told}");
-    assert!(told.contains("`toyo stop` stops it and `toyo host off` gives"), "{told}");
+    assert!(told.contains("another client switched the host ON and started a program"), "{told}");
+    assert!(told.contains("`toyo stop` stops it and `toyo host off` releases the host"), "{told}");
     said("stop");
     said("host off");
     assert_eq!(said("status"), "");
@@ -397,7 +401,7 @@ fn a_host_switched_on_by_another_client_is_reported() {
     another_client(&url, "@HSOF");
     assert_eq!(said("status"), "");
     another_client(&url, "@HSON");
-    assert!(said("status").contains("the host is ON"));
+    assert!(said("status").contains("another client switched the host ON"));
 }
 
 #[test]
@@ -408,12 +412,12 @@ fn a_task_selected_by_another_client_is_reported() {
     assert_eq!(said("task get"), "");
     another_client(&url, "@CTSK TASK=02");
     let told = said("task get");
-    assert!(told.contains("task 2 is the current one, and no armctl of this user chose it"), "{told}");
-    assert!(told.contains("`toyo task set 1` chooses the first"), "{told}");
+    assert!(told.contains("another client selected task 2"), "{told}");
+    assert!(told.contains("`toyo task set 1` selects task 1"), "{told}");
     said("task set 2");
     assert_eq!(said("task get"), "");
     another_client(&url, "@CTSK TASK=03");
-    assert!(said("task get").contains("task 3 is the current one"));
+    assert!(said("task get").contains("another client selected task 3"));
     said("task set 1");
     assert_eq!(said("task get"), "");
 }
@@ -453,7 +457,10 @@ fn a_busy_serial_port_names_the_process_that_uses_it() {
     let stop = toyo(&simulator.url, folder.path(), "stop --no-session").output().unwrap();
     let pid = home.id();
     assert_eq!(stop.status.code(), Some(4), "{}", errors(&stop));
-    for part in [format!("another armctl, process {pid}, uses "), format!("hint: `kill {pid}` ends it")] {
+    for part in [
+        format!("another armctl, process {pid}, uses "),
+        format!("hint: use `kill {pid}`: it stops its motion and ends"),
+    ] {
         assert!(errors(&stop).contains(&part), "{part}: {}", errors(&stop));
     }
     // The advice is good: it stops what it moves, and frees the port.

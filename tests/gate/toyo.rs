@@ -152,5 +152,5 @@ fn a_stop_is_allowed_on_a_read_only_robot() {
 #[test]
 fn without_a_terminal_a_jog_is_rejected_before_any_block_is_sent() {
     let desk = Desk::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
-    desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by a small step in plus direction");
+    desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by an inching step in plus direction");
 }

@@ -4,10 +4,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::explain::told;
+use super::explain::alarm_from_code;
 use super::link::Link;
 use super::link::Toyo;
-use super::waiting::{becomes, status_page};
+use super::wait::{status_page, wait_for_status};
 use crate::command::face::shared::Alike;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders::{Done, New, Old};
@@ -78,7 +78,7 @@ async fn present(link: &mut Link) -> Result<Option<u8>, Failure> {
 
 /// The present alarms as a list.
 pub(super) async fn now(link: &mut Link) -> Result<Vec<Told>, Failure> {
-    Ok(present(link).await?.map(told).into_iter().collect())
+    Ok(present(link).await?.map(alarm_from_code).into_iter().collect())
 }
 
 /// Additional keys of a toyo alarm.
@@ -103,7 +103,7 @@ impl Besides for Axis {
 /// Entry for an alarm, with its causes.
 fn entry(code: u8) -> AlarmEntry<Axis> {
     let errors::Explanation { axis, .. } = errors::explain(code);
-    AlarmEntry { alarm: told(code), own: Axis { axis, power_off: false, alarm: None } }
+    AlarmEntry { alarm: alarm_from_code(code), own: Axis { axis, power_off: false, alarm: None } }
 }
 
 /// The entry with additions from `alarms.toml`.
@@ -127,12 +127,12 @@ impl Command for History {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>, Failure> {
         let link = context.link;
-        let question = |number: u8| Request::of(table::Command::Ehtr, [Value::Number(number.into())]);
+        let entry_request = |number: u8| Request::of(table::Command::Ehtr, [Value::Number(number.into())]);
         if link.is_dry() {
             for number in 1..=self.limit {
                 match number {
-                    1 => link.plan(&question(number), "the latest"),
-                    _ => link.plan_if(&question(number), "whether there is an earlier entry"),
+                    1 => link.plan(&entry_request(number), "the latest"),
+                    _ => link.plan_if(&entry_request(number), "whether there is an earlier entry"),
                 }
             }
             return Err(unknown());
@@ -141,12 +141,12 @@ impl Command for History {
         let mut alarms = Vec::new();
         for number in 1..=self.limit {
             progress.say(&format!("error history {number} of {} at most", self.limit));
-            let record = match link.try_ask(&question(number)).await? {
+            let record = match link.try_ask(&entry_request(number)).await? {
                 Ok(record) => record,
                 // A controller without history refuses the first entry; a controller with a short history refuses an
                 // entry beyond its end.
                 Err(_) if number > 1 => break,
-                Err(_) => link.ask(&question(number)).await?,
+                Err(_) => link.ask(&entry_request(number)).await?,
             };
             let Some(entry) = past(&record) else { break };
             alarms.push(Row::new(number.into(), format!("alarm {number}"), explained(entry, context.robot)));
@@ -189,13 +189,13 @@ impl Command for Reset {
         let code = |status: &Status| (status.error != errors::NONE).then(|| format!("{:02X}", status.error));
         let old = Old::read(link.status_before(1).await?.as_ref().and_then(code));
         link.ask(&Request::bare(table::Command::Cerr)).await?;
-        let is_gone = becomes(link, (0, "whether the alarm has ended"), |status| !status.has_error()).await?;
-        let left = if is_gone { None } else { present(link).await?.map(told) };
-        let words = left
+        let has_ended = wait_for_status(link, (0, "whether the alarm has ended"), |status| !status.has_error()).await?;
+        let remaining = if has_ended { None } else { present(link).await?.map(alarm_from_code) };
+        let words = remaining
             .as_ref()
-            .map_or_else(|| "the alarm has ended".to_owned(), |left| format!("still there: {}", left.line()));
-        let new = New::of("fault_code", left.as_ref().and_then(|left| left.code.clone()), words);
-        Ok(Cancelled { done: new.replaces(old), alarms: left.into_iter().collect() })
+            .map_or_else(|| "the alarm has ended".to_owned(), |remaining| format!("still there: {}", remaining.line()));
+        let new = New::of("fault_code", remaining.as_ref().and_then(|remaining| remaining.code.clone()), words);
+        Ok(Cancelled { done: new.replaces(old), alarms: remaining.into_iter().collect() })
     }
 }
 
@@ -222,10 +222,12 @@ impl Report for Cancelled {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let left = self.alarms.first()?;
-        let message = format!("the controller accepted the reset, but error {} is still present", left.line());
+        let remaining = self.alarms.first()?;
+        let message = format!("the controller accepted the reset, but error {} is still present", remaining.line());
         let failure = Failure::new(failure::Kind::ConditionNotMet, message);
-        Some(failure.hint(left.remedy.clone().unwrap_or_default()).code(left.code.clone().unwrap_or_default()))
+        Some(
+            failure.hint(remaining.remedy.clone().unwrap_or_default()).code(remaining.code.clone().unwrap_or_default()),
+        )
     }
 }
 

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Toyo;
-use super::waiting::{Accepted, Work};
+use super::wait::{AcceptedWork, Work};
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::ending::MotionEnd;
 use crate::command::{Command, Context, Report, commands};
@@ -48,7 +48,7 @@ impl Command for Read {
         "replace programs, tables and parameters of the controller with the content of the memory card";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
-        let work = Accepted {
+        let work = AcceptedWork {
             work: Work::Card,
             order: table::Command::Rmca,
             done: "the controller accepted the card read",
@@ -66,7 +66,7 @@ impl Command for Write {
     const INTENT: &'static str = "overwrite the content of the memory card";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
-        let work = Accepted {
+        let work = AcceptedWork {
             work: Work::Card,
             order: table::Command::Wmca,
             done: "the controller accepted the card write",
@@ -76,7 +76,7 @@ impl Command for Write {
     }
 }
 
-async fn transfer(context: Context<'_, Toyo>, work: Accepted, no_wait: bool) -> Result<Transferred, Failure> {
+async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool) -> Result<Transferred, Failure> {
     let link = context.link;
     link.ask(&Request::bare(work.order)).await?;
     if no_wait {
@@ -144,7 +144,7 @@ mod tests {
     fn card_write_waits_for_the_end_of_the_transfer() {
         let (mut bench, _) = Bench::with_faults("card = \"empty\"\n", |_, _| Fault::None);
         let failure = bench.run(&["card", "read"]).unwrap_err();
-        assert!(failure.hint.unwrap().contains("nothing on the card"));
+        assert!(failure.hint.unwrap().contains("check that the card contains data"));
         let data = bench.data(&["card", "write"]);
         let elapsed = data["elapsed_ms"].as_u64().unwrap();
         assert!((1800..2300).contains(&elapsed), "{elapsed}");
@@ -160,7 +160,7 @@ mod tests {
         let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["card", "read"]).unwrap_err();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("E0")));
         assert!(
-            failure.message.starts_with("the controller accepted the card read, but an error came up (E0"),
+            failure.message.starts_with("the controller accepted the card read, but an error occurred (E0"),
             "{}",
             failure.message
         );

@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(blocks(&line).unwrap(), ["@MRSS TASK=02 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00 V=05"]);
         assert_eq!(
             intent(&line),
-            "have the next RSMV of task 2 move to X 100 mm, Y -20.5 mm, Z 0 mm, R 0 mm at the speed of row 5"
+            "move to X 100 mm, Y -20.5 mm, Z 0 mm, R 0 mm with the next RSMV step of task 2 at the speed of row 5"
         );
         assert!(objection(&["coordinate", "set", "1", "2", "3"]).contains("<R>"));
         assert!(objection(&["coordinate", "set", "8000.01", "0", "0", "0"]).contains("-8000.00 to 8000.00 mm"));

@@ -2,7 +2,7 @@
 
 use super::items::read_each;
 use super::link::{Link, Toyo, wrong};
-use super::numbers::{Numbers, not_held, number, read_back};
+use super::numbers::{Numbers, number, read_back, stored_otherwise};
 use super::rows::Listed;
 use crate::command::ValueKind;
 use crate::command::commands;
@@ -156,12 +156,12 @@ impl Writable for Counters {
 
     async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
         for (counter, _, new) in rows {
-            let wanted = count(new).unwrap_or_default();
-            let order = order(*counter, wanted);
+            let new_count = count(new).unwrap_or_default();
+            let order = order(*counter, new_count);
             link.ask(&order).await?;
             match count(&read_back(link, &order, &read(*counter)).await?) {
-                Some(found) if found != wanted => {
-                    return Err(not_held(&order, &format!("the counter is {found}"))
+                Some(stored) if stored != new_count => {
+                    return Err(stored_otherwise(&order, &format!("the counter is {stored}"))
                         .hint("a running program can change the counter at the same time"));
                 }
                 _ => {}
@@ -265,7 +265,7 @@ mod tests {
             |block: &str, _| if block == "@MCNT CN=05" { Fault::Answered("@MCNT CN05=0008") } else { Fault::None };
         let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "CN05: the controller accepted @MCST CN05=0007, but it stands at 8");
+        assert_eq!(failure.message, "CN05: the controller accepted @MCST CN05=0007, but the counter is 8");
         let silent = |block: &str, count| if block == "@MCNT CN=05" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);

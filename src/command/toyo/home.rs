@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::link::{Link, Toyo};
 use super::position::{Coordinates, UNIT, titled};
-use super::waiting::{Accepted, Work};
+use super::wait::{AcceptedWork, Work};
 use crate::client::toyo::Letters;
 use crate::command::frame::ending::MotionEnd;
 use crate::command::robot::motion::Motion;
@@ -30,18 +30,18 @@ pub struct Home {
 }
 
 impl Home {
-    fn order(&self) -> (Request, Accepted) {
+    fn order(&self) -> (Request, AcceptedWork) {
         let (work, doing) = (Work::Home, "the axes return to the origin");
         let done = "the return to the origin was accepted";
         match self.sync {
             None => {
                 let order = table::Command::Home;
-                (Request::bare(order), Accepted { work, order, done, doing })
+                (Request::bare(order), AcceptedWork { work, order, done, doing })
             }
             Some(axis) => {
                 let (order, work, doing) = (table::Command::Sorg, Work::Search, "the axes search their origin");
                 let done = "the search for the origin was accepted";
-                (Request::of(order, [Value::Number(axis)]), Accepted { work, order, done, doing })
+                (Request::of(order, [Value::Number(axis)]), AcceptedWork { work, order, done, doing })
             }
         }
     }
@@ -81,7 +81,7 @@ impl Command for Home {
 
 /// Adds the present position of each axis. A busy controller can refuse to report it.
 async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change, Failure> {
-    let place = match link.place().await {
+    let place = match link.read_position().await {
         Ok(record) => Coordinates::of(&record, letters),
         Err(failure) if failure.kind == Kind::Refused => {
             return Ok(change.note("The controller did not report the position."));
@@ -156,7 +156,7 @@ mod tests {
         let state = "position = [300.0, 0.0, 0.0, 0.0]\n[[event]]\nat_ms = 1000\ndo = \"stop\"\n";
         let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["home"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert!(failure.message.contains("but it ended without the origin; it stands at X "), "{}", failure.message);
+        assert!(failure.message.contains("but it ended without the origin; the axes are at X "), "{}", failure.message);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::link::Toyo;
 use super::orders::not_so;
-use super::waiting::becomes;
+use super::wait::wait_for_status;
 use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -43,7 +43,9 @@ impl Command for Host {
             },
         )?;
         context.link.choose_host(is_on);
-        if becomes(context.link, (2, "whether the host has switched"), |status| status.host_on() == is_on).await? {
+        if wait_for_status(context.link, (2, "whether the host has switched"), |status| status.host_on() == is_on)
+            .await?
+        {
             return Ok(New::of("host_on", is_on, done).replaces(old));
         }
         Err(not_so("the host").hint("`toyo status` shows whether the host is ON"))
@@ -80,7 +82,7 @@ mod tests {
         // The command was not executed, and nothing else was sent.
         let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Lost));
         let failure = bench.run(&["home"]).unwrap_err();
-        assert!(failure.message.starts_with("the order was not sent: "), "{failure}");
+        assert!(failure.message.starts_with("the command was not sent: "), "{failure}");
         assert!(!heard.borrow().iter().any(|block| block == "@HOME"));
     }
 

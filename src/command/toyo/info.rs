@@ -87,7 +87,7 @@ struct Station {
 impl About {
     fn of(system: &Record) -> Self {
         Self {
-            robot_type: shown(system, "robot_type"),
+            robot_type: field_text(system, "robot_type"),
             version: meaning(system, "version"),
             language: meaning(system, "language"),
             axes: ["arm1", "arm2", "arm3", "arm4"].iter().filter_map(|arm| system.word(arm)).collect(),
@@ -111,14 +111,14 @@ impl About {
 }
 
 /// Value in the protocol.
-fn shown(record: &Record, name: &str) -> String {
+fn field_text(record: &Record, name: &str) -> String {
     record.pairs().find(|(field, _)| field.name == name).map(|(field, value)| field.written(value)).unwrap_or_default()
 }
 
 /// Meaning of a value.
 fn meaning(record: &Record, name: &str) -> String {
-    let found = record.pairs().find(|(field, _)| field.name == name);
-    found.map(|(field, value)| field.meaning(value).into_owned()).unwrap_or_default()
+    let field = record.pairs().find(|(field, _)| field.name == name);
+    field.map(|(field, value)| field.meaning(value).into_owned()).unwrap_or_default()
 }
 
 impl Report for About {

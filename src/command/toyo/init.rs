@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::link::Link;
 use super::link::Toyo;
 use super::task;
-use super::waiting::status_page;
+use super::wait::status_page;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -166,7 +166,7 @@ mod tests {
             );
         }
         assert!(objection(&["init"]).contains("<WHAT>"));
-        assert_eq!(intent(&["init", "points"]), "clear the coordinate table of the current task, for good");
+        assert_eq!(intent(&["init", "points"]), "clear the coordinate table of the current task permanently");
     }
 
     #[test]

@@ -216,8 +216,8 @@ mod tests {
             (["mvm", "get", "1-3"], "group 2", "RPAR T4 S3 GRP=02"),
             (["point", "get", "1-3"], "point 2", "RPAR T1 PT=002"),
         ] {
-            let asked = Box::leak(format!("@{block}").into_boxed_str());
-            let (data, failure) = with_faults(asked, Fault::Answered("@NG")).run(&words).unwrap();
+            let request = Box::leak(format!("@{block}").into_boxed_str());
+            let (data, failure) = with_faults(request, Fault::Answered("@NG")).run(&words).unwrap();
             let items = data["items"].as_array().unwrap();
             assert_eq!(items.len(), 3, "{data}");
             assert_eq!(
@@ -241,7 +241,12 @@ mod tests {
         let kinds: Vec<_> =
             data["items"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
         assert!(kinds[0].is_null() && kinds[1..].iter().all(|kind| kind == "no_answer"), "{data}");
-        assert!(data["items"][2]["error"]["message"].as_str().unwrap().starts_with("@MCNT CN=03 was not asked"));
+        assert!(
+            data["items"][2]["error"]["message"]
+                .as_str()
+                .unwrap()
+                .starts_with("@MCNT CN=03 was not sent after a lost answer")
+        );
         assert_eq!(failure.unwrap().kind, Kind::Mixed);
         let failure = with_faults("@MCNT CN=01", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
         assert_eq!(failure.kind, Kind::NoAnswer);
@@ -270,7 +275,7 @@ mod tests {
             // A kept value is not written back.
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
-                assert!(failure.message.contains("'ax2=+0000.5', which is not in the manual"), "{failure}");
+                assert!(failure.message.contains("'ax2=+0000.5' is not in the manual"), "{failure}");
                 assert_eq!(failure.hint.unwrap(), "nothing was written; type all values");
             }
             let dumped = bench.data(&["param", "dump"]);
@@ -285,10 +290,10 @@ mod tests {
             if block == "@RSTX 0002" { Fault::Answered("@RSTX 0002 FOO X=1") } else { Fault::None }
         })
         .0;
-        let got = bench.data(&["program", "get", "--to", "4"]);
-        assert_eq!(got["text"], "SPD V=05\nFOO X=1   # not in the manual\nEND\nNOP\n");
+        let program = bench.data(&["program", "get", "--to", "4"]);
+        assert_eq!(program["text"], "SPD V=05\nFOO X=1   # not in the manual\nEND\nNOP\n");
         assert_eq!(
-            got["steps"][1],
+            program["steps"][1],
             serde_json::json!({ "ok": true, "step": 2, "instruction": "FOO X=1", "in_manual": false })
         );
     }

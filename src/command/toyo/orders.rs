@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::link::Moving;
 use super::link::Toyo;
 use super::position::UNIT;
-use super::waiting::becomes;
+use super::wait::wait_for_status;
 use crate::command::face::shared::Alike;
 use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::robot::position::Position;
@@ -52,8 +52,9 @@ impl Command for Servo {
         let old = Old::read(old.map(Status::servo_on));
         authority.confirm(&new.question(self.intent(), &old)).await?;
         link.ask(&Request::bare(command)).await?;
-        let done = becomes(link, (3, "whether servo power has switched"), |status| status.servo_on() == is_on).await?;
-        link.has_ended();
+        let done =
+            wait_for_status(link, (3, "whether servo power has switched"), |status| status.servo_on() == is_on).await?;
+        link.end_motion();
         if done {
             return Ok(new.replaces(old));
         }
@@ -147,7 +148,7 @@ impl Command for Mode {
         let (link, mode) = (context.link, self.mode);
         let old = Old::read(link.status_before(2).await?.and_then(|status| mode.instead_of(status)));
         link.ask(&Request::bare(mode.command())).await?;
-        if becomes(link, (2, "whether the mode is active"), |status| mode.is_in_force(status)).await? {
+        if wait_for_status(link, (2, "whether the mode is active"), |status| mode.is_in_force(status)).await? {
             let (set, new) = mode.data();
             return Ok(New::of(set, new, mode.in_force()).replaces(old));
         }
@@ -305,7 +306,7 @@ mod tests {
             Bench::with_faults("", |block, _| if block == "@MPLE" { Fault::Answered("@OK") } else { Fault::None });
         let failure = bench.run(&["mode", "palletizing"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the order was accepted, but the mode has not changed within 1s");
+        assert_eq!(failure.message, "the command was accepted, but the mode did not change within 1s");
         assert!(failure.hint.unwrap().contains("M10"));
     }
 
@@ -314,7 +315,7 @@ mod tests {
         let blind = |block: &str, count| if block == "@STAS SNO=3" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", blind).0.run(&["servo", "off"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert!(failure.message.starts_with("the order was accepted, but what came of it was not seen: "));
+        assert!(failure.message.starts_with("the command was accepted, but its result is unknown: "));
         let busy = |block: &str, count| {
             if block == "@STAS SNO=3" && count < 4 { Fault::Answered("@NG") } else { Fault::None }
         };

@@ -76,8 +76,8 @@ impl Command for Set {
             wanted: wanted.map_err(|error| wrong(&error))?,
         };
         let mut cells = Cells::default();
-        let found = context.link.store(context.screen, &cell, &mut cells).await?;
-        let old = Old::read(found.and_then(|record| record.number(field().name)));
+        let stored = context.link.store(context.screen, &cell, &mut cells).await?;
+        let old = Old::read(stored.and_then(|record| record.number(field().name)));
         let new = New::of("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
         Ok(Written { done: new.with("speed_override_percent", self.percent).replaces(old), cells })
     }

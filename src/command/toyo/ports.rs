@@ -42,8 +42,8 @@ impl OfflineCommand for Ports {
 
 /// Serial ports of this computer.
 pub fn all() -> Result<Vec<Port>, Failure> {
-    let found = ports::ports().context("the list of serial ports")?;
-    Ok(found.into_iter().map(Port::from).collect())
+    let ports = ports::ports().context("the list of serial ports")?;
+    Ok(ports.into_iter().map(Port::from).collect())
 }
 
 /// Serial ports.

@@ -82,7 +82,7 @@ impl Command for Raw {
             Block::Known(request) => {
                 let answer = link.raw(request).await?;
                 if answer == Answer::Done {
-                    chosen(link, request);
+                    record_choice(link, request);
                 }
                 answer.text()
             }
@@ -93,7 +93,7 @@ impl Command for Raw {
 }
 
 /// The user chose these settings, so they need no notice.
-fn chosen(link: &mut Link, request: &Request) {
+fn record_choice(link: &mut Link, request: &Request) {
     match request.command() {
         table::Command::Hson => link.choose_host(true),
         table::Command::Hsof => link.choose_host(false),

@@ -122,7 +122,7 @@ fn an_unanswered_jog_is_sent_once_and_stopped() {
     let failure = outcome.unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
     assert!(failure.hint.unwrap().contains("toyo stop --jog"));
-    assert!(failure.message.contains("the axis was stopped and stands at X "), "{}", failure.message);
+    assert!(failure.message.contains("the axis was stopped at X "), "{}", failure.message);
     assert!((2.0..4.0).contains(&moved), "a silence of 300 ms ends it: {moved} mm");
 
     let (outcome, _, moved) = with_faults(|block, _| if block == GO { Fault::Lost } else { Fault::None });
@@ -165,7 +165,11 @@ fn a_lost_line_has_a_hint_to_press_the_emergency_stop() {
     });
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.contains("the axis may still move: nothing tells that it stands"), "{}", failure.message);
+    assert!(
+        failure.message.contains("the axis can still move: it is unknown whether the robot stopped"),
+        "{}",
+        failure.message
+    );
     let hint = failure.hint.unwrap();
     assert!(hint.starts_with("press the emergency stop") && hint.contains("`toyo stop --jog`"), "{hint}");
     assert!(count(&heard, STOP) > 10);
@@ -182,7 +186,7 @@ fn a_controller_that_does_not_stop_is_an_error() {
         Bench::with_faults(READY, |block, _| if block == STOP { Fault::Answered("@OK") } else { Fault::None });
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.kind, Kind::ConditionNotMet);
-    assert!(failure.message.contains("may still move: the controller answered @OK, but the robot still moves"));
+    assert!(failure.message.contains("can still move: the controller answered @OK, but the robot still moves"));
     assert!(failure.hint.unwrap().starts_with("press the emergency stop"));
     ends_with_a_stop(&heard);
 }
@@ -202,7 +206,9 @@ fn a_controller_error_ends_a_jog() {
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("28")));
     assert!(
-        failure.message.starts_with("an error came up (28: axis 1: beyond the plus soft limit while moving); the axis")
+        failure
+            .message
+            .starts_with("an error occurred (28: axis 1: beyond the plus soft limit while moving); the axis")
     );
     ends_with_a_stop(&heard);
 }
@@ -215,7 +221,7 @@ fn ctrl_c_at_any_moment_stops_the_axis() {
         let has_moved = count(&heard, GO) > 0 || said.starts_with("the robot was stopped");
         if has_moved {
             ends_with_a_stop(&heard);
-            assert!(said.contains("it stands at X "), "{ms}: {said}");
+            assert!(said.contains("the axes are at X "), "{ms}: {said}");
         }
         let here = bench.data(&["position"]);
         bench.wait(Duration::from_secs(10));
@@ -235,7 +241,7 @@ fn an_unanswered_inching_step_is_not_repeated() {
         );
     let failure = bench.run(&["jog", "X", "+", "inch", "--steps", "5"]).unwrap_err();
     assert_eq!((failure.kind, count(&heard, step)), (Kind::OutcomeUnknown, 2));
-    assert!(failure.message.starts_with("step 2 of 5: ") && failure.message.contains("stands at X 0.02"));
+    assert!(failure.message.starts_with("step 2 of 5: ") && failure.message.contains("the axis was stopped at X 0.02"));
     ends_with_a_stop(&heard);
 }
 
@@ -282,7 +288,7 @@ fn a_letter_selects_the_axis_with_this_letter_on_the_machine() {
     let twice = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=X AX3=Z AX4=R\"]\n";
     let (mut bench, heard) = Bench::with_faults(twice, |_, _| Fault::None);
     let failure = bench.run(&["jog", "x", "+", "low", "--for", "300ms"]).unwrap_err();
-    assert_eq!(failure.message, "which axis X is, is not known: the letters of axes 1 to 4 are X, X, Z, R");
+    assert_eq!(failure.message, "the axis of X is unknown: axes 1 to 4 have the letters X, X, Z, R");
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@JGST")));
     assert_eq!(bench.data(&["jog", "2", "+", "low", "--for", "300ms"])["axis"], "X");
 }

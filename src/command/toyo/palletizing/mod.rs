@@ -15,7 +15,7 @@ use super::link::{Link, Toyo, wrong};
 use super::numbers;
 use super::programs::{Copy, Kind, Select};
 use super::rows::{EepromRow, Listed, is_zero};
-use super::values::{self, Shown};
+use super::values::{self, NamedValue};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::commands;
@@ -149,7 +149,7 @@ impl Store for Records {
     type Family = Toyo;
     type Key = Key;
     type Wire = Record;
-    type Value = Vec<Shown>;
+    type Value = Vec<NamedValue>;
     type More = About;
     type Options = ProgramOptions;
 
@@ -168,12 +168,12 @@ impl Store for Records {
     const COMPLETE: ValueKind = complete::RECORD;
 
     fn keys(text: &str) -> Result<Vec<Key>, String> {
-        let found = Pallet::named(&text.to_lowercase()).ok_or_else(|| {
+        let record = Pallet::named(&text.to_lowercase()).ok_or_else(|| {
             let near = nearest(text, RECORDS.iter().map(|record| record.name));
             let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
             format!("unknown record{near}")
         });
-        Ok(vec![Key(found?)])
+        Ok(vec![Key(record?)])
     }
 
     fn all() -> Vec<Key> {
@@ -197,7 +197,7 @@ impl Store for Records {
     }
 
     fn texts(&self, record: &Record) -> Vec<String> {
-        vec![values::as_typed(&values::shown_by(record, &self.letters))]
+        vec![values::as_typed(&values::named_values_with(record, &self.letters))]
     }
 
     fn headings(&self) -> Vec<&'static str> {
@@ -205,7 +205,7 @@ impl Store for Records {
     }
 
     fn cells(&self, Key(pallet): Key, record: &Record) -> Vec<view::Cell> {
-        let value = values::in_a_line(&values::shown_by(record, &self.letters));
+        let value = values::in_a_line(&values::named_values_with(record, &self.letters));
         vec![pallet.number.into(), value.into()]
     }
 
@@ -213,8 +213,8 @@ impl Store for Records {
         values::difference(old, new, &self.letters)
     }
 
-    fn value(&self, record: &Record) -> Option<Vec<Shown>> {
-        Some(values::shown_by(record, &self.letters))
+    fn value(&self, record: &Record) -> Option<Vec<NamedValue>> {
+        Some(values::named_values_with(record, &self.letters))
     }
 
     fn more(&self, Key(pallet): Key, record: Option<&Record>) -> About {
@@ -273,7 +273,7 @@ mod tests {
         assert_eq!((copied.len(), &copied[32][..]), (49, "@CPPL STA=01 TOP=02"));
         assert!(objection(&["palletizing", "get", "17"]).contains("17 is out of range (a number, 1 to 16)"));
         let error = objection(&["palletizing", "get", "1", "sorce-p1"]);
-        assert!(error.contains("there is no such record; did you mean source-p1?"), "{error}");
+        assert!(error.contains("unknown record; did you mean source-p1?"), "{error}");
     }
 
     #[test]

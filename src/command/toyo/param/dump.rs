@@ -11,7 +11,7 @@ use super::{Key, read, singles};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::Numbers;
-use crate::command::toyo::values::{NOT_IN_MANUAL, in_a_line, shown};
+use crate::command::toyo::values::{NOT_IN_MANUAL, in_a_line, named_values};
 use crate::command::toyo::{files, items};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::{Setting, parameters};
@@ -48,16 +48,16 @@ impl Command for Dump {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, several, .. } = context;
         let target = files::target(self.file.as_deref(), self.force, several)?;
-        let kept = DumpReport::read(link, screen).await?;
-        let now = Timestamp::now();
-        let taken_at = now.round(jiff::Unit::Second).unwrap_or(now).to_string();
+        let dump = DumpReport::read(link, screen).await?;
+        let time = Timestamp::now();
+        let taken_at = time.round(jiff::Unit::Second).unwrap_or(time).to_string();
         let text = format!(
             "# Parameters of a Toyo controller, saved by armctl; `toyo param restore` writes them back.\n# {}, {taken_at}\n\n{}",
             escape::line(&robot.label()),
-            kept.text(),
+            dump.text(),
         );
         let file = target.map(|target| files::write(&target, &text)).transpose()?;
-        let DumpReport { settings, refused, unfit, failed } = kept;
+        let DumpReport { settings, refused, unfit, failed } = dump;
         let text = file.is_none().then_some(text);
         Ok(Dumped { saved: settings.len(), refused, unfit, failed, taken_at, file, text })
     }
@@ -112,11 +112,11 @@ impl DumpReport {
     pub async fn read(link: &mut Link, screen: &Screen) -> Result<Self, Failure> {
         let keys = keys();
         let contents = read(link, screen, &keys).await?;
-        let mut kept = Self::default();
+        let mut dump = Self::default();
         for (key, content) in keys.into_iter().zip(contents) {
-            kept.add(key, content);
+            dump.add(key, content);
         }
-        Ok(kept)
+        Ok(dump)
     }
 
     /// The values as TOML, with comments about the others.
@@ -132,7 +132,7 @@ impl DumpReport {
             Err(failure) => return self.failed.push(Failed { key, error: failure }),
         };
         if !content.is_listed() {
-            let value = in_a_line(&shown(&content));
+            let value = in_a_line(&named_values(&content));
             return self.unfit.push(Unfit { key, value, in_manual: false, why: NOT_IN_MANUAL.to_owned() });
         }
         let setting = Setting { parameter, values: content.values().to_vec() };
@@ -140,7 +140,7 @@ impl DumpReport {
             Ok(_) => self.settings.push(setting),
             Err(error) => {
                 let body = parameter.body().record(setting.values[parameter.key.fields.len()..].to_vec());
-                let value = body.map_or_else(|_| content.written(), |body| in_a_line(&shown(&body)));
+                let value = body.map_or_else(|_| content.written(), |body| in_a_line(&named_values(&body)));
                 self.unfit.push(Unfit { key, value, in_manual: true, why: error.to_string() });
             }
         }

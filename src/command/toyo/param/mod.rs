@@ -18,7 +18,7 @@ use super::items::{Answers as Records, read_each_twice};
 use super::link::{Link, Toyo, wrong};
 use super::rows::{EepromRow, Listed};
 use super::stores::{parameter_cell, parameter_sketch};
-use super::values::{self, Shown};
+use super::values::{self, NamedValue};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::commands;
@@ -162,7 +162,7 @@ impl Store for Parameters {
     type Family = Toyo;
     type Key = Key;
     type Wire = Record;
-    type Value = Vec<Shown>;
+    type Value = Vec<NamedValue>;
     type More = About;
     type Options = Single;
 
@@ -210,7 +210,7 @@ impl Store for Parameters {
     }
 
     fn texts(&self, record: &Record) -> Vec<String> {
-        vec![values::as_typed(&values::shown(record))]
+        vec![values::as_typed(&values::named_values(record))]
     }
 
     fn headings(&self) -> Vec<&'static str> {
@@ -218,7 +218,7 @@ impl Store for Parameters {
     }
 
     fn cells(&self, key: Key, record: &Record) -> Vec<view::Cell> {
-        let body = values::shown(record);
+        let body = values::named_values(record);
         vec![view::Cell::from(key.parameter.id).whole(), values::in_a_line(&body).into()]
     }
 
@@ -226,8 +226,8 @@ impl Store for Parameters {
         values::difference(old, new, &Letters::USUAL)
     }
 
-    fn value(&self, record: &Record) -> Option<Vec<Shown>> {
-        Some(values::shown(record))
+    fn value(&self, record: &Record) -> Option<Vec<NamedValue>> {
+        Some(values::named_values(record))
     }
 
     fn more(&self, key: Key, record: Option<&Record>) -> About {

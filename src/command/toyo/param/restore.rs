@@ -9,7 +9,7 @@ use crate::command::frame::store::{Work, write};
 use crate::command::robot::item::WrittenItems;
 use crate::command::toyo::files;
 use crate::command::toyo::link::Toyo;
-use crate::command::toyo::values::{Changes, Shown};
+use crate::command::toyo::values::{Changes, NamedValue};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, parameters};
@@ -60,7 +60,7 @@ const USUAL: [Part; 3] = [Part::Mode, Part::Axis, Part::Table];
 
 impl Command for Restore {
     type Family = Toyo;
-    type Report = WrittenItems<Vec<Shown>, About>;
+    type Report = WrittenItems<Vec<NamedValue>, About>;
     const ID: &'static str = "toyo.param.restore";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite parameters with those of the file";
@@ -72,16 +72,16 @@ impl Command for Restore {
         let read = parameters::read(&files::read(&self.file)?);
         let settings = read.map_err(|errors| files::faulty(&name, &errors))?;
         let settings = settings.into_iter().map(|(setting, _)| setting);
-        let (mut chosen, left): (Vec<Setting>, Vec<Setting>) =
-            settings.partition(|setting| self.place(setting).is_some());
-        chosen.sort_by_key(|setting| self.place(setting));
-        if chosen.is_empty() {
+        let (mut selected, skipped): (Vec<Setting>, Vec<Setting>) =
+            settings.partition(|setting| self.write_order(setting).is_some());
+        selected.sort_by_key(|setting| self.write_order(setting));
+        if selected.is_empty() {
             return Err(Failure::usage(format!("{name} has no parameters of the selected groups"))
                 .hint("select groups with --group: mode, axis, table, special, machine"));
         }
-        if self.group.is_empty() && !left.is_empty() {
-            let parameters = if left.len() == 1 { "parameter" } else { "parameters" };
-            let left_out = format!("skipped {} machine or special {parameters}", left.len());
+        if self.group.is_empty() && !skipped.is_empty() {
+            let parameters = if skipped.len() == 1 { "parameter" } else { "parameters" };
+            let left_out = format!("skipped {} machine or special {parameters}", skipped.len());
             screen.note(&format!("{left_out} (--group machine,special)"));
         }
         let row = |setting: Setting| {
@@ -89,15 +89,15 @@ impl Command for Restore {
             let values = setting.values[keys..].iter().cloned().map(Some).collect();
             (Key { parameter: setting.parameter, row: setting.row() }, Changes::of(values))
         };
-        let rows = chosen.into_iter().map(row).collect();
+        let rows = selected.into_iter().map(row).collect();
         write(Work { table: Parameters, robot, link, screen, authority }, rows).await
     }
 }
 
 impl Restore {
     /// Position of a setting in the order of the writes; `None` if its group is not selected.
-    fn place(&self, setting: &Setting) -> Option<usize> {
-        let wanted = if self.group.is_empty() { &USUAL[..] } else { &self.group };
-        ORDER.iter().position(|(part, group)| *group == setting.parameter.group() && wanted.contains(part))
+    fn write_order(&self, setting: &Setting) -> Option<usize> {
+        let groups = if self.group.is_empty() { &USUAL[..] } else { &self.group };
+        ORDER.iter().position(|(part, group)| *group == setting.parameter.group() && groups.contains(part))
     }
 }

@@ -15,7 +15,7 @@ fn parameters_are_read_by_name_or_id() {
     all.dedup();
     assert_eq!(all.len(), 74);
     let error = objection(&["param", "get", "soft-limit-pluss"]);
-    assert!(error.contains("there is no such parameter; did you mean soft-limit-plus?"), "{error}");
+    assert!(error.contains("unknown parameter; did you mean soft-limit-plus?"), "{error}");
     let error = objection(&["param", "get", "t4.s1"]);
     assert!(error.contains("mvm-points is a table; `toyo mvm get` reads its rows"), "{error}");
 }
@@ -65,7 +65,7 @@ fn wrong_arguments_send_nothing() {
     );
     assert_eq!(
         failed(&["param", "set", "e22", "4000", "1000", "1", "0"]),
-        "the tasks would have 5001 steps together; there are 5000"
+        "all tasks together would have 5001 steps; the limit is 5000"
     );
     assert_eq!(
         failed(&["param", "set", "e05", "left", "0", "0", "0"]),
@@ -75,27 +75,27 @@ fn wrong_arguments_send_nothing() {
 
 #[test]
 fn the_confirmation_names_the_effects_of_machine_parameters() {
-    let told = |id| machine::consequence_of(&[Parameter::named(id).unwrap()]);
+    let consequence = |id| machine::consequence_of(&[Parameter::named(id).unwrap()]);
     assert_eq!(
-        told("E06"),
-        "after a change of E06 (max-speed) only communication works until the controller's power is switched off and on"
+        consequence("E06"),
+        "after a change of E06 (max-speed) the controller executes nothing before a restart"
     );
-    assert!(told("E22").contains("easy programs"));
+    assert!(consequence("E22").contains("easy programs"));
 }
 
 #[test]
 fn the_confirmation_names_steps_that_would_be_lost() {
     let steps = Parameter::named("E22").unwrap();
     let record = |numbers: [i32; 4]| steps.layout.record(numbers.map(Value::Number).into()).unwrap();
-    let told = |found, wanted| machine::warnings(steps, Some(&record(found)), record(wanted).values());
+    let warnings_of = |old, new| machine::warnings(steps, Some(&record(old)), record(new).values());
     assert_eq!(
-        told([1000, 0, 0, 0], [500, 1501, 0, 0]),
+        warnings_of([1000, 0, 0, 0], [500, 1501, 0, 0]),
         [
             "warning: steps 501 to 1000 of task 1 become NOP",
             "warning: with more than 2000 steps, all easy programs are erased"
         ]
     );
-    assert!(told([3000, 0, 0, 0], [4000, 0, 0, 0]).is_empty());
+    assert!(warnings_of([3000, 0, 0, 0], [4000, 0, 0, 0]).is_empty());
     assert_eq!(
         machine::warnings(Parameter::named("U03").unwrap(), None, &[]),
         ["warning: U03 (resolver-cable-length) is not for normal use"]
@@ -209,7 +209,7 @@ fn a_dump_has_values_that_cannot_be_written_as_comments() {
     let dumped = bench.data(&["param", "dump"]);
     assert_eq!(dumped["unfit"][0]["key"], "M17");
     let text = dumped["text"].as_str().unwrap();
-    let comment = "# M17 is station=0 rate=156K options=0, which may not be written: \
+    let comment = "# M17 is station=0 rate=156K options=0, which cannot be written back: \
                    station: 0 is out of range (a number, 1 to 61)";
     assert!(text.contains(comment), "{text}");
     assert!(!text.contains("cc-link = "));

@@ -187,8 +187,8 @@ fn values_without_names_are_rejected_if_letters_are_not_in_default_order() {
     for words in [&["point", "set", "1", "1", "2", "3", "4"][..], &["coordinate", "set", "1", "2", "3", "4"]] {
         let failure = bench.run(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2);
-        assert!(failure.message.ends_with("the letters of axes 1 to 4 are X, Z, Y, R"), "{failure}");
-        assert!(failure.hint.unwrap().starts_with("give them by name: x=… z=… y=… r=…"));
+        assert!(failure.message.ends_with("axes 1 to 4 have the letters X, Z, Y, R"), "{failure}");
+        assert!(failure.hint.unwrap().starts_with("type them by name: x=… z=… y=… r=…"));
     }
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR T1") || block.starts_with("@MRSS")));
 }
@@ -203,7 +203,7 @@ fn without_reported_letters_axes_have_numbers() {
     for words in [&["point", "set", "1", "z=12.5"][..], &["jog", "Z", "+", "low", "--for", "1s"]] {
         let failure = bench.run(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2, "{failure}");
-        assert!(failure.message.contains("which axis Z is, is not known"), "{failure}");
+        assert!(failure.message.contains("the axis of Z is unknown"), "{failure}");
     }
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR") || block.starts_with("@JGST")));
     assert_eq!(bench.data(&["point", "set", "1", "ax3=12.5"])["items"][0]["value"]["joints"][2]["mm"], 12.5);

@@ -98,9 +98,9 @@ fn a_program_that_waits_forever_is_reported_with_its_step() {
     let failure = desk.failure(&["./a.txt"]);
     assert_eq!(failure.kind, Kind::ConditionNotMet);
     let (message, hint) = (failure.message, failure.hint.unwrap());
-    assert!(message.contains("everything waits for an input that never comes: "), "{message}");
+    assert!(message.contains("all tasks wait for an input without end: "), "{message}");
     assert!(message.ends_with("a.txt:2, task 1, step 2: IN STN=0 PN01=.....1.. AND"), "{message}");
-    assert_eq!(hint, "--input \"at 2s 0/01/3 on\" gives it");
+    assert_eq!(hint, "set it with --input \"at 2s 0/01/3 on\"");
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn faulty_files_are_wrong_arguments() {
         ("params.toml", "[speed-table]\n5 = 0\n"),
         ("state.toml", "axes = 9\n"),
     ]);
-    for (words, told) in [
+    for (words, message) in [
         (&["./a.txt"][..], "a.txt:1:1: unknown instruction 'EMD'"),
         (&["./good.txt", "--points", "./points.csv"], "points.csv:1:10: column y_mm is missing"),
         (&["./good.txt", "--params", "./params.toml"], "params.toml:2:5: speed: 0.0 is out of range"),
@@ -168,7 +168,7 @@ fn faulty_files_are_wrong_arguments() {
     ] {
         let failure = desk.failure(words);
         assert_eq!(failure.kind, Kind::Usage);
-        assert!(failure.message.contains(told), "{}", failure.message);
+        assert!(failure.message.contains(message), "{}", failure.message);
     }
     assert_eq!(desk.failure(&["./nothing.txt"]).kind, Kind::Local);
 }

@@ -7,10 +7,10 @@ use std::sync::{Arc, Mutex};
 use crate::client::toyo::Event;
 use crate::client::{Ends, Watcher};
 use crate::command::frame::trace::locked;
-use crate::command::toyo::chosen::Chosen;
-use crate::command::toyo::debts::{Debts, Left};
+use crate::command::toyo::change_journal::{AbandonedEntry, ChangeJournal};
 use crate::command::toyo::failure::not_put_back;
 use crate::command::toyo::trace::Trace;
+use crate::command::toyo::user_choices::UserChoices;
 use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table::commands::Command;
 use crate::output::Screen;
@@ -18,79 +18,79 @@ use crate::transport::tap::Direction;
 
 /// State that a link shares with its client.
 #[derive(Debug)]
-pub(super) struct Onlooker {
+pub(super) struct Observer {
     pub(super) trace: Trace,
     /// Temporary changes, for other processes to find if this process is killed.
-    pub(super) debts: Debts,
+    pub(super) journal: ChangeJournal,
     /// Settings that the user chose to keep.
-    pub(super) chosen: Chosen,
-    pub(super) told: Told,
+    pub(super) choices: UserChoices,
+    pub(super) printed: PrintedNotices,
     pub(super) screen: Screen,
     pub(super) label: String,
 }
 
 /// Notices that were printed or are not needed. A link prints each one once.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Told {
+pub(super) struct PrintedNotices {
     host: bool,
     task: bool,
 }
 
-impl Told {
+impl PrintedNotices {
     pub(super) const ALL: Self = Self { host: true, task: true };
 
     /// Notices that the journal entries of this user already contain.
-    pub(super) fn by(left: &[Left]) -> Self {
-        let chooses = |block: &String| block.trim_start_matches('@').starts_with(Command::Ctsk.row().word);
+    pub(super) fn from_journal(abandoned: &[AbandonedEntry]) -> Self {
+        let selects_task = |block: &String| block.trim_start_matches('@').starts_with(Command::Ctsk.row().word);
         Self {
-            host: left.iter().any(|left| left.owed.host),
-            task: left.iter().any(|left| left.owed.back.iter().any(chooses)),
+            host: abandoned.iter().any(|abandoned| abandoned.entry.host),
+            task: abandoned.iter().any(|abandoned| abandoned.entry.back.iter().any(selects_task)),
         }
     }
 }
 
 /// Client's reference to the observer.
 #[derive(Debug)]
-pub(super) struct Watching(pub(super) Arc<Mutex<Onlooker>>);
+pub(super) struct SharedObserver(pub(super) Arc<Mutex<Observer>>);
 
-impl Watcher<Event> for Watching {
+impl Watcher<Event> for SharedObserver {
     fn frame(&mut self, direction: Direction, _: Ends, bytes: &[u8]) {
         locked(&self.0).trace.record(direction, bytes);
     }
 
     fn event(&mut self, event: Event) {
-        let mut onlooker = locked(&self.0);
+        let mut observer = locked(&self.0);
         match event {
-            Event::Moves(moving) => onlooker.debts.moving(moving),
-            Event::TakesHost(is_taken) => onlooker.debts.host(is_taken),
-            Event::Borrows(back) => onlooker.debts.push(&back.text()),
-            Event::PutBack(back) => onlooker.debts.pop(&back.text()),
-            Event::NotPutBack(back) => {
-                onlooker.screen.note(&format!("{}: the connection is lost", not_put_back(&back.text())));
+            Event::Motion(moving) => observer.journal.moving(moving),
+            Event::HostSwitch(is_taken) => observer.journal.host(is_taken),
+            Event::TemporaryChange(back) => observer.journal.push(&back.text()),
+            Event::Undone(back) => observer.journal.pop(&back.text()),
+            Event::NotUndone(back) => {
+                observer.screen.note(&format!("{}: the connection is lost", not_put_back(&back.text())));
             }
-            Event::Host { status, is_taken } => onlooker.tell_foreign_host(status, is_taken),
-            Event::Task(task) => onlooker.tell_foreign_task(task),
-            Event::Reopened => onlooker.screen.detail(1, "the connection is open again"),
+            Event::Host { status, is_taken } => observer.report_foreign_host(status, is_taken),
+            Event::Task(task) => observer.report_foreign_task(task),
+            Event::Reopened => observer.screen.detail(1, "the connection is open again"),
             _ => {}
         }
     }
 }
 
-impl Onlooker {
+impl Observer {
     /// Prints a notice if the host is ON and this user did not switch it ON. Execution while the host is ON was started
     /// by a host.
-    fn tell_foreign_host(&mut self, status: Status, is_taken: bool) {
-        let Some(choice) = self.chosen.get() else { return };
+    fn report_foreign_host(&mut self, status: Status, is_taken: bool) {
+        let Some(choice) = self.choices.get() else { return };
         if !status.host_on() {
             if choice.host {
-                self.chosen.change(|choice| choice.host = false);
+                self.choices.change(|choice| choice.host = false);
             }
             return;
         }
-        if choice.host || self.told.host || is_taken || self.is_no_time() {
+        if choice.host || self.printed.host || is_taken || self.must_wait() {
             return;
         }
-        self.told.host = true;
+        self.printed.host = true;
         let what = if status.executing() || status.homing() {
             "another client switched the host ON and started a program: if no other person uses the robot, \
              `toyo stop` stops it and `toyo host off` releases the host"
@@ -102,19 +102,19 @@ impl Onlooker {
     }
 
     /// Prints a notice if another client selected the current task. Task 1 is the default and needs no notice.
-    fn tell_foreign_task(&mut self, task: Option<i32>) {
+    fn report_foreign_task(&mut self, task: Option<i32>) {
         let Some(task) = task.and_then(|task| u8::try_from(task).ok()) else { return };
-        let Some(choice) = self.chosen.get() else { return };
-        if choice.task == Some(task) || self.is_no_time() {
+        let Some(choice) = self.choices.get() else { return };
+        if choice.task == Some(task) || self.must_wait() {
             return;
         }
         if choice.task.is_some() {
-            self.chosen.change(|choice| choice.task = None);
+            self.choices.change(|choice| choice.task = None);
         }
-        if task == 1 || self.told.task {
+        if task == 1 || self.printed.task {
             return;
         }
-        self.told.task = true;
+        self.printed.task = true;
         self.screen.note(&format!(
             "{}: another client selected task {task}, and commands without --task use \
              it; `toyo task set 1` selects task 1",
@@ -124,19 +124,19 @@ impl Onlooker {
 
     /// Records that the user chose the present state of the host.
     pub(super) fn choose_host(&mut self, is_on: bool) {
-        self.told.host = true;
-        self.chosen.change(|choice| choice.host = is_on);
+        self.printed.host = true;
+        self.choices.change(|choice| choice.host = is_on);
     }
 
     /// Records that the user chose this task as the current one.
     pub(super) fn choose_task(&mut self, task: u8) {
-        self.told.task = true;
-        self.chosen.change(|choice| choice.task = Some(task));
+        self.printed.task = true;
+        self.choices.change(|choice| choice.task = Some(task));
     }
 
     /// Whether a notice must wait. A blocked terminal must not delay a stop during motion. The setting can also be a
     /// temporary change of another process of this user.
-    fn is_no_time(&self) -> bool {
-        self.debts.owed().moving.is_some() || self.debts.others_owe()
+    fn must_wait(&self) -> bool {
+        self.journal.entry().moving.is_some() || self.journal.has_entry_of_running_process()
     }
 }
