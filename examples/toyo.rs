@@ -27,7 +27,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     // The host is switched ON for it, and OFF again at the end.
     robot.ask(&jog("RS", None)).await?;
     robot.ask(&jog("+C", Some(0))).await?;
-    while robot.place().await?.number("x") == Some(0) {
+    while robot.read_position().await?.number("x") == Some(0) {
         tokio::time::sleep(Duration::from_millis(20)).await;
     }
     // Until it is told to stop, an axis may move.

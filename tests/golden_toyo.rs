@@ -62,7 +62,7 @@ fn holds(about: &str, tx: &str, rx: &str) {
 }
 
 #[test]
-fn every_pair_holds() {
+fn every_printed_pair_is_parsed_and_made_again() {
     let pairs = transcripts().pairs;
     assert_eq!(pairs.len(), 410);
     for pair in &pairs {
@@ -80,7 +80,7 @@ fn every_pair_holds() {
 
 /// What is printed wrong is not sent; where it only has other blanks or digits, it is still understood.
 #[test]
-fn misprints_are_not_made() {
+fn misprints_are_never_sent() {
     for pair in transcripts().pairs {
         let Some(corrected) = &pair.corrected else { continue };
         let made = Request::parse(&corrected.tx).unwrap().text();
@@ -91,7 +91,7 @@ fn misprints_are_not_made() {
 }
 
 #[test]
-fn both_sample_sessions_hold() {
+fn both_sample_sessions_are_parsed_and_made_again() {
     let sessions = transcripts().sessions;
     assert_eq!(sessions.iter().map(|session| session.steps.len()).collect::<Vec<_>>(), [13, 13]);
     for session in &sessions {

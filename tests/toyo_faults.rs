@@ -168,7 +168,7 @@ fn virtual_time() -> tokio::runtime::Runtime {
 
 /// Every kind of fault alone and together, with many seeds each.
 #[test]
-fn nothing_is_doubled_lost_or_mistaken() {
+fn faults_never_double_lose_or_confuse_orders() {
     let grid = [
         "drop=0.5%",
         "drop=5%",
@@ -201,7 +201,7 @@ fn nothing_is_doubled_lost_or_mistaken() {
 }
 
 #[test]
-fn no_damage_makes_an_order_count_twice() {
+fn no_damage_executes_an_order_twice() {
     for faults in ["noise=0.5%", "noise=5%", "drop=5%,dup=5%", "noise=1%,drop=1%,dup=1%,parity=1%,delay=0..200ms,echo"]
     {
         for seed in 0..25 {

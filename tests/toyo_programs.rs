@@ -100,7 +100,7 @@ impl Put {
 }
 
 #[test]
-fn names_stand_for_numbers_in_the_text_of_a_program() {
+fn names_replace_numbers_in_program_text() {
     let desk = Desk::new();
     let put = desk.put(NAMED, &[]);
     let written: Vec<&str> = put.sent("@WSTX").into_keys().collect();
@@ -128,7 +128,7 @@ fn names_stand_for_numbers_in_the_text_of_a_program() {
 }
 
 #[test]
-fn a_program_comes_back_as_it_was_written_while_its_steps_are_the_same() {
+fn get_returns_the_source_text_while_the_steps_are_unchanged() {
     let desk = Desk::new();
     desk.put(NAMED, &[]);
     assert_eq!(desk.text(&["get"]), NAMED);
@@ -146,7 +146,7 @@ fn a_program_comes_back_as_it_was_written_while_its_steps_are_the_same() {
 }
 
 #[test]
-fn a_put_reads_the_steps_that_it_needs() {
+fn put_reads_only_the_steps_that_it_needs() {
     let desk = Desk::new();
     assert_eq!(desk.put(NAMED, &[]).read(), 2000, "nothing is known of them");
     let changed = NAMED.replace("1.5", "2.5");
@@ -160,7 +160,7 @@ fn a_put_reads_the_steps_that_it_needs() {
 }
 
 #[test]
-fn a_put_finds_what_was_written_at_the_pendant_where_it_matters() {
+fn put_finds_steps_from_the_pendant_that_affect_the_program() {
     let desk = Desk::new();
     let base = "next: SPD V=5\nJMP TAG=next\n";
     desk.put(base, &[]);

@@ -152,7 +152,7 @@ fn stands(controller: Controller) -> Vec<String> {
 
 /// Every way of ending a process that can be heard stops the axis, also that of keys that would suspend it.
 #[test]
-fn an_axis_is_not_left_jogging_whatever_ends_the_process() {
+fn every_signal_that_ends_the_process_stops_the_jog() {
     // A test that is run under nohup hears no SIGHUP.
     let ignored = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = ignored.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
@@ -182,7 +182,7 @@ fn an_axis_is_not_left_jogging_whatever_ends_the_process() {
 
 /// Ctrl-C in every phase: before an answer came, and while a look is not answered.
 #[test]
-fn a_jog_is_stopped_when_ctrl_c_meets_a_silence() {
+fn ctrl_c_during_a_missing_answer_stops_the_jog() {
     for silent in [GO, "@STAS SNO=0", "@MPST"] {
         let (mut goes, mut was_silent) = (false, false);
         let mut controller = Controller::new(move |block| {
@@ -208,7 +208,7 @@ fn a_jog_is_stopped_when_ctrl_c_meets_a_silence() {
 }
 
 #[test]
-fn a_reader_that_went_away_does_not_keep_the_stop_from_going_out() {
+fn a_closed_output_pipe_does_not_prevent_the_stop() {
     let controller = Controller::new(|_| Peculiar::No);
     let mut child = controller.command("jog X + low --for 200ms").spawn().unwrap();
     drop(child.stdout.take());
@@ -218,7 +218,7 @@ fn a_reader_that_went_away_does_not_keep_the_stop_from_going_out() {
 }
 
 #[test]
-fn a_line_that_is_cut_while_an_axis_moves_says_what_to_do() {
+fn a_lost_line_during_a_jog_has_a_hint_to_press_the_emergency_stop() {
     let mut goes = false;
     let controller = Controller::new(move |block| {
         let cut = goes;
@@ -228,7 +228,7 @@ fn a_line_that_is_cut_while_an_axis_moves_says_what_to_do() {
     let output = controller.command(JOG).output().unwrap();
     assert_eq!(output.status.code(), Some(6), "{}", errors(&output));
     let told = errors(&output);
-    assert!(told.contains("the axis may still move"), "{told}");
+    assert!(told.contains("the axis can still move"), "{told}");
     assert!(told.contains("press the emergency stop") && told.contains("`toyo stop --jog`"), "{told}");
 }
 
@@ -257,7 +257,7 @@ fn ctrl_c_stops_what_runs() {
 }
 
 #[test]
-fn what_is_to_be_left_is_left() {
+fn on_interrupt_leave_does_not_stop_the_program() {
     let mut controller = Controller::new(|_| Peculiar::No);
     let child = controller.command("run sequential 1 --wait --on-interrupt leave").spawn().unwrap();
     controller.wait_for("@SPST 0001", 1);
@@ -272,7 +272,7 @@ fn what_is_to_be_left_is_left() {
 
 /// An order whose answer is lost leaves once, and the outcome is told as unknown.
 #[test]
-fn no_order_leaves_twice() {
+fn an_unanswered_order_is_sent_once() {
     for (words, order) in [
         ("home", "@HOME"),
         ("home --sync 1", "@SORG 1"),
@@ -330,7 +330,7 @@ fn toyo(url: &str, state: &std::path::Path, words: &str) -> Command {
 }
 
 #[test]
-fn what_a_killed_command_has_left_is_told_until_it_is_undone() {
+fn changes_of_a_killed_command_are_reported_until_they_are_undone() {
     let state = tempfile::tempdir().unwrap();
     let (tell, moves) = channel();
     let url = lasting(move |block| {
@@ -344,11 +344,11 @@ fn what_a_killed_command_has_left_is_told_until_it_is_undone() {
     signal(&jog, "KILL");
     jog.wait().unwrap();
     let said = || errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(said().contains("the host is still ON, which was OFF; `toyo host off`"));
+    assert!(said().contains("the host is still ON and was OFF before; `toyo host off`"));
     // The guardian stops the jog.
-    assert!((0..1000).any(|_| !said().contains("executed")), "{}", said());
+    assert!((0..1000).any(|_| !said().contains("the robot still runs")), "{}", said());
     let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(!said.contains("executed") && said.contains("the host is still ON"), "{said}");
+    assert!(!said.contains("the robot still runs") && said.contains("the host is still ON"), "{said}");
     assert!(toyo(&url, state.path(), "host off").status().unwrap().success());
     toyo(&url, state.path(), "position").status().unwrap();
     let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
@@ -365,7 +365,7 @@ fn another_client(url: &str, block: &str) {
 }
 
 #[test]
-fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
+fn a_host_switched_on_by_another_client_is_reported() {
     let state = tempfile::tempdir().unwrap();
     let url = lasting(|_| Peculiar::No);
     let said = |words: &str| {
@@ -376,15 +376,19 @@ fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
     assert_eq!(said("status"), "");
     another_client(&url, "@HSON");
     let told = said("status");
-    assert!(told.contains("the host is ON, and no armctl of this user keeps it so"), "{told}");
-    assert!(told.contains("`toyo host off` gives it back"), "{told}");
-    assert_eq!(said("status --watch=20ms --count 3").matches("the host is ON").count(), 1, "once is enough");
+    assert!(told.contains("another client switched the host ON, which disables the start input"), "{told}");
+    assert!(told.contains("`toyo host off` releases the host"), "{told}");
+    assert_eq!(
+        said("status --watch=20ms --count 3").matches("another client switched the host ON").count(),
+        1,
+        "once is enough"
+    );
     // What changes something looks who commands, too; what does not ask is not made to.
     assert!(said("stop").is_empty() && said("position").is_empty());
     another_client(&url, "@SPST 0001");
     let told = said("status");
-    assert!(told.contains("the host is ON and something is executed, and no armctl of this user does that"), "{told}");
-    assert!(told.contains("`toyo stop` stops it and `toyo host off` gives"), "{told}");
+    assert!(told.contains("another client switched the host ON and started a program"), "{told}");
+    assert!(told.contains("`toyo stop` stops it and `toyo host off` releases the host"), "{told}");
     said("stop");
     said("host off");
     assert_eq!(said("status"), "");
@@ -397,29 +401,29 @@ fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
     another_client(&url, "@HSOF");
     assert_eq!(said("status"), "");
     another_client(&url, "@HSON");
-    assert!(said("status").contains("the host is ON"));
+    assert!(said("status").contains("another client switched the host ON"));
 }
 
 #[test]
-fn a_task_that_somebody_else_chose_is_told() {
+fn a_task_selected_by_another_client_is_reported() {
     let state = tempfile::tempdir().unwrap();
     let url = lasting(|_| Peculiar::No);
     let said = |words: &str| errors(&toyo(&url, state.path(), words).output().unwrap());
     assert_eq!(said("task get"), "");
     another_client(&url, "@CTSK TASK=02");
     let told = said("task get");
-    assert!(told.contains("task 2 is the current one, and no armctl of this user chose it"), "{told}");
-    assert!(told.contains("`toyo task set 1` chooses the first"), "{told}");
+    assert!(told.contains("another client selected task 2"), "{told}");
+    assert!(told.contains("`toyo task set 1` selects task 1"), "{told}");
     said("task set 2");
     assert_eq!(said("task get"), "");
     another_client(&url, "@CTSK TASK=03");
-    assert!(said("task get").contains("task 3 is the current one"));
+    assert!(said("task get").contains("another client selected task 3"));
     said("task set 1");
     assert_eq!(said("task get"), "");
 }
 
 #[test]
-fn a_watch_goes_on_when_the_line_is_back() {
+fn a_watch_continues_after_a_reconnect() {
     let state = tempfile::tempdir().unwrap();
     let mut places = 0;
     let url = lasting(move |block| {
@@ -444,7 +448,7 @@ fn a_watch_goes_on_when_the_line_is_back() {
 
 /// A serial port has one host: who has it is named, with how to end it.
 #[test]
-fn who_uses_a_serial_port_is_named() {
+fn a_busy_serial_port_names_the_process_that_uses_it() {
     let folder = tempfile::tempdir().unwrap();
     let simulator = Simulator::start_with("toyo", &["--pty"]);
     let mut home = toyo(&simulator.url, folder.path(), "home --no-session -vv").spawn().unwrap();
@@ -453,7 +457,10 @@ fn who_uses_a_serial_port_is_named() {
     let stop = toyo(&simulator.url, folder.path(), "stop --no-session").output().unwrap();
     let pid = home.id();
     assert_eq!(stop.status.code(), Some(4), "{}", errors(&stop));
-    for part in [format!("another armctl, process {pid}, uses "), format!("hint: `kill {pid}` ends it")] {
+    for part in [
+        format!("another armctl, process {pid}, uses "),
+        format!("hint: use `kill {pid}`: it stops its motion and ends"),
+    ] {
         assert!(errors(&stop).contains(&part), "{part}: {}", errors(&stop));
     }
     // The advice is good: it stops what it moves, and frees the port.

@@ -73,7 +73,7 @@ fn stderr(output: &Output) -> String {
 }
 
 #[test]
-fn a_pseudo_terminal_has_its_link_as_long_as_it_is_served() {
+fn a_pseudo_terminal_has_its_link_until_the_simulator_ends() {
     let folder = tempfile::tempdir().unwrap();
     let link = folder.path().join("port");
     for signal in ["-INT", "-TERM"] {
@@ -95,7 +95,7 @@ fn until(lines: &mut impl Iterator<Item = std::io::Result<String>>, ok: bool) {
 }
 
 #[test]
-fn a_watch_outlives_a_port_that_is_pulled_out_and_plugged_in_again() {
+fn a_watch_continues_after_its_port_is_unplugged_and_plugged_in() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("on.toml"), "host = true\n").unwrap();
     let mut served = Served::start(folder.path(), "--pty --link port");
@@ -122,7 +122,7 @@ fn a_watch_outlives_a_port_that_is_pulled_out_and_plugged_in_again() {
 }
 
 #[test]
-fn the_console_drives_what_no_command_can() {
+fn the_console_switches_inputs() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 127.0.0.1:0 --console");
     let mut console = served.process.stdin.take().unwrap();
@@ -139,7 +139,7 @@ fn the_console_drives_what_no_command_can() {
 }
 
 #[test]
-fn a_line_has_a_speed_and_an_address_has_one_simulator() {
+fn a_line_has_a_baud_rate_and_an_address_has_one_simulator() {
     let folder = tempfile::tempdir().unwrap();
     let served = Served::start(folder.path(), "--bind 127.0.0.1:0 --baud 115200 --axes 2");
     let address = served.target.strip_prefix("tcp://").unwrap().strip_suffix("?baud=115200").unwrap();
@@ -150,7 +150,7 @@ fn a_line_has_a_speed_and_an_address_has_one_simulator() {
 }
 
 #[test]
-fn others_on_the_network_are_warned_of() {
+fn a_simulator_on_all_interfaces_prints_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 0.0.0.0:0");
     assert_eq!(served.said(), "warning: others on the network can reach this simulator\n");

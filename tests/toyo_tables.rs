@@ -284,7 +284,7 @@ fn differences() -> BTreeSet<String> {
 }
 
 #[test]
-fn every_row_is_the_manuals() {
+fn every_row_matches_the_manual() {
     let expected: BTreeSet<String> = ON_PURPOSE.iter().map(|(difference, _)| (*difference).to_owned()).collect();
     let found = differences();
     let news: Vec<_> = found.difference(&expected).collect();
@@ -293,7 +293,7 @@ fn every_row_is_the_manuals() {
 }
 
 #[test]
-fn all_of_it_is_there() {
+fn the_tables_are_complete() {
     let tables = tables();
     let counts = [
         (tables.commands.len(), ROWS.len(), 62),
@@ -309,14 +309,14 @@ fn all_of_it_is_there() {
 }
 
 #[test]
-fn every_error_code_is_the_manuals() {
+fn every_error_code_matches_the_manual() {
     let theirs: Vec<(String, Option<u8>)> = tables().errors.into_iter().map(|row| (row.code, row.axis)).collect();
     let ours: Vec<_> = errors::all().map(|error| (format!("{:02X}", error.code), error.axis)).collect();
     assert_eq!(theirs, ours);
 }
 
 #[test]
-fn every_status_bit_is_the_manuals() {
+fn every_status_bit_matches_the_manual() {
     for theirs in tables().status_pages {
         let own = || status::BITS.iter().filter(|bit| bit.page == theirs.page);
         assert_eq!(own().map(|bit| bit.bit).collect::<Vec<_>>(), theirs.bits, "page {}", theirs.page);

@@ -142,7 +142,7 @@ const LINKS: [&str; 45] = [
     "command/frame/trace.rs",
     "command/toyo/decode/capture.rs",
     "command/toyo/face.rs",
-    "command/toyo/link/onlooker.rs",
+    "command/toyo/link/observer.rs",
     "command/toyo/ports.rs",
     "command/toyo/connect.rs",
     "command/toyo/serve.rs",

@@ -16,7 +16,7 @@ fn blocks(desk: &Desk, line: &str) -> Vec<String> {
 }
 
 #[test]
-fn what_somebody_wrote_is_asked_before_it_is_replaced() {
+fn overwriting_user_data_needs_confirmation() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     for line in ["point set 7 1 2 3 4", "easy set 1 5 6 7", "program insert 1 TAG TAG=005 --yes"] {
@@ -46,7 +46,7 @@ fn what_somebody_wrote_is_asked_before_it_is_replaced() {
 }
 
 #[test]
-fn a_move_to_a_point_is_asked_about_in_numbers() {
+fn the_confirmation_of_a_move_shows_positions_and_speed() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     assert_eq!(desk.run("-r cell toyo point set 7=90,20,5,0 --yes").exit, Some(0));
@@ -66,7 +66,7 @@ fn a_move_to_a_point_is_asked_about_in_numbers() {
 }
 
 #[test]
-fn a_run_at_the_desk_ends_after_its_time() {
+fn an_offline_run_ends_at_its_time_limit() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     let folder = tempfile::tempdir().unwrap();
@@ -78,7 +78,7 @@ fn a_run_at_the_desk_ends_after_its_time() {
 }
 
 #[test]
-fn a_program_is_asked_about_with_its_number_step_place_and_speed() {
+fn the_confirmation_of_a_start_shows_program_step_position_and_speed() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     for line in ["program insert 1 TAG TAG=005", "palletizing select 3", "easy select 2"] {
@@ -150,7 +150,7 @@ fn a_stop_is_allowed_on_a_read_only_robot() {
 }
 
 #[test]
-fn a_jog_is_refused_before_anything_is_sent_where_nobody_can_be_asked() {
+fn without_a_terminal_a_jog_is_rejected_before_any_block_is_sent() {
     let desk = Desk::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
-    desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by a small step in plus direction");
+    desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by an inching step in plus direction");
 }

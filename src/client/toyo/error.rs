@@ -23,7 +23,7 @@ pub enum Error {
     Refused(#[from] Refusal),
     /// The controller refused even a status or position request (`@NG`): it is busy.
     #[error("the controller refused to report its status (@NG)")]
-    Mute,
+    StatusRefused,
     /// The host has no control: the teach pendant is ON (TO 2-2).
     #[error("the controller refused: the teach pendant is ON, so the host cannot take control")]
     PendantOn,
@@ -35,7 +35,7 @@ pub enum Error {
     OutcomeUnknown(Box<Unanswered>),
     /// The line was lost after an order was sent and before its answer.
     #[error("{0}; the command was sent, and may or may not have been carried out")]
-    CutShort(Box<Self>),
+    LostAfterSending(Box<Self>),
     /// An order was not sent, because the check of the line before it failed.
     #[error("the command was not sent: {0}")]
     NotSent(Box<Self>),
@@ -49,16 +49,16 @@ pub enum Error {
     },
     /// One exchange brought more characters than a controller sends.
     #[error("received {received} characters, but no answer")]
-    Flooded {
+    TooMuchData {
         /// Characters received.
         received: usize,
     },
     /// A request with a value out of range; nothing was sent.
     #[error("{0}")]
-    Unsendable(#[from] BlockError),
+    InvalidRequest(#[from] BlockError),
     /// A temporary change was not undone.
     #[error("a temporary change was not undone by {block}: {}", why(.cause.as_deref()))]
-    NotPutBack {
+    NotUndone {
         /// The block that undoes it.
         block: String,
         /// The cause; `None` if the controller refused.
@@ -66,16 +66,16 @@ pub enum Error {
     },
     /// The host is still ON; this client had switched it ON.
     #[error("armctl switched host control ON and could not switch it OFF again: {}", why(.0.as_deref()))]
-    HostKept(Option<Box<Self>>),
+    HostNotReleased(Option<Box<Self>>),
     /// The robot still moves after a stop.
     #[error("the controller {}", stop_answer(*.is_refused))]
-    MovesOn {
+    StillMoving {
         /// Whether the controller refused the stop.
         is_refused: bool,
     },
     /// No answer confirms that the robot stands still.
     #[error("armctl cannot confirm that the robot stands still: {0}")]
-    StandUnseen(Box<Self>),
+    StopUnconfirmed(Box<Self>),
     /// The request is above the authorized risk.
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
@@ -134,7 +134,7 @@ impl Error {
     /// Whether invalid data was received.
     pub fn is_malformed(&self) -> bool {
         match self {
-            Self::Malformed { .. } | Self::Flooded { .. } => true,
+            Self::Malformed { .. } | Self::TooMuchData { .. } => true,
             Self::NoAnswer(unanswered) => unanswered.unfitting.is_some(),
             _ => false,
         }
@@ -179,7 +179,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_are_a_sentence() {
+    fn each_error_has_a_readable_message() {
         let counters = Counters { sent: 4, ..Counters::default() };
         let request = Some(Request::bare(Command::Mpst));
         let silence = Unanswered { request, waited: Duration::from_secs(1), counters, unfitting: None };
@@ -191,11 +191,11 @@ mod tests {
         let odd = Error::NoAnswer(Box::new(Unanswered { unfitting, ..noise }));
         assert!(odd.is_malformed() && !silent.is_malformed());
         assert_eq!(odd.to_string(), "unexpected answer '@M': unknown command 'M'");
-        let kept = Error::HostKept(None).to_string();
+        let kept = Error::HostNotReleased(None).to_string();
         assert_eq!(kept, "armctl switched host control ON and could not switch it OFF again: @NG");
         let refusal = Error::from(Refusal(Request::bare(Command::Home)));
         assert_eq!(refusal.to_string(), "the controller refused HOME (@NG)");
-        let unseen = Error::StandUnseen(Box::new(Error::Mute)).to_string();
+        let unseen = Error::StopUnconfirmed(Box::new(Error::StatusRefused)).to_string();
         assert!(
             unseen.starts_with("armctl cannot confirm that the robot stands still: the controller refused"),
             "{unseen}"

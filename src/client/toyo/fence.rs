@@ -6,7 +6,7 @@
 
 use armctl_controller::Risk;
 
-use super::borrowed::Host;
+use super::temporary_changes::HostState;
 use super::{Client, Error, Event, Transport, status_page};
 use crate::Reason;
 
@@ -35,16 +35,16 @@ impl Client {
             return;
         }
         let about = Reason::about(FENCE);
-        let on = self.hangs_on.take();
+        let on = self.plan_condition.take();
         let reason = on.as_deref().map_or(about, |on| about.depending_on(on));
         self.plan_depending(&status_page(0).text(), reason);
     }
 
     /// Reopens a lost line for a read: after a re-plug, or a restart of the device server. Not if this client has a
     /// motion to stop or a change to undo: hints explain that to the user.
-    pub(super) async fn revive(&mut self, risk: Risk) -> Result<(), Error> {
-        let owes = self.moving.is_some() || self.host == Host::Taken || !self.borrowed.is_empty();
-        if !self.is_gone || risk > Risk::Read || owes {
+    pub(super) async fn reopen_for_read(&mut self, risk: Risk) -> Result<(), Error> {
+        let owes = self.moving.is_some() || self.host == HostState::SwitchedOn || !self.undo_requests.is_empty();
+        if !self.is_line_lost || risk > Risk::Read || owes {
             return Ok(());
         }
         let Some(opener) = &self.opener else { return Ok(()) };
@@ -53,8 +53,8 @@ impl Client {
         self.transport = Transport::Line(Box::new(line));
         self.ends = self.transport.ends();
         self.session.renew();
-        self.is_gone = false;
-        self.host = Host::Unknown;
+        self.is_line_lost = false;
+        self.host = HostState::Unknown;
         self.is_fenced = false;
         // The reopened line may lead to another machine.
         self.letters = None;

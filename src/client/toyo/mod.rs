@@ -1,12 +1,12 @@
 //! Toyo client: drives the session over a serial line. `TO` is the manual of the host communication over RS-232C.
 
-mod borrowed;
+mod axis_letters;
 mod error;
 mod fence;
-mod letters;
 mod plan;
 mod simulated;
 mod stop;
+mod temporary_changes;
 #[cfg(test)]
 mod tests;
 mod transport;
@@ -28,12 +28,12 @@ use armctl_transport::tap::Direction;
 pub use armctl_transport::tcp::ConnectError;
 use tokio::time::Instant;
 
-use self::borrowed::{Host, wants_host};
+pub use self::axis_letters::{Letters, letters_request};
 pub use self::error::{Error, Refusal, Unanswered};
 pub use self::fence::FENCE;
-pub use self::letters::{Letters, letters_request};
 pub use self::simulated::Simulated;
 pub use self::stop::Moving;
+use self::temporary_changes::{HostState, needs_host};
 pub use self::transport::{BAUD, BITS, Endpoint, Line, Opening};
 use self::transport::{Opener, Transport, no_addresses};
 use crate::{Ends, Grant, NotAuthorized, Plan, Reason, Watcher};
@@ -47,27 +47,27 @@ pub struct Client {
     transport: Transport,
     session: LineSession,
     /// The policy of the options, and the current one.
-    usual: Policy,
+    configured_policy: Policy,
     policy: Policy,
     grant: Grant,
     /// The motion that this client started.
     moving: Option<Moving>,
-    host: Host,
+    host: HostState,
     /// Requests that undo temporary changes, the latest change last.
-    borrowed: Vec<Request>,
+    undo_requests: Vec<Request>,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,
     waited: Duration,
     /// Whether the line is lost. Then only reads are sent, after a reopen.
-    is_gone: bool,
+    is_line_lost: bool,
     opener: Option<Opener>,
     ends: Option<Ends>,
     /// Whether no answer to an earlier request can arrive any more.
     is_fenced: bool,
     /// Dry run: the answer that decides whether the last planned frame is sent.
-    hangs_on: Option<String>,
+    plan_condition: Option<String>,
     /// Dry run: the blocks that undo temporary changes.
-    owed: Vec<String>,
+    planned_undo_blocks: Vec<String>,
     /// Axis letters, once read.
     letters: Option<Letters>,
 }
@@ -104,15 +104,15 @@ impl Options {
 #[non_exhaustive]
 pub enum Event {
     /// The motion is about to start; `None` when it has ended.
-    Moves(Option<Moving>),
+    Motion(Option<Moving>),
     /// The host, which was OFF, is about to be switched ON temporarily; `false` when it is OFF again.
-    TakesHost(bool),
+    HostSwitch(bool),
     /// A temporary change is about to be made; this request undoes it.
-    Borrows(Request),
+    TemporaryChange(Request),
     /// The change was undone, or was never made.
-    PutBack(Request),
+    Undone(Request),
     /// The line is lost, and this undo request was not sent.
-    NotPutBack(Request),
+    NotUndone(Request),
     /// Host control, as read.
     Host {
         /// A status that includes at least the page with the host state.
@@ -128,13 +128,13 @@ pub enum Event {
 
 const BUFFER: usize = 1024;
 /// Limit of characters in one exchange: 5 s at the highest baud rate. Answers are short.
-const MOST_RECEIVED: usize = 64 * 1024;
+const MAX_RECEIVED: usize = 64 * 1024;
 /// Time limit of an answer while a motion runs that must be stopped.
-const SILENCE: Duration = Duration::from_millis(300);
+const MOTION_TIMEOUT: Duration = Duration::from_millis(300);
 /// The status page with the host state.
 const HOST_PAGE: u8 = 2;
 /// Poll interval of a session without a deadline.
-const LONG: Duration = Duration::from_secs(3600);
+const IDLE_POLL_INTERVAL: Duration = Duration::from_secs(3600);
 
 impl Client {
     /// Connects to a controller. Sends nothing: only an answer shows that a controller is at the other end.
@@ -168,20 +168,20 @@ impl Client {
             ends: transport.ends(),
             transport,
             session: LineSession::new(policy),
-            usual: policy,
+            configured_policy: policy,
             policy,
             grant: options.grant,
             moving: None,
-            host: Host::Unknown,
-            borrowed: Vec::new(),
+            host: HostState::Unknown,
+            undo_requests: Vec::new(),
             started: Instant::now(),
             watcher: Box::new(()),
             waited: Duration::ZERO,
-            is_gone: false,
+            is_line_lost: false,
             opener: None,
             is_fenced: false,
-            hangs_on: None,
-            owed: Vec::new(),
+            plan_condition: None,
+            planned_undo_blocks: Vec::new(),
             letters: None,
         }
     }
@@ -215,7 +215,7 @@ impl Client {
     /// Sends one request; a refusal is an answer. Switches the host ON first if an order requires it. In a dry run,
     /// orders count as carried out and a read returns [`Error::DryRun`].
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
-        if wants_host(request) {
+        if needs_host(request) {
             match self.take_host().await {
                 // The manual does not require the host for this order (ambiguity C14): the controller decides.
                 Err(Error::PendantOn) if !request.row().needs_host => {}
@@ -241,7 +241,7 @@ impl Client {
             Answer::Done => done(),
             Answer::Data(record) => record,
         };
-        if request.command() == Command::Mtsk && self.borrowed.is_empty() {
+        if request.command() == Command::Mtsk && self.undo_requests.is_empty() {
             self.watcher.event(Event::Task(record.number("task")));
         }
         let content = request.answered(&record).map_err(|error| malformed(&record.written(), &error))?;
@@ -272,22 +272,22 @@ impl Client {
         }
         self.acquire(Risk::Motion).await?;
         self.is_fenced = false;
-        self.moves(Some(Moving::Program));
+        self.set_moving(Some(Moving::Program));
         self.session.begin_raw(block);
-        match self.drive(Risk::Motion).await? {
+        match self.exchange(Risk::Motion).await? {
             Ended::Answered(answer) => Ok(answer),
             ended => Err(self.unanswered(ended, Risk::Motion, None)),
         }
     }
 
-    /// Confirms that the last order received its own answer: sends a harmless read, unless one was answered since. The
-    /// controller answers in order, so every answer to the order arrives before the answer to the read.
+    /// Confirms that the last order received its own answer: sends a harmless read, unless one was answered since.
+    /// Answers arrive in the order of the requests, so the answers to the order arrive before the answer to the read.
     ///
     /// # Errors
     /// [`Error::OutcomeUnknown`] if the order received two contradictory answers.
     pub async fn settle(&mut self) -> Result<(), Error> {
         let is_open = if self.is_dry() { self.transport.has_notes() } else { self.session.is_open() };
-        if !is_open || self.is_gone {
+        if !is_open || self.is_line_lost {
             return Ok(());
         }
         self.fence_at_end().await
@@ -296,7 +296,7 @@ impl Client {
     /// Reads all five status pages (TO 2-2).
     ///
     /// # Errors
-    /// [`Error::Mute`] if the controller refuses.
+    /// [`Error::StatusRefused`] if the controller refuses.
     pub async fn status(&mut self) -> Result<Status, Error> {
         self.status_of(&[0, 1, 2, 3, 4]).await
     }
@@ -304,17 +304,17 @@ impl Client {
     /// Reads some status pages, 0 to 4; the others are 0.
     ///
     /// # Errors
-    /// [`Error::Mute`] if the controller refuses.
+    /// [`Error::StatusRefused`] if the controller refuses.
     pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Error> {
         self.plan_all(&pages.iter().copied().map(status_page).collect::<Vec<_>>())?;
         let mut status = Status::default();
         for page in pages {
-            let record = self.ask_now(&status_page(*page)).await?.map_err(|_| Error::Mute)?;
+            let record = self.ask_now(&status_page(*page)).await?.map_err(|_| Error::StatusRefused)?;
             let byte = record.byte("st1");
             status = status.with(*page, byte.ok_or_else(|| malformed(&record.written(), "it contains no status"))?);
         }
         if pages.contains(&HOST_PAGE) {
-            self.watcher.event(Event::Host { status, is_taken: self.host == Host::Taken });
+            self.watcher.event(Event::Host { status, is_taken: self.host == HostState::SwitchedOn });
         }
         Ok(status)
     }
@@ -322,9 +322,9 @@ impl Client {
     /// Axis positions: `x`, `y`, `z` and `r` in hundredths of a millimetre (MPST, TO 2-8).
     ///
     /// # Errors
-    /// [`Error::Mute`] if the controller refuses.
-    pub async fn place(&mut self) -> Result<Record, Error> {
-        self.ask_now(&Request::bare(Command::Mpst)).await?.map_err(|_| Error::Mute)
+    /// [`Error::StatusRefused`] if the controller refuses.
+    pub async fn read_position(&mut self) -> Result<Record, Error> {
+        self.ask_now(&Request::bare(Command::Mpst)).await?.map_err(|_| Error::StatusRefused)
     }
 
     /// Line statistics so far.
@@ -354,7 +354,7 @@ impl Client {
     /// Uses a short time limit without retries until [`Client::stop`]. A jog runs until it is stopped, so a lost
     /// connection must be noticed at once.
     pub fn use_short_timeouts(&mut self) {
-        self.set_policy(Policy { timeout: SILENCE, retries: 0, ..self.usual });
+        self.set_policy(Policy { timeout: MOTION_TIMEOUT, retries: 0, ..self.configured_policy });
     }
 
     /// The motion that this client started and that may still run.
@@ -363,13 +363,13 @@ impl Client {
     }
 
     /// Records that the motion of this client has ended.
-    pub fn has_ended(&mut self) {
-        self.moves(None);
+    pub fn end_motion(&mut self) {
+        self.set_moving(None);
     }
 
     /// Whether the line is lost.
-    pub fn is_gone(&self) -> bool {
-        self.is_gone
+    pub fn is_line_lost(&self) -> bool {
+        self.is_line_lost
     }
 
     fn set_policy(&mut self, policy: Policy) {
@@ -377,9 +377,9 @@ impl Client {
         self.session.set_policy(policy);
     }
 
-    fn moves(&mut self, moving: Option<Moving>) {
+    fn set_moving(&mut self, moving: Option<Moving>) {
         self.moving = moving;
-        self.watcher.event(Event::Moves(moving));
+        self.watcher.event(Event::Motion(moving));
     }
 
     fn authorize(&self, risk: Risk, block: &str) -> Result<(), NotAuthorized> {
@@ -395,7 +395,7 @@ impl Client {
     async fn transact(&mut self, request: &Request, is_repeatable: bool) -> Result<Answer, Error> {
         let risk = request.risk();
         request.check()?;
-        self.revive(risk).await?;
+        self.reopen_for_read(risk).await?;
         self.acquire(risk).await?;
         self.is_fenced = false;
         if risk == Risk::Destroy {
@@ -403,10 +403,10 @@ impl Client {
             self.letters = None;
         }
         if risk == Risk::Motion {
-            self.moves(Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program }));
+            self.set_moving(Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program }));
         }
         self.session.begin(request, is_repeatable);
-        let ended = self.drive(risk).await?;
+        let ended = self.exchange(risk).await?;
         if let Some((order, why)) = self.session.take_refuted() {
             return Err(self.unanswered(why, order.risk(), Some(&order)));
         }
@@ -421,29 +421,29 @@ impl Client {
     }
 
     /// Runs the exchange to its end. The future may be dropped: the next exchange discards the pending answer.
-    async fn drive(&mut self, risk: Risk) -> Result<Ended, Error> {
-        let ended = self.drive_alone(risk).await;
+    async fn exchange(&mut self, risk: Risk) -> Result<Ended, Error> {
+        let ended = self.run_exchange(risk).await;
         if let Some(line) = self.transport.line() {
             line.give();
         }
         ended
     }
 
-    /// Waits for the turn of this client on a shared session; it lasts until the end of the next [`Client::drive`]. A
+    /// Waits for the turn of this client on a shared session; it lasts until the end of the next [`Client::exchange`]. A
     /// client that moves the robot keeps the others from moving it.
     async fn acquire(&mut self, risk: Risk) -> Result<(), Error> {
         let Some(line) = self.transport.line() else { return Ok(()) };
-        let until = Instant::now() + self.policy.timeout.max(self.usual.timeout);
+        let until = Instant::now() + self.policy.timeout.max(self.configured_policy.timeout);
         if risk == Risk::Motion {
             line.claim_motion().await.map_err(Error::Session)?;
         }
         line.take(until).await.map_err(Error::Session)
     }
 
-    async fn drive_alone(&mut self, risk: Risk) -> Result<Ended, Error> {
+    async fn run_exchange(&mut self, risk: Risk) -> Result<Ended, Error> {
         let began = self.started.elapsed();
         let mut now = began;
-        let mut has_left = false;
+        let mut is_sent = false;
         let mut total = 0;
         let mut buffer = [0; BUFFER];
         loop {
@@ -451,21 +451,27 @@ impl Client {
                 Step::Send(bytes) => {
                     let sent = self.send(&bytes).await;
                     // A session sends a block completely or not at all; another line may have sent a part of it.
-                    has_left |= sent.is_ok() || !self.transport.is_shared();
+                    is_sent |= sent.is_ok() || !self.transport.is_shared();
                     sent.map(|()| 0)
                 }
-                Step::Wait(until) => self.receive(&mut buffer, self.started + until.min(now + LONG)).await,
+                Step::Wait(until) => {
+                    self.receive(&mut buffer, self.started + until.min(now + IDLE_POLL_INTERVAL)).await
+                }
                 Step::Done(ended) => {
                     self.waited += now.saturating_sub(began);
                     return Ok(ended);
                 }
                 Step::Data(_) | Step::Feed => Ok(0),
             };
-            let received = step.map_err(|error| self.broken(error, has_left && risk > Risk::Read))?;
+            let received = step.map_err(|error| self.broken(error, is_sent && risk > Risk::Read))?;
             total += received;
-            if total > MOST_RECEIVED {
-                let error = Error::Flooded { received: total };
-                return Err(if has_left && risk > Risk::Read { Error::CutShort(Box::new(error)) } else { error });
+            if total > MAX_RECEIVED {
+                let error = Error::TooMuchData { received: total };
+                return Err(if is_sent && risk > Risk::Read {
+                    Error::LostAfterSending(Box::new(error))
+                } else {
+                    error
+                });
             }
             now = self.started.elapsed();
             self.session.handle(now, &buffer[..received]);
@@ -504,9 +510,9 @@ impl Client {
         if let Some(busy) = SessionBusy::of(&error) {
             return Error::Session(busy);
         }
-        self.is_gone = true;
+        self.is_line_lost = true;
         let error = Error::Io { is_shared: self.transport.is_shared(), error: Arc::new(error) };
-        if is_open { Error::CutShort(Box::new(error)) } else { error }
+        if is_open { Error::LostAfterSending(Box::new(error)) } else { error }
     }
 }
 

@@ -52,7 +52,7 @@ impl Client {
         self.note_text(text, reason);
         let word = text.trim_start_matches('@').split(' ').next().unwrap_or_default();
         self.is_fenced = Row::named(word).is_some_and(|row| row.risk == Risk::Read);
-        self.hangs_on = reason.depends_on.map(ToOwned::to_owned);
+        self.plan_condition = reason.depends_on.map(ToOwned::to_owned);
     }
 
     /// Dry run: plans an order that depends on an earlier answer, with the host switch and the fence before it.

@@ -9,14 +9,14 @@ use armctl_controller::toyo::session::{Ended, Policy};
 use armctl_controller::toyo::table::commands::Command;
 use tokio::time::{Instant, timeout_at};
 
-use super::borrowed::Host;
+use super::temporary_changes::HostState;
 use super::{Client, Error, jog, status_page};
 use crate::{Grant, STOP_EVERY, STOP_WITHIN};
 
 /// Time after which the motion is assumed to be a jog, because a program would have stopped.
-const SLOW: Duration = Duration::from_secs(1);
+const JOG_ASSUMED_AFTER: Duration = Duration::from_secs(1);
 /// Poll interval of the position.
-const LOOK_EVERY: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// Retries of each request while a stop runs.
 const REPETITIONS: u32 = 3;
 
@@ -46,12 +46,12 @@ struct Attempt {
 }
 
 impl Client {
-    /// Stops the motion and returns the final position, as [`Client::place`] does. The order is repeated until the
-    /// robot stands still, regardless of grant and options. Repeating a stop is harmless; a lost stop lets the robot
-    /// move on.
+    /// Stops the motion and returns the final position, as [`Client::read_position`] does. The order is repeated until the
+    /// robot stands still, regardless of grant and options. Repeating a stop is harmless. After a lost stop the robot
+    /// continues to move.
     ///
     /// # Errors
-    /// [`Error::StandUnseen`] if no answer confirms it, [`Error::MovesOn`] if the robot still moves.
+    /// [`Error::StopUnconfirmed`] if no answer confirms it, [`Error::StillMoving`] if the robot still moves.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Error> {
         if self.is_dry() {
             self.plan(&moving.stop(), "repeated until the robot stands still");
@@ -61,24 +61,24 @@ impl Client {
                 self.plan_if(&status_page(0), "whether something still runs");
             }
             self.plan(&Request::bare(Command::Mpst), "repeated until the robot stands still: position");
-            if self.host == Host::Unknown {
+            if self.host == HostState::Unknown {
                 let on = "whether the controller refuses the stop of a jog, for example while the host is OFF";
                 self.plan_to_take_host(Some(on));
                 self.plan_if(&Moving::Jog.stop(), on);
             }
             return Err(Error::DryRun);
         }
-        self.set_policy(Policy { timeout: STOP_EVERY, retries: REPETITIONS, ..self.usual });
+        self.set_policy(Policy { timeout: STOP_EVERY, retries: REPETITIONS, ..self.configured_policy });
         let mut why = None;
         let until = Instant::now() + STOP_WITHIN;
-        let stopped = timeout_at(until, self.stop_until_it_stands(moving, &mut why)).await;
+        let stopped = timeout_at(until, self.stop_until_at_rest(moving, &mut why)).await;
         let stopped = stopped.unwrap_or_else(|_| {
             let silent = || self.unanswered(Ended::NoAnswer, Risk::Read, Some(&moving.stop()));
-            Err(unstopped(why.unwrap_or_else(silent)))
+            Err(stop_error(why.unwrap_or_else(silent)))
         });
-        self.set_policy(self.usual);
+        self.set_policy(self.configured_policy);
         match &stopped {
-            Ok(_) => self.has_ended(),
+            Ok(_) => self.end_motion(),
             // Leave the host ON: the next stop needs it.
             Err(_) => self.keep_host(),
         }
@@ -94,25 +94,25 @@ impl Client {
     }
 
     /// Returns only when the robot stands still or the line is lost. `why` holds the latest obstacle.
-    async fn stop_until_it_stands(&mut self, moving: Moving, why: &mut Option<Error>) -> Result<Record, Error> {
+    async fn stop_until_at_rest(&mut self, moving: Moving, why: &mut Option<Error>) -> Result<Record, Error> {
         let began = Instant::now();
         let stop = moving.stop();
         // Position of the previous attempt, if nothing ran then.
-        let mut last = None;
+        let mut previous = None;
         loop {
             let attempt = self.try_stop(moving, &stop).await;
-            let is_slow = began.elapsed() >= SLOW;
-            last = match attempt {
-                Ok(Attempt { is_busy: false, place, .. }) if last.as_ref() == Some(&place) => return Ok(place),
-                Err(error) if self.is_gone => return Err(unstopped(error)),
+            let is_slow = began.elapsed() >= JOG_ASSUMED_AFTER;
+            previous = match attempt {
+                Ok(Attempt { is_busy: false, place, .. }) if previous.as_ref() == Some(&place) => return Ok(place),
+                Err(error) if self.is_line_lost => return Err(stop_error(error)),
                 Ok(Attempt { is_refused, is_busy, place }) => {
-                    *why = Some(Error::MovesOn { is_refused });
+                    *why = Some(Error::StillMoving { is_refused });
                     // The next attempt shows any error of this one.
                     if is_refused && moving == Moving::Jog {
                         // Stopping a jog requires host control.
                         self.take_host_to_stop().await.unwrap_or_default();
                         self.transact(&stop, true).await.map(|_| ()).unwrap_or_default();
-                    } else if moving == Moving::Program && (is_slow || (!is_busy && last.is_some())) {
+                    } else if moving == Moving::Program && (is_slow || (!is_busy && previous.is_some())) {
                         // Still moving, perhaps with no program running: an axis was left jogging.
                         self.stop_a_jog().await;
                     }
@@ -123,7 +123,7 @@ impl Client {
                     None
                 }
             };
-            tokio::time::sleep(LOOK_EVERY).await;
+            tokio::time::sleep(POLL_INTERVAL).await;
         }
     }
 
@@ -138,7 +138,7 @@ impl Client {
             self.stop_a_jog().await;
             state = self.status_of(&[0]).await?;
         }
-        let place = self.place().await?;
+        let place = self.read_position().await?;
         Ok(Attempt { is_refused: answer == Answer::Refused, is_busy: state.executing() || state.homing(), place })
     }
 
@@ -157,13 +157,13 @@ impl Client {
 
     /// Sends one stop after a motion was refused before it began. Another motion on the controller is not the concern
     /// of this client.
-    pub async fn give_up(&mut self, moving: Moving) {
-        self.set_policy(self.usual);
+    pub async fn stop_refused_motion(&mut self, moving: Moving) {
+        self.set_policy(self.configured_policy);
         self.transact(&moving.stop(), true).await.map(|_| ()).unwrap_or_default();
-        self.has_ended();
+        self.end_motion();
     }
 }
 
-fn unstopped(why: Error) -> Error {
-    if matches!(why, Error::MovesOn { .. }) { why } else { Error::StandUnseen(Box::new(why)) }
+fn stop_error(why: Error) -> Error {
+    if matches!(why, Error::StillMoving { .. }) { why } else { Error::StopUnconfirmed(Box::new(why)) }
 }

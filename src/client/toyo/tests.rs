@@ -19,7 +19,7 @@ fn counter(number: i32, value: i32) -> Request {
 }
 
 #[test]
-fn clients_can_be_sent_to_other_threads() {
+fn client_and_its_futures_are_send() {
     fn send(_: impl Send) {}
     let mut client = Client::dry_run(Options::default());
     send(client.status());
@@ -28,21 +28,21 @@ fn clients_can_be_sent_to_other_threads() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn nothing_leaves_that_was_not_granted_but_a_stop() {
+async fn only_a_stop_is_sent_without_a_grant() {
     let mut client = connected(Risk::Read, "", None).await;
     let denied = client.ask(&Request::bare(Command::Home)).await.unwrap_err();
     assert!(matches!(&denied, Error::NotAuthorized(denied) if denied.risk == Risk::Write), "{denied}: the host first");
     assert!(client.raw_text("@XXXX").await.is_err() && client.moving().is_none());
     client.stop(Moving::Program).await.unwrap();
     client.stop(Moving::Jog).await.unwrap();
-    let asked = client.session.counters().sent;
+    let sent_before = client.session.counters().sent;
     let denied = client.ask(&Request::bare(Command::Hson)).await.unwrap_err();
     assert!(matches!(denied, Error::NotAuthorized(_)), "a stop grants nothing");
-    assert_eq!(client.session.counters().sent, asked, "the stop has left the line at peace");
+    assert_eq!(client.session.counters().sent, sent_before, "nothing is sent without a grant");
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_refusal_is_an_answer_or_an_error() {
+async fn try_ask_returns_a_refusal_and_ask_fails_with_it() {
     let mut client = connected(Risk::Motion, "host = true\nservo = false\n", None).await;
     let home = Request::bare(Command::Home);
     assert_eq!(client.try_ask(&home).await.unwrap(), Err(Refusal(home.clone())));
@@ -54,21 +54,21 @@ async fn a_refusal_is_an_answer_or_an_error() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn silence_after_an_order_is_not_silence_after_a_question() {
+async fn silence_after_an_order_leaves_its_outcome_unknown() {
     let mut client = connected(Risk::Motion, "", Some("drop=100%")).await;
-    let silent = client.place().await.unwrap_err();
+    let silent = client.read_position().await.unwrap_err();
     assert!(matches!(&silent, Error::NoAnswer(silent) if silent.counters.sent == 4), "{silent}");
     let unsent = client.ask(&counter(1, 2)).await.unwrap_err();
-    assert!(matches!(unsent, Error::NoAnswer(_)), "whether the host is ON was not told: {unsent}");
+    assert!(matches!(unsent, Error::NoAnswer(_)), "the host state was not answered: {unsent}");
     client.keep_host();
     client.is_fenced = true;
     let unknown = client.ask(&counter(1, 2)).await.unwrap_err();
     assert!(matches!(&unknown, Error::OutcomeUnknown(open) if open.request == Some(counter(1, 2))), "{unknown}");
-    assert!(matches!(client.stop(Moving::Program).await, Err(Error::StandUnseen(_))));
+    assert!(matches!(client.stop(Moving::Program).await, Err(Error::StopUnconfirmed(_))));
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_dry_run_notes_orders_and_knows_no_answers() {
+async fn a_dry_run_plans_orders_and_has_no_answers() {
     let mut client = Client::dry_run(Options::default().with_risk(Risk::Motion));
     client.ask(&counter(1, 2)).await.unwrap();
     assert!(matches!(client.status_of(&[3]).await, Err(Error::DryRun)));
@@ -93,22 +93,23 @@ impl Watcher<Event> for Keeper {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_watcher_is_told_what_is_changed_before_it_is_and_the_end_puts_it_back() {
+async fn a_watcher_gets_each_change_before_it_is_sent_and_close_undoes_it() {
     let mut client = connected(Risk::Write, "", None).await;
-    let told = Arc::<Mutex<(String, Vec<Event>)>>::default();
-    client.watch(Keeper(Arc::clone(&told)));
+    let recorded = Arc::<Mutex<(String, Vec<Event>)>>::default();
+    client.watch(Keeper(Arc::clone(&recorded)));
     let task = |number| Request::of(Command::Ctsk, [Value::Number(number)]);
     client.borrow(&task(2), task(1)).await.unwrap();
     let (totals, closed) = client.close().await;
     closed.unwrap();
-    let (sent, events) = &*told.lock().unwrap();
+    let (sent, events) = &*recorded.lock().unwrap();
     assert_eq!(
         sent,
         "@STAS SNO=2\r\n@HSON\r\n@STAS SNO=0\r\n@CTSK TASK=02\r\n@STAS SNO=0\r\n@CTSK TASK=01\r\n@STAS SNO=0\r\n@HSOF\r\n"
     );
     assert_eq!(totals.counters.sent, 8);
     let events: Vec<_> = events.iter().filter(|event| !matches!(event, Event::Host { .. })).collect();
-    let [Event::Borrows(back), Event::TakesHost(true), Event::PutBack(again), Event::TakesHost(false)] = &events[..]
+    let [Event::TemporaryChange(back), Event::HostSwitch(true), Event::Undone(again), Event::HostSwitch(false)] =
+        &events[..]
     else {
         panic!("{events:?}")
     };
@@ -116,14 +117,14 @@ async fn a_watcher_is_told_what_is_changed_before_it_is_and_the_end_puts_it_back
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_jog_is_seen_to_move_and_to_stand() {
+async fn a_jog_moves_until_stop_and_stop_returns_the_final_position() {
     let mut client = connected(Risk::Motion, "", None).await;
-    let before = client.place().await.unwrap();
+    let before = client.read_position().await.unwrap();
     client.ask(&jog("RS", None)).await.unwrap();
     client.ask(&jog("+L", Some(0))).await.unwrap();
     assert_eq!(client.moving(), Some(Moving::Jog));
     tokio::time::sleep(Duration::from_secs(1)).await;
     let after = client.stop(Moving::Jog).await.unwrap();
     assert!(after.number("x") > before.number("x") && client.moving().is_none());
-    assert_eq!(client.place().await.unwrap(), after);
+    assert_eq!(client.read_position().await.unwrap(), after);
 }

@@ -65,10 +65,10 @@ pub const BAUD: u32 = 9600;
 pub const BITS: u32 = 11;
 
 /// Retry interval for a busy port.
-const BUSY_EVERY: Duration = Duration::from_millis(20);
+const BUSY_RETRY_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Minimum time limit of a connection: a device server may be slower than a controller.
-const CONNECT_WITHIN: Duration = Duration::from_secs(3);
+const MIN_CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 
 impl Endpoint {
     /// A serial port with the factory settings: 9600 baud, 8 data bits, even parity, 1 stop bit (TO 1-2).
@@ -107,7 +107,7 @@ impl Endpoint {
                 .map(Stream::Serial)
                 .map_err(|error| Error::Port { path: line.path.clone(), error: Arc::new(error) }),
             Self::Tcp { host, port, .. } => {
-                let until = Instant::now() + timeout.max(CONNECT_WITHIN);
+                let until = Instant::now() + timeout.max(MIN_CONNECT_TIMEOUT);
                 let opened = Tcp::open(host, *port, until).await.map(Stream::Tcp);
                 opened.map_err(|error| Error::DeviceServer { host: host.clone(), port: *port, error: Arc::new(error) })
             }
@@ -125,8 +125,8 @@ async fn open_port(line: &serial::Line, timeout: Duration) -> Result<Serial, ser
     let until = Instant::now() + timeout;
     loop {
         match Serial::open(line) {
-            Err(serial::OpenError::Busy) if Instant::now() + BUSY_EVERY <= until => {
-                tokio::time::sleep(BUSY_EVERY).await;
+            Err(serial::OpenError::Busy) if Instant::now() + BUSY_RETRY_INTERVAL <= until => {
+                tokio::time::sleep(BUSY_RETRY_INTERVAL).await;
             }
             opened => return opened,
         }

@@ -4,10 +4,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::explain::told;
+use super::explain::alarm_from_code;
 use super::link::Link;
 use super::link::Toyo;
-use super::waiting::{becomes, status_page};
+use super::wait::{status_page, wait_for_status};
 use crate::command::face::shared::Alike;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders::{Done, New, Old};
@@ -78,7 +78,7 @@ async fn present(link: &mut Link) -> Result<Option<u8>, Failure> {
 
 /// The present alarms as a list.
 pub(super) async fn now(link: &mut Link) -> Result<Vec<Told>, Failure> {
-    Ok(present(link).await?.map(told).into_iter().collect())
+    Ok(present(link).await?.map(alarm_from_code).into_iter().collect())
 }
 
 /// Additional keys of a toyo alarm.
@@ -103,7 +103,7 @@ impl Besides for Axis {
 /// Entry for an alarm, with its causes.
 fn entry(code: u8) -> AlarmEntry<Axis> {
     let errors::Explanation { axis, .. } = errors::explain(code);
-    AlarmEntry { alarm: told(code), own: Axis { axis, power_off: false, alarm: None } }
+    AlarmEntry { alarm: alarm_from_code(code), own: Axis { axis, power_off: false, alarm: None } }
 }
 
 /// The entry with additions from `alarms.toml`.
@@ -127,12 +127,12 @@ impl Command for History {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>, Failure> {
         let link = context.link;
-        let question = |number: u8| Request::of(table::Command::Ehtr, [Value::Number(number.into())]);
+        let entry_request = |number: u8| Request::of(table::Command::Ehtr, [Value::Number(number.into())]);
         if link.is_dry() {
             for number in 1..=self.limit {
                 match number {
-                    1 => link.plan(&question(number), "the latest"),
-                    _ => link.plan_if(&question(number), "whether there is an earlier entry"),
+                    1 => link.plan(&entry_request(number), "the latest"),
+                    _ => link.plan_if(&entry_request(number), "whether there is an earlier entry"),
                 }
             }
             return Err(unknown());
@@ -141,12 +141,12 @@ impl Command for History {
         let mut alarms = Vec::new();
         for number in 1..=self.limit {
             progress.say(&format!("error history {number} of {} at most", self.limit));
-            let record = match link.try_ask(&question(number)).await? {
+            let record = match link.try_ask(&entry_request(number)).await? {
                 Ok(record) => record,
                 // A controller without history refuses the first entry; a controller with a short history refuses an
                 // entry beyond its end.
                 Err(_) if number > 1 => break,
-                Err(_) => link.ask(&question(number)).await?,
+                Err(_) => link.ask(&entry_request(number)).await?,
             };
             let Some(entry) = past(&record) else { break };
             alarms.push(Row::new(number.into(), format!("alarm {number}"), explained(entry, context.robot)));
@@ -189,13 +189,13 @@ impl Command for Reset {
         let code = |status: &Status| (status.error != errors::NONE).then(|| format!("{:02X}", status.error));
         let old = Old::read(link.status_before(1).await?.as_ref().and_then(code));
         link.ask(&Request::bare(table::Command::Cerr)).await?;
-        let is_gone = becomes(link, (0, "whether the alarm has ended"), |status| !status.has_error()).await?;
-        let left = if is_gone { None } else { present(link).await?.map(told) };
-        let words = left
+        let has_ended = wait_for_status(link, (0, "whether the alarm has ended"), |status| !status.has_error()).await?;
+        let remaining = if has_ended { None } else { present(link).await?.map(alarm_from_code) };
+        let words = remaining
             .as_ref()
-            .map_or_else(|| "the alarm has ended".to_owned(), |left| format!("still there: {}", left.line()));
-        let new = New::of("fault_code", left.as_ref().and_then(|left| left.code.clone()), words);
-        Ok(Cancelled { done: new.replaces(old), alarms: left.into_iter().collect() })
+            .map_or_else(|| "the alarm has ended".to_owned(), |remaining| format!("still there: {}", remaining.line()));
+        let new = New::of("fault_code", remaining.as_ref().and_then(|remaining| remaining.code.clone()), words);
+        Ok(Cancelled { done: new.replaces(old), alarms: remaining.into_iter().collect() })
     }
 }
 
@@ -222,10 +222,12 @@ impl Report for Cancelled {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let left = self.alarms.first()?;
-        let message = format!("the controller accepted the reset, but error {} is still present", left.line());
+        let remaining = self.alarms.first()?;
+        let message = format!("the controller accepted the reset, but error {} is still present", remaining.line());
         let failure = Failure::new(failure::Kind::ConditionNotMet, message);
-        Some(failure.hint(left.remedy.clone().unwrap_or_default()).code(left.code.clone().unwrap_or_default()))
+        Some(
+            failure.hint(remaining.remedy.clone().unwrap_or_default()).code(remaining.code.clone().unwrap_or_default()),
+        )
     }
 }
 
@@ -248,7 +250,7 @@ impl Command for Point {
 /// Point of the alarm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PointReport {
-    /// Text of the controller; null if there is none.
+    /// Text of the controller; null without a text.
     point: Option<String>,
 }
 
@@ -264,7 +266,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault, blocks, objection};
 
     #[test]
-    fn what_is_asked() {
+    fn each_alarm_command_sends_its_blocks() {
         assert_eq!(blocks(&["alarm", "list"]).unwrap(), ["@STAS SNO=0", "@STAS SNO=1"]);
         assert_eq!(blocks(&["alarm", "reset"]).unwrap(), ["@CERR", "@STAS SNO=0"]);
         assert_eq!(blocks(&["alarm", "point"]).unwrap(), ["@MERP"]);
@@ -274,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_is_shown_and_cancelled() {
+    fn alarm_list_shows_an_error_and_alarm_reset_cancels_it() {
         let (mut bench, _) = Bench::with_faults("error = \"28\"\n", |_, _| Fault::None);
         let data = bench.data(&["error", "show"]);
         let error = &data["alarms"][0];
@@ -286,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_that_stays_is_a_failure() {
+    fn alarm_reset_fails_if_the_error_stays() {
         let stays = |block: &str, _| if block == "@CERR" { Fault::Answered("@OK") } else { Fault::None };
         let (data, failure) = Bench::with_faults("error = \"24\"\n", stays).0.run(&["alarm", "reset"]).unwrap();
         assert_eq!(data["alarms"][0]["code"], "24");
@@ -295,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn the_history_ends_where_it_is_empty() {
+    fn the_history_ends_at_its_first_empty_entry() {
         let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
         let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["alarm", "history"]);
@@ -311,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_controller_without_history_says_so() {
+    fn a_controller_without_history_has_a_clear_error() {
         let failure =
             Bench::with_faults("model = \"other\"\n", |_, _| Fault::None).0.run(&["alarm", "history"]).unwrap_err();
         assert_eq!(failure.kind, failure::Kind::Refused);

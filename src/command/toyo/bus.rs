@@ -73,7 +73,7 @@ mod tests {
     use crate::command::toyo::testing::all_blocks;
 
     #[test]
-    fn both_pages_are_asked_for() {
+    fn bus_reads_both_pages() {
         assert_eq!(all_blocks(&["bus"]).unwrap(), ["@MBUS C1", "@MBUS C2"]);
     }
 }

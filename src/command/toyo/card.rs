@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Toyo;
-use super::waiting::{Accepted, Work};
+use super::wait::{AcceptedWork, Work};
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::ending::MotionEnd;
 use crate::command::{Command, Context, Report, commands};
@@ -48,7 +48,7 @@ impl Command for Read {
         "replace programs, tables and parameters of the controller with the content of the memory card";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
-        let work = Accepted {
+        let work = AcceptedWork {
             work: Work::Card,
             order: table::Command::Rmca,
             done: "the controller accepted the card read",
@@ -66,7 +66,7 @@ impl Command for Write {
     const INTENT: &'static str = "overwrite the content of the memory card";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
-        let work = Accepted {
+        let work = AcceptedWork {
             work: Work::Card,
             order: table::Command::Wmca,
             done: "the controller accepted the card write",
@@ -76,7 +76,7 @@ impl Command for Write {
     }
 }
 
-async fn transfer(context: Context<'_, Toyo>, work: Accepted, no_wait: bool) -> Result<Transferred, Failure> {
+async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool) -> Result<Transferred, Failure> {
     let link = context.link;
     link.ask(&Request::bare(work.order)).await?;
     if no_wait {
@@ -122,7 +122,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn a_transfer_is_one_order_and_looks() {
+    fn a_transfer_sends_one_order_and_status_reads() {
         assert_eq!(
             all_blocks(&["card", "write"]).unwrap(),
             [
@@ -141,10 +141,10 @@ mod tests {
     }
 
     #[test]
-    fn a_transfer_is_waited_for() {
+    fn card_write_waits_for_the_end_of_the_transfer() {
         let (mut bench, _) = Bench::with_faults("card = \"empty\"\n", |_, _| Fault::None);
         let failure = bench.run(&["card", "read"]).unwrap_err();
-        assert!(failure.hint.unwrap().contains("nothing on the card"));
+        assert!(failure.hint.unwrap().contains("check that the card contains data"));
         let data = bench.data(&["card", "write"]);
         let elapsed = data["elapsed_ms"].as_u64().unwrap();
         assert!((1800..2300).contains(&elapsed), "{elapsed}");
@@ -153,14 +153,14 @@ mod tests {
     }
 
     #[test]
-    fn a_card_that_is_absent_or_taken_out_is_told() {
+    fn an_absent_or_removed_card_is_an_error() {
         let failure = Bench::with_faults("", |_, _| Fault::None).0.run(&["card", "write"]).unwrap_err();
         assert_eq!(failure.message, "the controller refused WMCA (@NG): there is no memory card");
         let state = "card = \"written\"\n[[event]]\nat_ms = 1000\ndo = \"card out\"\n";
         let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["card", "read"]).unwrap_err();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("E0")));
         assert!(
-            failure.message.starts_with("the controller accepted the card read, but an error came up (E0"),
+            failure.message.starts_with("the controller accepted the card read, but an error occurred (E0"),
             "{}",
             failure.message
         );

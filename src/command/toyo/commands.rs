@@ -79,7 +79,7 @@ commands! {
         Backup(backup::Backup),
         /// Restore a backup
         Restore(backup::Restore),
-        /// Compare a backup with another one, or with the controller
+        /// Compare a backup with a second backup, or with the controller
         Diff(Diff<Toyo>),
         /// Memory card
         Card(Subcommands<card::Card>),

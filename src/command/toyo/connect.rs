@@ -103,7 +103,7 @@ pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<sha
     let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;
-    // The session uses the same connection, because a device server can need time before it accepts another one.
+    // The session uses the same connection, because a device server can need time before it accepts a new one.
     let open = link.into_line().ok_or_else(|| Failure::local("internal error: a dry run has no line"))?;
     let (endpoint, timeout, label) = (endpoint(&robot)?, robot.timeout.value, robot.label());
     Ok(shared_link::Line::new(open, move || {

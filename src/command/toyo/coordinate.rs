@@ -115,12 +115,12 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault, blocks, intent, objection};
 
     #[test]
-    fn the_order_is_in_form_and_in_range() {
+    fn coordinates_are_formatted_and_checked() {
         let line = ["coordinate", "set", "100", "-20.5", "0", "0", "--task", "2", "--speed-row", "5"];
         assert_eq!(blocks(&line).unwrap(), ["@MRSS TASK=02 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00 V=05"]);
         assert_eq!(
             intent(&line),
-            "have the next RSMV of task 2 move to X 100 mm, Y -20.5 mm, Z 0 mm, R 0 mm at the speed of row 5"
+            "move to X 100 mm, Y -20.5 mm, Z 0 mm, R 0 mm with the next RSMV step of task 2 at the speed of row 5"
         );
         assert!(objection(&["coordinate", "set", "1", "2", "3"]).contains("<R>"));
         assert!(objection(&["coordinate", "set", "8000.01", "0", "0", "0"]).contains("-8000.00 to 8000.00 mm"));
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_waiting_move_goes_there() {
+    fn a_waiting_move_goes_to_the_sent_coordinates() {
         let state = "origin = true\nsteps = { 1 = [\"RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 PASS\", \"END\"] }\n";
         let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
         bench.data(&["run", "sequential", "1", "--no-wait"]);

@@ -7,7 +7,7 @@ use super::eeprom::{Cells, is_blank};
 use super::link::Link;
 use super::numbers::ask_all;
 use super::refusal;
-use super::values::{Shown, in_a_line, shown_by};
+use super::values::{NamedValue, in_a_line, named_values_with};
 use crate::client::toyo::Letters;
 use crate::command::Report;
 use crate::command::frame::authority::Authority;
@@ -101,8 +101,10 @@ fn replacing(
         .map(|(read, (wanted, found))| {
             let record = read.record().number("record").unwrap_or_default();
             let text = |record: &Record| {
-                let shown: Vec<Shown> =
-                    shown_by(record, &letters).into_iter().filter(|shown| !KEYS.contains(&&shown.name[..])).collect();
+                let shown: Vec<NamedValue> = named_values_with(record, &letters)
+                    .into_iter()
+                    .filter(|shown| !KEYS.contains(&&shown.name[..]))
+                    .collect();
                 in_a_line(&shown)
             };
             (usize::try_from(record).unwrap_or_default(), [text(found), text(wanted)])

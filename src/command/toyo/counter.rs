@@ -2,7 +2,7 @@
 
 use super::items::read_each;
 use super::link::{Link, Toyo, wrong};
-use super::numbers::{Numbers, not_held, number, read_back};
+use super::numbers::{Numbers, number, read_back, stored_otherwise};
 use super::rows::Listed;
 use crate::command::ValueKind;
 use crate::command::commands;
@@ -156,12 +156,12 @@ impl Writable for Counters {
 
     async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
         for (counter, _, new) in rows {
-            let wanted = count(new).unwrap_or_default();
-            let order = order(*counter, wanted);
+            let new_count = count(new).unwrap_or_default();
+            let order = order(*counter, new_count);
             link.ask(&order).await?;
             match count(&read_back(link, &order, &read(*counter)).await?) {
-                Some(found) if found != wanted => {
-                    return Err(not_held(&order, &format!("the counter is {found}"))
+                Some(stored) if stored != new_count => {
+                    return Err(stored_otherwise(&order, &format!("the counter is {stored}"))
                         .hint("a running program can change the counter at the same time"));
                 }
                 _ => {}
@@ -248,7 +248,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn counters_have_their_blocks() {
+    fn counter_commands_send_their_blocks() {
         assert_eq!(
             all_blocks(&["counter", "get", "1", "98-99"]).unwrap(),
             ["@MCNT CN=01", "@MCNT CN=98", "@MCNT CN=99"]
@@ -258,21 +258,21 @@ mod tests {
     }
 
     #[test]
-    fn a_counter_that_was_set_is_read_back() {
+    fn a_set_counter_is_read_back() {
         let mut bench = Bench::new("sim:");
         assert_eq!(bench.data(&["counter", "set", "5", "7"])["items"][0]["value"], 7);
         let other =
             |block: &str, _| if block == "@MCNT CN=05" { Fault::Answered("@MCNT CN05=0008") } else { Fault::None };
         let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "CN05: the controller accepted @MCST CN05=0007, but it stands at 8");
+        assert_eq!(failure.message, "CN05: the controller accepted @MCST CN05=0007, but the counter is 8");
         let silent = |block: &str, count| if block == "@MCNT CN=05" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
     }
 
     #[test]
-    fn what_is_replaced_is_told() {
+    fn counter_set_reports_old_and_new_value() {
         let mut bench = Bench::new("sim:");
         bench.data(&["counter", "set", "5", "7"]);
         let set = bench.data(&["counter", "set", "5", "8"])["items"][0].clone();
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stale_ok_is_not_taken_for_that_of_an_order() {
+    fn a_late_ok_does_not_confirm_the_next_order() {
         // The client gave up the previous command, and its @OK arrives later.
         let late = |block: &str, _| match block {
             "@MCST CN05=0007" => Fault::Late(std::time::Duration::from_millis(3010)),
@@ -308,14 +308,14 @@ mod tests {
     }
 
     #[test]
-    fn ranges_are_checked() {
+    fn numbers_and_values_out_of_range_are_rejected() {
         assert!(objection(&["counter", "get", "0"]).contains("1 to 99"));
         assert!(blocks(&["counter", "set", "1", "10000"]).unwrap_err().message.contains("0 to 9999"));
         assert!(objection(&["counter", "set", "1"]).contains("VALUE"));
     }
 
     #[test]
-    fn timers_have_their_blocks() {
+    fn timer_commands_send_their_blocks() {
         assert_eq!(all_blocks(&["timer", "get", "9"]).unwrap(), ["@MTMR TN=9"]);
         let all: Vec<String> = (1..=9).map(|timer| format!("@MTMR TN={timer}")).collect();
         assert_eq!(all_blocks(&["timer", "get"]).unwrap(), all);

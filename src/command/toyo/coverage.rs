@@ -1,4 +1,4 @@
-//! Test that a command line exists for each of the 62 protocol commands, besides `raw`.
+//! Test that each of the 62 protocol commands has a command line other than `raw`.
 
 use std::collections::BTreeSet;
 
@@ -84,7 +84,7 @@ fn every_command_has_a_command_line() {
 
 /// Commands that the manual does not mark "host ON" are sent while the teach pendant is ON, and the controller decides.
 #[test]
-fn the_pendant_keeps_from_being_sent_only_what_needs_the_host() {
+fn with_pendant_on_only_commands_that_need_the_host_are_not_sent() {
     let needs_host = |command: &str| Row::named(command).is_none_or(|row| row.needs_host);
     for (line, commands) in LINES {
         let words: Vec<&str> = line.split(' ').collect();

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_may_come_in_words_or_as_a_trace_has_it() {
+    fn a_line_can_be_separate_words_or_a_line_of_a_trace() {
         assert_eq!(senders(&["@STAS", "SNO=0", "@STAS", "SNO=0", "ST1=22", "ST2=00"]), ["host", "controller"]);
         assert_eq!(senders(&["-> @HOME  # request: HOME", "<- @OK  # answer to HOME: done"]), ["host", "controller"]);
         assert_eq!(senders(&["->", "@TYPE", "AX1", "RTYP=000000", "<-", "@NG"]), ["host", "controller"]);
@@ -199,14 +199,14 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_is_explained_by_the_request_before_it() {
+    fn an_answer_is_decoded_with_the_request_before_it() {
         let lines = ["@HOME", "@OK", "@OK"].map(str::to_owned);
         let titles: Vec<String> = explained(&lines).lines.into_iter().map(|line| line.title).collect();
         assert_eq!(titles[1..], ["answer to HOME: done", "answer: done"]);
     }
 
     #[test]
-    fn damage_is_a_failure_with_the_fields_before_it() {
+    fn a_damaged_line_fails_and_shows_the_fields_before_the_damage() {
         let lines = explained(&["@STAS SNO=0 ST1=2".to_owned()]);
         assert_eq!(lines.lines[0].fields.len(), 2);
         let failure = Report::failure(&lines).unwrap();

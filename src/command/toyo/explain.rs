@@ -79,14 +79,14 @@ impl face::Explain for Explain {
                 return Ok(Explanation { codes, instructions: vec![InstructionHelp::new(row)] });
             }
         };
-        let found = errors::explain(code);
-        let none = Alarm { text: Some("no error".to_owned()), ..told(errors::NONE) };
+        let explanation = errors::explain(code);
+        let no_error = Alarm { text: Some("no error".to_owned()), ..alarm_from_code(errors::NONE) };
         let (known, alarm, [cause, remedy]) = match code {
-            errors::NONE => (true, none, ["no error is present", "no action is necessary"]),
-            code => (found.known, told(code), [found.cause, found.remedy]),
+            errors::NONE => (true, no_error, ["no error is present", "no action is necessary"]),
+            code => (explanation.known, alarm_from_code(code), [explanation.cause, explanation.remedy]),
         };
         let site = alarms.find(origin, alarm.code.as_deref().unwrap_or_default())?;
-        let known = Known::new(known, alarm, [&[cause], &[remedy]], site, Axis { axis: found.axis });
+        let known = Known::new(known, alarm, [&[cause], &[remedy]], site, Axis { axis: explanation.axis });
         Ok(Explanation { codes: Codes { codes: vec![known] }, instructions: Vec::new() })
     }
 
@@ -114,7 +114,7 @@ impl Besides for Axis {
 }
 
 /// Alarm with the texts of armctl.
-pub fn told(code: u8) -> Alarm {
+pub fn alarm_from_code(code: u8) -> Alarm {
     let errors::Explanation { name, cause, remedy, .. } = errors::explain(code);
     Alarm {
         code: Some(format!("{code:02X}")),
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_code_is_two_digits_and_an_instruction_a_word() {
+    fn explain_accepts_a_code_or_an_instruction() {
         for (text, code) in [("28", 0x28), ("0xa1", 0xA1), ("5", 5)] {
             assert_eq!(subject(text), Ok(Subject::Code(code)));
         }

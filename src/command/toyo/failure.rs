@@ -16,7 +16,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
     match error {
         Error::Refused(Refusal(request)) => refusal::of_question(&request),
-        Error::Mute => refusal::mute(),
+        Error::StatusRefused => refusal::mute(),
         Error::PendantOn => refusal::pendant(),
         Error::NoAnswer(unanswered) => {
             let kind = if unanswered.unfitting.is_some() { Kind::Malformed } else { Kind::NoAnswer };
@@ -25,7 +25,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::OutcomeUnknown(ref unanswered) => {
             about(Kind::OutcomeUnknown, error.to_string()).hint(verification_hint(unanswered.request.as_ref()))
         }
-        Error::CutShort(cause) => {
+        Error::LostAfterSending(cause) => {
             let message = format!("{}; it is unknown whether the command was executed", failure(label, *cause).message);
             Failure::new(Kind::OutcomeUnknown, message)
                 .hint("check the robot; after the connection is back, use `toyo status`")
@@ -36,17 +36,17 @@ pub fn failure(label: &str, error: Error) -> Failure {
         }
         Error::Malformed { .. } => about(Kind::Malformed, error.to_string())
             .hint("check baud rate and parity; -vv shows the received bytes, `armctl decode toyo` explains them"),
-        Error::Flooded { .. } => about(Kind::Malformed, error.to_string())
+        Error::TooMuchData { .. } => about(Kind::Malformed, error.to_string())
             .hint("check for another client of the device server, and check the baud rate"),
-        Error::Unsendable(error) => misuse(&error),
-        Error::NotPutBack { block, cause } => not_undone(label, &not_put_back(&block), cause)
+        Error::InvalidRequest(error) => misuse(&error),
+        Error::NotUndone { block, cause } => not_undone(label, &not_put_back(&block), cause)
             .hint("set it with `toyo mode` or `toyo task`; `toyo status` shows the state of the controller"),
-        Error::HostKept(cause) => {
+        Error::HostNotReleased(cause) => {
             not_undone(label, "the host is still ON, because the command to switch it OFF failed", cause)
                 .hint("use `toyo host off` to enable the start input again")
         }
-        Error::MovesOn { .. } => not_stopped(Kind::ConditionNotMet, error.to_string()),
-        Error::StandUnseen(cause) => {
+        Error::StillMoving { .. } => not_stopped(Kind::ConditionNotMet, error.to_string()),
+        Error::StopUnconfirmed(cause) => {
             let why = failure(label, *cause).message;
             not_stopped(Kind::OutcomeUnknown, format!("it is unknown whether the robot stopped: {why}"))
         }
@@ -115,7 +115,7 @@ fn broken(label: &str, is_shared: bool, error: &io::Error) -> Failure {
         _ => format!("the connection failed: {}", plain(error)),
     };
     Failure::new(Kind::NoAnswer, format!("{label}: {what}")).hint(if is_shared {
-        "`armctl session list` shows its state"
+        "`armctl session list` shows the state of the session"
     } else {
         "`toyo ports` lists the serial ports"
     })

@@ -26,16 +26,16 @@ const LINES: &[(&str, Risk)] = &[
     ("param list", Read), ("param get P01", Read), ("param dump p.csv", Read),
     ("param set P01 ax2=150", Destroy), ("param set P01 1 2 3 4", Destroy), ("param set E22 1000 0 0 0", Destroy),
     ("param restore FOLDER/parameters.csv", Destroy),
-    ("point get 1", Read), ("point list", Read), ("teach 1", Destroy), ("point set 1 z=5", Destroy), ("point set 1 1 2 3 4", Destroy),
+    ("point get 1", Read), ("point list", Read), ("point watch 1", Read), ("teach 1", Destroy), ("point set 1 z=5", Destroy), ("point set 1 1 2 3 4", Destroy),
     ("point get 1 --task 2", Write), ("point copy 1 2", Destroy), ("point dump FOLDER/taught.csv 1-2", Read),
     ("point restore FOLDER/points.csv --task 2", Destroy),
-    ("speed-table get 1", Read), ("speed-table set 1 77", Destroy), ("speed-table list", Read), ("speed-table dump FOLDER/speed.csv", Read),
+    ("speed-table get 1", Read), ("speed-table watch 1", Read), ("speed-table set 1 77", Destroy), ("speed-table list", Read), ("speed-table dump FOLDER/speed.csv", Read),
     ("speed-table copy 2 3", Destroy), ("speed-table restore FOLDER/rows.csv", Destroy),
-    ("accel-table get 1", Read), ("accel-table set 1 0.77", Destroy), ("accel-table list", Read), ("accel-table dump FOLDER/accel.csv", Read),
+    ("accel-table get 1", Read), ("accel-table watch 1", Read), ("accel-table set 1 0.77", Destroy), ("accel-table list", Read), ("accel-table dump FOLDER/accel.csv", Read),
     ("accel-table copy 2 1", Destroy), ("accel-table restore FOLDER/times.csv", Destroy),
-    ("torque-table get 1", Read), ("torque-table set 1 load=1", Destroy), ("torque-table list", Read), ("torque-table dump FOLDER/torque.csv", Read),
+    ("torque-table get 1", Read), ("torque-table watch 1", Read), ("torque-table set 1 load=1", Destroy), ("torque-table list", Read), ("torque-table dump FOLDER/torque.csv", Read),
     ("torque-table copy 1 2", Destroy), ("torque-table restore FOLDER/limits.csv", Destroy),
-    ("mvm get 1", Read), ("mvm set 1 pieces1=9 approach-z=1", Destroy), ("mvm list", Read), ("mvm copy 1 2", Destroy),
+    ("mvm get 1", Read), ("mvm watch 1", Read), ("mvm set 1 pieces1=9 approach-z=1", Destroy), ("mvm list", Read), ("mvm copy 1 2", Destroy),
     ("mvm dump FOLDER/mvm.csv 1", Read), ("mvm restore FOLDER/groups.csv", Destroy),
     ("program list", Read), ("program get", Read), ("program diff FOLDER/program.txt", Read), ("program show", Read), ("program search 5", Write),
     ("program put FOLDER/program.txt", Destroy), ("program put FOLDER/program.txt --keep-rest", Destroy),
@@ -121,8 +121,8 @@ fn risk(block: &str) -> Risk {
 }
 
 #[test]
-fn every_command_is_here() {
-    let here: BTreeSet<&str> = {
+fn the_table_has_every_command() {
+    let listed: BTreeSet<&str> = {
         let (_, _, folder) = prepared("");
         let id = |line: &str| {
             let words = words(line, &folder);
@@ -131,14 +131,14 @@ fn every_command_is_here() {
         LINES.iter().map(|(line, _)| id(line)).collect()
     };
     // The editor has its own transcript.
-    let desk = ["toyo.ports", "toyo.program.check", "toyo.program.edit", "toyo.sim.run"];
+    let offline = ["toyo.ports", "toyo.program.check", "toyo.program.edit", "toyo.sim.run"];
     let missing: Vec<&str> = super::commands::Commands::schemas().iter().map(|entry| entry.id).collect();
-    let missing: Vec<&str> = missing.into_iter().filter(|id| !here.contains(id) && !desk.contains(id)).collect();
+    let missing: Vec<&str> = missing.into_iter().filter(|id| !listed.contains(id) && !offline.contains(id)).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }
 
 #[test]
-fn nothing_is_changed_that_was_not_confirmed() {
+fn without_confirmation_no_command_changes_anything() {
     let mut wrong = Vec::new();
     for (line, risk_of_it) in LINES {
         let (mut bench, heard, folder) = prepared(line);
@@ -154,15 +154,16 @@ fn nothing_is_changed_that_was_not_confirmed() {
         if is_refused == (*risk_of_it == Read || intent.is_stop) {
             wrong.push(format!("{line}: a read-only robot"));
         }
-        let came = bench.unasked(&words);
+        let outcome = bench.unasked(&words);
         bench.end();
         let riskier: Vec<String> = heard.borrow().iter().filter(|block| risk(block) >= Destroy).cloned().collect();
         if *risk_of_it >= Destroy {
-            let kind = came.as_ref().err().map(|failure| failure.kind);
+            let kind = outcome.as_ref().err().map(|failure| failure.kind);
             // A block beyond the end is refused in any case.
-            let is_told = |message: &str| message.starts_with("not confirmed: ") || message.contains("would fall out");
-            if kind != Some(Kind::Rejected) || !came.as_ref().is_err_and(|failure| is_told(&failure.message)) {
-                wrong.push(format!("{line}: {came:?}"));
+            let is_expected =
+                |message: &str| message.starts_with("not confirmed: ") || message.contains("would be lost");
+            if kind != Some(Kind::Rejected) || !outcome.as_ref().is_err_and(|failure| is_expected(&failure.message)) {
+                wrong.push(format!("{line}: {outcome:?}"));
             }
             if intent.confirmation != Confirmation::WhenKnown && !heard.borrow().is_empty() {
                 wrong.push(format!("{line}: sent before it was asked: {:?}", heard.borrow()));
@@ -176,7 +177,7 @@ fn nothing_is_changed_that_was_not_confirmed() {
 }
 
 #[test]
-fn a_dry_run_is_what_is_sent() {
+fn a_dry_run_shows_the_blocks_that_are_sent() {
     let mut wrong = Vec::new();
     for (line, risk_of_it) in LINES {
         let (mut bench, heard, folder) = prepared(line);
@@ -191,7 +192,7 @@ fn a_dry_run_is_what_is_sent() {
         };
         let planned = all_frames(&report);
         if !planned.iter().any(|frame| risk(&text(frame)) == *risk_of_it) {
-            wrong.push(format!("{line}: no frame of its own risk in {planned:?}"));
+            wrong.push(format!("{line}: no frame has the risk of the command: {planned:?}"));
         }
         // The simulator refuses some commands; the blocks sent up to then count.
         let is_whole = bench.run(&words).is_ok_and(|(_, failure)| failure.is_none());
@@ -263,7 +264,7 @@ fn fits(planned: &str, sent: &str) -> bool {
 }
 
 #[test]
-fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
+fn a_confirmation_shows_old_and_new_and_empty_cells_need_none() {
     let (mut bench, heard, _folder) = prepared("");
     let mut refused = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
@@ -279,7 +280,7 @@ fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
         ("palletizing set 1 end 7", "overwrite a record of palletizing program 1 (end: 5 -> 7)"),
         (
             "program insert 1 HOME",
-            "insert a step before step 1 of task 1 (step 1 (TAG TAG=005) and the steps behind it move on by one)",
+            "insert a step before step 1 of task 1 (step 1 (TAG TAG=005) and later steps move by one)",
         ),
         ("program delete 1", "delete a step of task 1 (step 1: TAG TAG=005)"),
         ("program delete 1 --to 3", "delete 3 steps of task 1 (step 1: TAG TAG=005, and 2 more)"),

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::link::{Link, Toyo};
 use super::position::{Coordinates, UNIT, titled};
-use super::waiting::{Accepted, Work};
+use super::wait::{AcceptedWork, Work};
 use crate::client::toyo::Letters;
 use crate::command::frame::ending::MotionEnd;
 use crate::command::robot::motion::Motion;
@@ -30,18 +30,18 @@ pub struct Home {
 }
 
 impl Home {
-    fn order(&self) -> (Request, Accepted) {
+    fn order(&self) -> (Request, AcceptedWork) {
         let (work, doing) = (Work::Home, "the axes return to the origin");
         let done = "the return to the origin was accepted";
         match self.sync {
             None => {
                 let order = table::Command::Home;
-                (Request::bare(order), Accepted { work, order, done, doing })
+                (Request::bare(order), AcceptedWork { work, order, done, doing })
             }
             Some(axis) => {
                 let (order, work, doing) = (table::Command::Sorg, Work::Search, "the axes search their origin");
                 let done = "the search for the origin was accepted";
-                (Request::of(order, [Value::Number(axis)]), Accepted { work, order, done, doing })
+                (Request::of(order, [Value::Number(axis)]), AcceptedWork { work, order, done, doing })
             }
         }
     }
@@ -81,7 +81,7 @@ impl Command for Home {
 
 /// Adds the present position of each axis. A busy controller can refuse to report it.
 async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change, Failure> {
-    let place = match link.place().await {
+    let place = match link.read_position().await {
         Ok(record) => Coordinates::of(&record, letters),
         Err(failure) if failure.kind == Kind::Refused => {
             return Ok(change.note("The controller did not report the position."));
@@ -118,7 +118,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn a_dry_run_shows_the_order_and_what_is_asked_meanwhile() {
+    fn a_dry_run_shows_the_order_and_the_status_reads() {
         assert_eq!(
             all_blocks(&["home"]).unwrap(),
             [
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_axes_are_at_their_origin_when_it_is_told() {
+    fn home_ends_with_all_axes_at_their_origin() {
         let (mut bench, heard) = Bench::with_faults("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fault::None);
         let data = bench.data(&["home"]);
         assert!(data["elapsed_ms"].as_u64().unwrap() > 1000, "{data}");
@@ -152,15 +152,15 @@ mod tests {
     }
 
     #[test]
-    fn a_return_that_is_stopped_is_a_failure() {
+    fn a_stopped_return_to_origin_fails() {
         let state = "position = [300.0, 0.0, 0.0, 0.0]\n[[event]]\nat_ms = 1000\ndo = \"stop\"\n";
         let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["home"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert!(failure.message.contains("but it ended without the origin; it stands at X "), "{}", failure.message);
+        assert!(failure.message.contains("but it ended without the origin; the axes are at X "), "{}", failure.message);
     }
 
     #[test]
-    fn nobody_waits_who_does_not_want_to() {
+    fn no_wait_ends_while_the_axes_move() {
         let (mut bench, _) = Bench::with_faults("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fault::None);
         assert_eq!(bench.data(&["home", "--no-wait"])["position"], serde_json::Value::Null);
         assert_eq!(bench.data(&["status"])["homing"], true);

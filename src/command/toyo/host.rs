@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::link::Toyo;
 use super::orders::not_so;
-use super::waiting::becomes;
+use super::wait::wait_for_status;
 use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -43,7 +43,9 @@ impl Command for Host {
             },
         )?;
         context.link.choose_host(is_on);
-        if becomes(context.link, (2, "whether the host has switched"), |status| status.host_on() == is_on).await? {
+        if wait_for_status(context.link, (2, "whether the host has switched"), |status| status.host_on() == is_on)
+            .await?
+        {
             return Ok(New::of("host_on", is_on, done).replaces(old));
         }
         Err(not_so("the host").hint("`toyo status` shows whether the host is ON"))
@@ -55,7 +57,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
 
     #[test]
-    fn the_order_goes_out_alone() {
+    fn host_on_sends_only_its_order() {
         assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@HSON", "@STAS SNO=2"]);
         assert_eq!(blocks(&["position"]).unwrap(), ["@MPST"]);
         assert!(objection(&["host", "maybe"]).contains("maybe"));
@@ -63,9 +65,9 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_that_is_lost_is_cleared_up_by_the_status() {
+    fn the_status_shows_the_outcome_of_an_unanswered_order() {
         let lost = |fault| move |block: &str, _| if block == "@HSON" { fault } else { Fault::None };
-        // The command was executed, and the status shows it.
+        // The command was executed, and the status confirms it.
         assert_eq!(Bench::with_faults("", lost(Fault::Unanswered)).0.data(&["host", "on"])["new"], true);
         let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Unanswered));
         bench.data(&["counter", "set", "1", "5"]);
@@ -80,12 +82,12 @@ mod tests {
         // The command was not executed, and nothing else was sent.
         let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Lost));
         let failure = bench.run(&["home"]).unwrap_err();
-        assert!(failure.message.starts_with("the order was not sent: "), "{failure}");
+        assert!(failure.message.starts_with("the command was not sent: "), "{failure}");
         assert!(!heard.borrow().iter().any(|block| block == "@HOME"));
     }
 
     #[test]
-    fn what_needs_no_host_is_sent_while_the_pendant_is_on() {
+    fn with_pendant_on_commands_that_need_no_host_are_sent() {
         let (mut bench, heard) = Bench::with_faults("pendant = true\n", |_, _| Fault::None);
         bench.data(&["counter", "set", "1", "5"]);
         assert!(heard.borrow().iter().any(|block| block.starts_with("@MCST")));
@@ -94,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn the_host_stays_as_it_was_switched() {
+    fn the_host_keeps_its_state_after_the_command() {
         let mut bench = Bench::new("sim:");
         bench.data(&["host", "on"]);
         assert_eq!(bench.data(&["status"])["host_on"], true);

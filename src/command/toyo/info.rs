@@ -87,7 +87,7 @@ struct Station {
 impl About {
     fn of(system: &Record) -> Self {
         Self {
-            robot_type: shown(system, "robot_type"),
+            robot_type: field_text(system, "robot_type"),
             version: meaning(system, "version"),
             language: meaning(system, "language"),
             axes: ["arm1", "arm2", "arm3", "arm4"].iter().filter_map(|arm| system.word(arm)).collect(),
@@ -111,14 +111,14 @@ impl About {
 }
 
 /// Value in the protocol.
-fn shown(record: &Record, name: &str) -> String {
+fn field_text(record: &Record, name: &str) -> String {
     record.pairs().find(|(field, _)| field.name == name).map(|(field, value)| field.written(value)).unwrap_or_default()
 }
 
 /// Meaning of a value.
 fn meaning(record: &Record, name: &str) -> String {
-    let found = record.pairs().find(|(field, _)| field.name == name);
-    found.map(|(field, value)| field.meaning(value).into_owned()).unwrap_or_default()
+    let field = record.pairs().find(|(field, _)| field.name == name);
+    field.map(|(field, value)| field.meaning(value).into_owned()).unwrap_or_default()
 }
 
 impl Report for About {
@@ -151,13 +151,13 @@ mod tests {
     use crate::controller::toyo::request::Answer;
 
     #[test]
-    fn all_that_tells_is_asked() {
+    fn info_reads_all_identification() {
         let versions = ["@CVER NO=0", "@CVER NO=1", "@CVER NO=2", "@CVER NO=3", "@CVER NO=4"];
         assert_eq!(all_blocks(&["info"]).unwrap(), [&["@SYSP"][..], &versions, &["@MTSK", "@ROVR"]].concat());
     }
 
     #[test]
-    fn a_controller_in_words() {
+    fn the_report_describes_the_controller_as_text() {
         let Ok(Answer::Data(record)) =
             Request::bare(table::Command::Sysp).answer("@SYSP RTYP=000123 VER=03.36 E ARM1=X ARM2=Y ARM3=Z ARM4=R N")
         else {

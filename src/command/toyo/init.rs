@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::link::Link;
 use super::link::Toyo;
 use super::task;
-use super::waiting::status_page;
+use super::wait::status_page;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -152,7 +152,7 @@ mod tests {
     use crate::controller::toyo::table::commands::CLEARS;
 
     #[test]
-    fn every_word_clears_what_the_manual_has() {
+    fn each_word_clears_the_data_of_the_manual() {
         let typed: Vec<(&str, &str)> = What::value_variants().iter().map(|what| (what.row().0, what.row().1)).collect();
         assert_eq!(
             typed.iter().map(|(_, number)| *number).collect::<Vec<_>>(),
@@ -166,11 +166,11 @@ mod tests {
             );
         }
         assert!(objection(&["init"]).contains("<WHAT>"));
-        assert_eq!(intent(&["init", "points"]), "clear the coordinate table of the current task, for good");
+        assert_eq!(intent(&["init", "points"]), "clear the coordinate table of the current task permanently");
     }
 
     #[test]
-    fn the_word_is_that_of_the_command_line() {
+    fn the_block_has_the_word_of_the_command_line() {
         for what in What::value_variants() {
             let value = what.to_possible_value().unwrap();
             assert_eq!(Command::confirmation(&Init { what: *what }), Confirmation::Word(what.row().0));

@@ -40,7 +40,7 @@ struct Operand {
     least: Option<f64>,
     /// Maximum; null if the operand is not a number.
     most: Option<f64>,
-    /// Unit of the number; null if there is none.
+    /// Unit of the number; null without a unit.
     unit: Option<&'static str>,
     /// Valid words; empty if the operand is not a word.
     words: Vec<OperandWord>,
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn the_topic_has_all_and_fits_a_terminal() {
+    fn the_help_topic_has_all_instructions_and_fits_80_columns() {
         let (_, _, text) = topic();
         let wide: Vec<&str> = text.lines().filter(|line| line.chars().count() > 80).collect();
         assert!(wide.is_empty(), "{wide:?}");

@@ -44,7 +44,7 @@ pub type Key = BTreeMap<&'static str, i32>;
 pub type Answers = Vec<Result<Record, Failure>>;
 
 impl<T> Item<T> {
-    /// Item for an answer whose value shows itself whether the manual lists it.
+    /// Item for an answer. The value has the key `in_manual`.
     pub fn kept(name: &'static str, number: i32, answer: Result<T, Failure>) -> Self {
         match answer {
             Ok(value) => Self::Answered { ok: true, value },
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn one_refusal_hides_nothing_and_names_its_block() {
+    fn one_refusal_does_not_hide_other_answers_and_names_its_block() {
         for (words, name, block) in [
             (["counter", "get", "1-3"], "CN02", "MCNT CN=02"),
             (["timer", "get", "1-3"], "TN2", "MTMR TN=2"),
@@ -216,8 +216,8 @@ mod tests {
             (["mvm", "get", "1-3"], "group 2", "RPAR T4 S3 GRP=02"),
             (["point", "get", "1-3"], "point 2", "RPAR T1 PT=002"),
         ] {
-            let asked = Box::leak(format!("@{block}").into_boxed_str());
-            let (data, failure) = with_faults(asked, Fault::Answered("@NG")).run(&words).unwrap();
+            let request = Box::leak(format!("@{block}").into_boxed_str());
+            let (data, failure) = with_faults(request, Fault::Answered("@NG")).run(&words).unwrap();
             let items = data["items"].as_array().unwrap();
             assert_eq!(items.len(), 3, "{data}");
             assert_eq!(
@@ -236,12 +236,17 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_silent_is_not_asked_for_ever() {
+    fn after_a_lost_answer_no_more_items_are_read() {
         let (data, failure) = with_faults("@MCNT CN=02", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap();
         let kinds: Vec<_> =
             data["items"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
         assert!(kinds[0].is_null() && kinds[1..].iter().all(|kind| kind == "no_answer"), "{data}");
-        assert!(data["items"][2]["error"]["message"].as_str().unwrap().starts_with("@MCNT CN=03 was not asked"));
+        assert!(
+            data["items"][2]["error"]["message"]
+                .as_str()
+                .unwrap()
+                .starts_with("@MCNT CN=03 was not sent after a lost answer")
+        );
         assert_eq!(failure.unwrap().kind, Kind::Mixed);
         let failure = with_faults("@MCNT CN=01", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
         assert_eq!(failure.kind, Kind::NoAnswer);
@@ -250,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_manual_does_not_list_is_kept_as_it_came() {
+    fn values_outside_the_manual_are_shown_unchanged() {
         for (block, answer, raw) in [
             ("@RPAR M18", "@RPAR M18 STN=01 BRT=156K", "M18 STN=01 BRT=156K"),
             ("@RPAR P06", "@RPAR P06 AX1=+0000.50 AX2=+0000.5 AX3=+0001.234 AX4=+0000.00", "+0000.5"),
@@ -270,7 +275,7 @@ mod tests {
             // A kept value is not written back.
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
-                assert!(failure.message.contains("'ax2=+0000.5', which is not in the manual"), "{failure}");
+                assert!(failure.message.contains("'ax2=+0000.5' is not in the manual"), "{failure}");
                 assert_eq!(failure.hint.unwrap(), "nothing was written; type all values");
             }
             let dumped = bench.data(&["param", "dump"]);
@@ -285,10 +290,10 @@ mod tests {
             if block == "@RSTX 0002" { Fault::Answered("@RSTX 0002 FOO X=1") } else { Fault::None }
         })
         .0;
-        let got = bench.data(&["program", "get", "--to", "4"]);
-        assert_eq!(got["text"], "SPD V=05\nFOO X=1   # not in the manual\nEND\nNOP\n");
+        let program = bench.data(&["program", "get", "--to", "4"]);
+        assert_eq!(program["text"], "SPD V=05\nFOO X=1   # not in the manual\nEND\nNOP\n");
         assert_eq!(
-            got["steps"][1],
+            program["steps"][1],
             serde_json::json!({ "ok": true, "step": 2, "instruction": "FOO X=1", "in_manual": false })
         );
     }

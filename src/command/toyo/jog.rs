@@ -15,7 +15,7 @@ use super::link::{Link, Moving, jog};
 use super::position::{Coordinates, UNIT, titled};
 use super::refusal;
 use super::values::machine;
-use super::waiting::{LOOK_EVERY, position, present_error, status_page};
+use super::wait::{POLL_INTERVAL, explain_present_error, position_request, status_page};
 use crate::client::toyo::Letters;
 use crate::command::frame::dry_run::Reason;
 use crate::command::robot::motion::Motion;
@@ -151,13 +151,13 @@ fn hold(text: &str) -> Result<Duration, String> {
 }
 
 /// Time limit for the begin of a step.
-const BEGIN_WITHIN: Duration = Duration::from_secs(1);
+const START_TIMEOUT: Duration = Duration::from_secs(1);
 /// Time after which an axis at the lowest speed has moved.
-const AT_REST: Duration = Duration::from_millis(500);
+const REST_TIME: Duration = Duration::from_millis(500);
 /// Interval between two reads during a step.
-const STEP_LOOK_EVERY: Duration = Duration::from_millis(20);
+const STEP_POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// Limit of refused reads in a row while an axis moves.
-const MOST_REFUSED: u32 = 3;
+const MAX_REFUSALS: u32 = 3;
 
 /// Early end of a motion.
 #[derive(Debug)]
@@ -195,7 +195,7 @@ impl Jog {
 
     /// Records all requests from the jog command on. The number of an axis is known after the letters were read.
     fn plan(&self, link: &mut Link) {
-        link.plan(&position(), "position before the jog");
+        link.plan(&position_request(), "position before the jog");
         let steps = self.steps.unwrap_or(1);
         let about = match self.within {
             Some(time) => format!("then {} pass", duration::display(time)),
@@ -211,7 +211,7 @@ impl Jog {
             }
         }
         link.plan(&status_page(0), "until the stop: whether there is an error");
-        link.plan(&position(), "until the stop: position");
+        link.plan(&position_request(), "until the stop: position");
     }
 
     /// Text after "This will …".
@@ -270,7 +270,7 @@ impl Jog {
             }
             live.say(format!("jogging {}", place.in_a_line()));
             longest = longest.max(began.elapsed());
-            sleep_until(began + LOOK_EVERY.max(longest)).await;
+            sleep_until(began + POLL_INTERVAL.max(longest)).await;
         }
     }
 
@@ -301,14 +301,14 @@ impl Jog {
             if stands && here != start {
                 return Ok(here);
             }
-            if stands && began.elapsed() >= BEGIN_WITHIN {
+            if stands && began.elapsed() >= START_TIMEOUT {
                 let message = "the step was accepted, but the axis did not move";
                 return Err(Cut::Failed(
                     Failure::new(Kind::ConditionNotMet, message)
                         .hint("`toyo param get P12` shows the size of a step, `toyo status` shows the reason"),
                 ));
             }
-            sleep(STEP_LOOK_EVERY).await;
+            sleep(STEP_POLL_INTERVAL).await;
         }
     }
 }
@@ -329,7 +329,7 @@ impl Watch {
             self.since = Instant::now();
         }
         let stands = place == self.last && place != self.start;
-        let is_at_rest = stands && ((self.was_busy && !is_busy) || self.since.elapsed() >= AT_REST);
+        let is_at_rest = stands && ((self.was_busy && !is_busy) || self.since.elapsed() >= REST_TIME);
         self.was_busy |= is_busy;
         self.last = place;
         is_at_rest
@@ -341,8 +341,8 @@ async fn look(link: &mut Link, axis: &Known) -> Result<(bool, Coordinates), Cut>
     let mut refused = 0;
     loop {
         match try_look(link, axis).await {
-            Err(Cut::Failed(failure)) if failure.kind == Kind::Refused && refused < MOST_REFUSED => refused += 1,
-            looked => return looked,
+            Err(Cut::Failed(failure)) if failure.kind == Kind::Refused && refused < MAX_REFUSALS => refused += 1,
+            state => return state,
         }
     }
 }
@@ -352,7 +352,7 @@ async fn try_look(link: &mut Link, axis: &Known) -> Result<(bool, Coordinates), 
     if status.has_error() {
         return Err(Cut::Error);
     }
-    Ok((status.executing(), Coordinates::of(&link.place().await?, axis.letters)))
+    Ok((status.executing(), Coordinates::of(&link.read_position().await?, axis.letters)))
 }
 
 impl Command for Jog {
@@ -389,24 +389,24 @@ impl Command for Jog {
             self.plan(link);
             link.stop(Moving::Jog).await?;
         }
-        let start = Coordinates::of(&link.ask(&position()).await?, letters);
+        let start = Coordinates::of(&link.ask(&position_request()).await?, letters);
         let live = Live::new(screen);
         let began = Instant::now();
-        let gone = self.go(link, &live, &axis, start).await;
-        if let Err(Cut::Refused) = gone {
+        let outcome = self.go(link, &live, &axis, start).await;
+        if let Err(Cut::Refused) = outcome {
             // This command caused no motion. Other motion belongs to another client and needs no wait for a stop.
-            link.give_up(Moving::Jog).await;
+            link.stop_refused_motion(Moving::Jog).await;
             live.end();
             return Err(refusal::explained(link, &self.order(&axis)).await);
         }
         // The stop is sent in any case.
         let elapsed = began.elapsed();
         let end = Coordinates::of(
-            &link.stop(Moving::Jog).await.map_err(|failure| still_moving(gone.as_ref().err(), failure))?,
+            &link.stop(Moving::Jog).await.map_err(|failure| still_moving(outcome.as_ref().err(), failure))?,
             letters,
         );
         live.end();
-        match gone {
+        match outcome {
             Ok(steps) => Ok(Jogged::of(self, &axis, (start, end), elapsed, steps)),
             Err(cut) => Err(cut_short(link, cut, &end).await),
         }
@@ -419,8 +419,8 @@ async fn cut_short(link: &mut Link, cut: Cut, place: &Coordinates) -> Failure {
     match cut {
         Cut::Refused => refusal::explained(link, &jog("RS", None)).await,
         Cut::Error => {
-            let tell = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{what}; {stopped}"));
-            present_error(link, &tell).await
+            let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{what}; {stopped}"));
+            explain_present_error(link, &fail).await
         }
         Cut::Failed(failure) => Failure { message: format!("{}; {stopped}", failure.message), ..failure },
     }
@@ -444,11 +444,11 @@ struct Live {
 
 impl Live {
     fn new(screen: &Screen) -> Self {
-        let (texts, said) = mpsc::channel::<String>();
+        let (texts, updates) = mpsc::channel::<String>();
         let screen = *screen;
         let thread = std::thread::spawn(move || {
             let progress = screen.spinner("jogging");
-            for text in said {
+            for text in updates {
                 progress.say(&text);
             }
         });

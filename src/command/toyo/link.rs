@@ -1,22 +1,22 @@
 //! Connection to a controller for commands: the client, with errors in plain text, a trace of the traffic, and a
 //! journal of temporary changes.
 
-mod left;
-mod onlooker;
+mod abandoned_changes;
+mod observer;
 
 use std::sync::{Arc, Mutex};
 
 use derive_more::{Deref, DerefMut};
 
-use super::chosen::Chosen;
+use super::change_journal::{AbandonedEntry, ChangeJournal};
 use super::connect;
-use super::debts::{Debts, Left};
 use super::failure::failure;
 pub use super::failure::{misuse, wrong};
 use super::position::Coordinates;
 use super::program::kept::Sources;
 use super::refusal;
 use super::trace::Trace;
+use super::user_choices::UserChoices;
 use super::write_log::WriteLog;
 use crate::client::toyo::{Client, Error, Letters, Line, is_stop, status_page};
 pub use crate::client::toyo::{Moving, Refusal, jog};
@@ -34,7 +34,7 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target;
-use onlooker::{Onlooker, Told, Watching};
+use observer::{Observer, PrintedNotices, SharedObserver};
 
 /// The toyo family.
 #[derive(Debug)]
@@ -46,11 +46,11 @@ pub struct Link {
     #[deref]
     #[deref_mut]
     client: Client,
-    onlooker: Arc<Mutex<Onlooker>>,
+    observer: Arc<Mutex<Observer>>,
     screen: Screen,
     label: String,
     /// Changes that ended processes left on the controller and that were not reported yet.
-    left: Vec<Left>,
+    abandoned: Vec<AbandonedEntry>,
     /// Writes to the EEPROM.
     pub(super) write_log: WriteLog,
     /// Source texts of the programs that were written.
@@ -74,7 +74,7 @@ impl Family for Toyo {
         link.screen.note(&format!("stopping the robot: {stop}"));
         let place = link.stop(moving).await?;
         let place = link.coordinates(&place).await;
-        Ok(format!("the robot was stopped ({stop}); it is at {}", place.in_a_line()))
+        Ok(format!("the robot was stopped ({stop}); the axes are at {}", place.in_a_line()))
     }
 
     fn must_halt(link: &Link) -> bool {
@@ -96,25 +96,25 @@ impl Family for Toyo {
     }
 
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
-        link.tell_what_is_left().await;
-        let Link { client, onlooker, label, mut write_log, .. } = link;
+        link.report_abandoned_changes().await;
+        let Link { client, observer, label, mut write_log, .. } = link;
         let (totals, closed) = client.close().await;
         // Motion that continues on purpose was already reported.
-        locked(&onlooker).debts.moving(None);
+        locked(&observer).journal.moving(None);
         let Counters { sent, received, .. } = totals.counters;
         screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", totals.waited));
-        if let Some(odd) = counted(&odd(&totals.counters)) {
-            screen.detail(1, &format!("on the line: {odd}"));
+        if let Some(counts) = counted(&disturbances(&totals.counters)) {
+            screen.detail(1, &format!("on the line: {counts}"));
         }
         if let Err(error) = write_log.keep() {
             screen.detail(1, &format!("the EEPROM write log could not be saved: {error}"));
         }
-        closed.map_err(|error| failure(&label, error)).and(locked(&onlooker).trace.finish())
+        closed.map_err(|error| failure(&label, error)).and(locked(&observer).trace.finish())
     }
 }
 
 /// Counters of disturbances, with their names.
-fn odd(counters: &Counters) -> [(u64, &'static str); 5] {
+fn disturbances(counters: &Counters) -> [(u64, &'static str); 5] {
     let Counters { sent: _, received: _, noise, garbled, foreign, echoes, repeats } = *counters;
     [
         (noise.into(), "stray characters"),
@@ -129,7 +129,7 @@ impl Link {
     /// Traffic counters of the connection.
     pub(super) fn traffic(&self) -> Traffic {
         let Counters { sent, received, .. } = self.client.totals().counters;
-        let disturbances = odd(&self.client.totals().counters).iter().map(|(count, _)| count).sum();
+        let disturbances = disturbances(&self.client.totals().counters).iter().map(|(count, _)| count).sum();
         Traffic { sent: sent.into(), received: received.into(), disturbances }
     }
 
@@ -138,19 +138,19 @@ impl Link {
         let (target, label) = (robot.target.value.to_string(), robot.label());
         let is_kept = !robot.target.value.is_simulated();
         let write_log = if is_kept { WriteLog::of(&target) } else { WriteLog::without_file() };
-        let (debts, chosen) = if is_kept && !access.dry_run {
-            (Debts::of(&target), Chosen::of(&target))
+        let (journal, choices) = if is_kept && !access.dry_run {
+            (ChangeJournal::of(&target), UserChoices::of(&target))
         } else {
-            (Debts::without_notes(), Chosen::without_notes())
+            (ChangeJournal::without_files(), UserChoices::without_file())
         };
-        let left = debts.left();
+        let abandoned = journal.abandoned_entries();
         let trace = Trace::open(access, screen, client.ends())?;
-        let (screen, told) = (*screen, Told::by(&left));
-        let onlooker = Onlooker { trace, debts, chosen, told, screen, label: label.clone() };
-        let onlooker = Arc::new(Mutex::new(onlooker));
-        client.watch(Watching(Arc::clone(&onlooker)));
+        let (screen, printed) = (*screen, PrintedNotices::from_journal(&abandoned));
+        let observer = Observer { trace, journal, choices, printed, screen, label: label.clone() };
+        let observer = Arc::new(Mutex::new(observer));
+        client.watch(SharedObserver(Arc::clone(&observer)));
         let sources = if access.dry_run { Sources::default() } else { Sources::of(robot) };
-        Ok(Self { client, onlooker, screen, label, left, write_log, sources })
+        Ok(Self { client, observer, screen, label, abandoned, write_log, sources })
     }
 
     /// Returns the line for a session; `None` in a dry run.
@@ -168,7 +168,7 @@ impl Link {
 
     /// Sends a request; a refusal is a valid result.
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
-        self.tell_what_is_left().await;
+        self.report_abandoned_changes().await;
         self.before_steps_change(request);
         self.client.try_ask(request).await.map_err(|error| self.failure(error))
     }
@@ -185,7 +185,7 @@ impl Link {
     /// Sends a request unchanged, and returns the whole answer, good or bad.
     pub async fn raw(&mut self, request: &Request) -> Result<Answer, Failure> {
         if !is_stop(request) {
-            self.tell_what_is_left().await;
+            self.report_abandoned_changes().await;
         }
         self.before_steps_change(request);
         self.client.raw(request).await.map_err(|error| self.failure(error))
@@ -193,7 +193,7 @@ impl Link {
 
     /// Sends a block that no table contains, and returns the answer.
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Failure> {
-        self.tell_what_is_left().await;
+        self.report_abandoned_changes().await;
         self.sources.doubt();
         self.client.raw_text(block).await.map_err(|error| self.failure(error))
     }
@@ -221,20 +221,20 @@ impl Link {
 
     /// Reads some pages of the status; the other pages are 0.
     pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Failure> {
-        self.tell_what_is_left().await;
+        self.report_abandoned_changes().await;
         self.client.status_of(pages).await.map_err(|error| self.failure(error))
     }
 
     /// Reads the position of the axes. A refusal is not explained, because the explanation takes time and the
     /// controller is busy for a moment.
-    pub async fn place(&mut self) -> Result<Record, Failure> {
-        self.tell_what_is_left().await;
-        self.client.place().await.map_err(|error| self.failure(error))
+    pub async fn read_position(&mut self) -> Result<Record, Failure> {
+        self.report_abandoned_changes().await;
+        self.client.read_position().await.map_err(|error| self.failure(error))
     }
 
     /// Reads the letters of the axes from the controller.
     pub async fn letters(&mut self) -> Result<Letters, Failure> {
-        self.tell_what_is_left().await;
+        self.report_abandoned_changes().await;
         self.client.letters().await.map_err(|error| self.failure(error))
     }
 
@@ -246,7 +246,7 @@ impl Link {
 
     /// Changes a setting temporarily. [`Link::put_back`] or the end of the link restores it with `back`.
     pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
-        self.tell_what_is_left().await;
+        self.report_abandoned_changes().await;
         match self.client.borrow(change, back).await {
             Err(Error::Refused(Refusal(request))) => Err(refusal::explained(self, &request).await),
             borrowed => borrowed.map_err(|error| self.failure(error)),
@@ -261,35 +261,35 @@ impl Link {
     /// Stops the motion, and returns the position of rest.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
         // Stale changes are reported after the stop.
-        let told = std::mem::replace(&mut locked(&self.onlooker).told, Told::ALL);
+        let printed = std::mem::replace(&mut locked(&self.observer).printed, PrintedNotices::ALL);
         let stopped = self.client.stop(moving).await;
-        let mut onlooker = locked(&self.onlooker);
-        onlooker.told = told;
-        onlooker.trace.release();
+        let mut observer = locked(&self.observer);
+        observer.printed = printed;
+        observer.trace.release();
         stopped.map_err(|error| self.failure(error))
     }
 
     /// Stops a motion that the controller refused before it began. The stop is sent once.
-    pub async fn give_up(&mut self, moving: Moving) {
-        self.client.give_up(moving).await;
-        locked(&self.onlooker).trace.release();
+    pub async fn stop_refused_motion(&mut self, moving: Moving) {
+        self.client.stop_refused_motion(moving).await;
+        locked(&self.observer).trace.release();
     }
 
     /// Detects a lost connection early, and buffers trace text until [`Link::stop`]. Neither long timeouts nor a
     /// blocked terminal must delay the stop.
     pub fn use_short_timeouts(&mut self) {
         self.client.use_short_timeouts();
-        locked(&self.onlooker).trace.hold();
+        locked(&self.observer).trace.hold();
     }
 
     /// Records that the user chose the present state of the host.
     pub fn choose_host(&mut self, is_on: bool) {
-        locked(&self.onlooker).choose_host(is_on);
+        locked(&self.observer).choose_host(is_on);
     }
 
     /// Records that the user chose this task as the current one.
     pub fn choose_task(&mut self, task: u8) {
-        locked(&self.onlooker).choose_task(task);
+        locked(&self.observer).choose_task(task);
     }
 
     /// Records requests in a dry run. Their answers are not known.

@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_group_is_five_sheets() {
+    fn a_group_is_read_from_five_sheets() {
         assert_eq!(
             blocks(&["mvm", "get", "3"]).unwrap(),
             [
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_set_is_read_back() {
+    fn set_values_are_read_back() {
         let mut bench = Bench::new("sim:");
         let words = ["origin=5", "p1=6", "pieces1=10", "counter3=7", "approach=incremental", "approach-z=2.5"];
         let stored = bench.data(&[&["mvm", "set", "2"], &words[..]].concat());
@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_go_through_a_file_and_are_copied() {
+    fn groups_are_dumped_restored_and_copied() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("mvm.csv");
         let file = file.to_str().unwrap();

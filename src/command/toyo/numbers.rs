@@ -23,14 +23,14 @@ impl Numbers {
     }
 
     /// All given numbers without repetition, in order; all numbers of the field if none is given.
-    pub fn of(given: &[Self], field: &Field) -> Vec<i32> {
-        if given.is_empty() {
+    pub fn of(typed_numbers: &[Self], field: &Field) -> Vec<i32> {
+        if typed_numbers.is_empty() {
             return match field.form {
                 Form::Number(number) => (number.least..=number.most).collect(),
                 _ => Vec::new(),
             };
         }
-        typed::once(given.iter().flat_map(|numbers| &numbers.0).copied())
+        typed::once(typed_numbers.iter().flat_map(|numbers| &numbers.0).copied())
     }
 }
 
@@ -86,8 +86,8 @@ pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Resu
 }
 
 /// Failure because the value that was read back differs.
-pub fn not_held(order: &Request, found: &str) -> Failure {
-    Failure::new(Kind::ConditionNotMet, format!("the controller accepted {}, but {found}", order.text()))
+pub fn stored_otherwise(order: &Request, value: &str) -> Failure {
+    Failure::new(Kind::ConditionNotMet, format!("the controller accepted {}, but {value}", order.text()))
 }
 
 #[cfg(test)]
@@ -100,10 +100,10 @@ mod tests {
     }
 
     #[test]
-    fn ranges_and_numbers() {
+    fn numbers_and_ranges_are_parsed_without_repetition() {
         let parse = |text| Numbers::parse(field(), text);
-        let given = [parse("7").unwrap(), parse("2-4").unwrap(), parse("3..5").unwrap()];
-        assert_eq!(Numbers::of(&given, field()), [7, 2, 3, 4, 5]);
+        let typed_numbers = [parse("7").unwrap(), parse("2-4").unwrap(), parse("3..5").unwrap()];
+        assert_eq!(Numbers::of(&typed_numbers, field()), [7, 2, 3, 4, 5]);
         assert_eq!(Numbers::of(&[], field()).len(), 99);
         assert_eq!(parse("100").unwrap_err(), "counter: 100 is out of range (a number, 1 to 99)");
         assert_eq!(parse("5-2").unwrap_err(), "the end of the range is before its start; did you mean 2-5?");

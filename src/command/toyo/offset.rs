@@ -30,7 +30,7 @@ mod tests {
     use crate::command::toyo::testing::all_blocks;
 
     #[test]
-    fn the_offset_has_its_block() {
+    fn offset_sends_its_block() {
         assert_eq!(all_blocks(&["offset"]).unwrap(), ["@SYSP", "@RPAR E01", "@MOFF"]);
     }
 }

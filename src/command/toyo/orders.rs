@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::link::Moving;
 use super::link::Toyo;
 use super::position::UNIT;
-use super::waiting::becomes;
+use super::wait::wait_for_status;
 use crate::command::face::shared::Alike;
 use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::robot::position::Position;
@@ -20,7 +20,7 @@ use crate::failure::{Failure, Kind};
 use crate::gate::Confirmation;
 use crate::output::view::View;
 
-/// Switch servo power of all axes (TO 2-7), and wait until the status shows it.
+/// Switch servo power of all axes (TO 2-7), and wait until the status confirms it.
 #[derive(Debug, Args)]
 pub struct Servo {
     /// Servo power on or off
@@ -52,8 +52,9 @@ impl Command for Servo {
         let old = Old::read(old.map(Status::servo_on));
         authority.confirm(&new.question(self.intent(), &old)).await?;
         link.ask(&Request::bare(command)).await?;
-        let done = becomes(link, (3, "whether servo power has switched"), |status| status.servo_on() == is_on).await?;
-        link.has_ended();
+        let done =
+            wait_for_status(link, (3, "whether servo power has switched"), |status| status.servo_on() == is_on).await?;
+        link.end_motion();
         if done {
             return Ok(new.replaces(old));
         }
@@ -147,7 +148,7 @@ impl Command for Mode {
         let (link, mode) = (context.link, self.mode);
         let old = Old::read(link.status_before(2).await?.and_then(|status| mode.instead_of(status)));
         link.ask(&Request::bare(mode.command())).await?;
-        if becomes(link, (2, "whether the mode is active"), |status| mode.is_in_force(status)).await? {
+        if wait_for_status(link, (2, "whether the mode is active"), |status| mode.is_in_force(status)).await? {
             let (set, new) = mode.data();
             return Ok(New::of(set, new, mode.in_force()).replaces(old));
         }
@@ -247,7 +248,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn each_order_is_one_block_and_a_look_at_what_it_did() {
+    fn each_command_sends_one_order_and_reads_the_status() {
         assert_eq!(
             all_blocks(&["servo", "on"]).unwrap(),
             ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@SVON", "@STAS SNO=3", "@HSOF"]
@@ -270,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_waits_for_nothing() {
+    fn a_stop_needs_no_host_and_no_fence() {
         // Only if a controller refuses to stop a jog without the host.
         let host = ["@STAS SNO=2", "@HSON", "@JGST X=SP Y=SP Z=SP R=SP", "@SYSP", "@RPAR E01", "@HSOF"];
         assert_eq!(
@@ -284,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_ordered_is_so_when_it_is_told() {
+    fn a_command_ends_when_the_status_shows_its_effect() {
         let (mut bench, _) = Bench::with_faults("", |_, _| Fault::None);
         for (words, field, value) in [
             (["servo", "off"], "servo_on", false.into()),
@@ -300,21 +301,21 @@ mod tests {
     }
 
     #[test]
-    fn what_was_accepted_and_is_not_so_is_told() {
+    fn an_accepted_order_without_effect_fails() {
         let (mut bench, _) =
             Bench::with_faults("", |block, _| if block == "@MPLE" { Fault::Answered("@OK") } else { Fault::None });
         let failure = bench.run(&["mode", "palletizing"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the order was accepted, but the mode has not changed within 1s");
+        assert_eq!(failure.message, "the command was accepted, but the mode did not change within 1s");
         assert!(failure.hint.unwrap().contains("M10"));
     }
 
     #[test]
-    fn what_was_accepted_and_is_not_seen_is_open() {
+    fn an_accepted_order_without_status_has_an_unknown_outcome() {
         let blind = |block: &str, count| if block == "@STAS SNO=3" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", blind).0.run(&["servo", "off"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert!(failure.message.starts_with("the order was accepted, but what came of it was not seen: "));
+        assert!(failure.message.starts_with("the command was accepted, but its result is unknown: "));
         let busy = |block: &str, count| {
             if block == "@STAS SNO=3" && count < 4 { Fault::Answered("@NG") } else { Fault::None }
         };
@@ -322,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_finds_what_moves() {
+    fn a_stop_ends_a_return_to_origin() {
         let (mut bench, heard) = Bench::with_faults("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fault::None);
         bench.data(&["home", "--no-wait"]);
         bench.wait(std::time::Duration::from_secs(2));
@@ -335,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_of_a_jog_that_was_left_takes_the_host_if_it_must() {
+    fn stop_of_an_abandoned_jog_takes_the_host_only_if_refused() {
         let (mut bench, heard) = Bench::with_faults("host = true\n", |_, _| Fault::None);
         bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
         bench.data(&["stop", "--jog"]);
@@ -351,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_that_stops_no_jog_is_followed_by_one_that_does() {
+    fn if_stop_does_not_end_a_jog_the_jog_stop_follows() {
         let deaf = |block: &str, _| if block == "@STOP" { Fault::Answered("@OK") } else { Fault::None };
         let (mut bench, _) = Bench::with_faults("host = true\n", deaf);
         bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
@@ -360,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jog_that_was_left_is_stopped_in_the_first_round_also_with_the_host_off() {
+    fn an_abandoned_jog_is_stopped_before_the_first_position_read() {
         let jog = "@JGST X=SP Y=SP Z=SP R=SP";
         for refuses in [false, true] {
             // STOP does not stop the jog. With the host OFF, the first stop of the jog is refused.
@@ -378,7 +379,7 @@ mod tests {
             let of = |block: &str| heard.iter().position(|other| other == block).unwrap();
             assert!(of("@STOP") < of(jog) && of(jog) < of("@MPST"), "{heard:#?}");
             let last = heard.iter().rposition(|block| block == jog).unwrap();
-            assert!(last < of("@MPST"), "all of it before the first look at the place: {heard:#?}");
+            assert!(last < of("@MPST"), "the last jog stop precedes the first position read: {heard:#?}");
         }
     }
 }

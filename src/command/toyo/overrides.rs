@@ -76,8 +76,8 @@ impl Command for Set {
             wanted: wanted.map_err(|error| wrong(&error))?,
         };
         let mut cells = Cells::default();
-        let found = context.link.store(context.screen, &cell, &mut cells).await?;
-        let old = Old::read(found.and_then(|record| record.number(field().name)));
+        let stored = context.link.store(context.screen, &cell, &mut cells).await?;
+        let old = Old::read(stored.and_then(|record| record.number(field().name)));
         let new = New::of("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
         Ok(Written { done: new.with("speed_override_percent", self.percent).replaces(old), cells })
     }
@@ -115,7 +115,7 @@ mod tests {
     use crate::command::toyo::testing::{all_blocks, blocks, objection};
 
     #[test]
-    fn the_override_is_compared_before_it_is_written() {
+    fn an_equal_override_is_not_written() {
         assert_eq!(all_blocks(&["override", "get"]).unwrap(), ["@ROVR"]);
         assert_eq!(blocks(&["override", "set", "5%"]).unwrap(), ["@ROVR", "@WOVR OV=005", "@ROVR"]);
         assert_eq!(
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn the_range_is_checked() {
+    fn an_override_out_of_range_is_rejected() {
         for percent in ["0", "101", "x", "50.5"] {
             assert!(objection(&["override", "set", percent]).contains("1 to 100 %"), "{percent}");
         }

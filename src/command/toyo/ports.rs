@@ -42,8 +42,8 @@ impl OfflineCommand for Ports {
 
 /// Serial ports of this computer.
 pub fn all() -> Result<Vec<Port>, Failure> {
-    let found = ports::ports().context("the list of serial ports")?;
-    Ok(found.into_iter().map(Port::from).collect())
+    let ports = ports::ports().context("the list of serial ports")?;
+    Ok(ports.into_iter().map(Port::from).collect())
 }
 
 /// Serial ports.
@@ -135,7 +135,7 @@ mod tests {
     use crate::output::render;
 
     #[test]
-    fn ports_are_told_with_what_they_are() {
+    fn each_port_is_listed_with_its_device() {
         let usb = PortKind::Usb {
             vendor: 0x0403,
             product: 0x6001,
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn without_any_it_says_what_to_do() {
+    fn without_serial_ports_a_hint_is_shown() {
         let text = render::text(&List { ports: Vec::new() }.view(), 80, false);
         assert!(text.contains("plug the adapter in"), "{text}");
     }

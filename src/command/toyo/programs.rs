@@ -8,7 +8,7 @@ use clap::Args;
 use super::copies::{self, Copied};
 use super::link;
 use super::link::Toyo;
-use super::numbers::{not_held, number, read_back};
+use super::numbers::{number, read_back, stored_otherwise};
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -84,14 +84,13 @@ impl<K: Kind> Command for Select<K> {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
-        let chosen = Request::bare(K::COMMANDS[2]);
-        let old = Old::read(link.before(&chosen).await?.and_then(|record| record.number("program")));
+        let selection_read = Request::bare(K::COMMANDS[2]);
+        let old = Old::read(link.before(&selection_read).await?.and_then(|record| record.number("program")));
         link.ask(&order).await?;
-        let found = read_back(link, &order, &chosen).await?.number("program");
-        if let Some(found) = found.filter(|found| *found != self.program) {
-            return Err(
-                not_held(&order, &format!("program {found} is selected")).hint("a running program stays selected")
-            );
+        let selected = read_back(link, &order, &selection_read).await?.number("program");
+        if let Some(selected) = selected.filter(|selected| *selected != self.program) {
+            return Err(stored_otherwise(&order, &format!("program {selected} is selected"))
+                .hint("a running program stays selected"));
         }
         let words = format!("{} {} is selected; `{}` starts it", K::WHAT, self.program, K::RUN);
         Ok(New::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))

@@ -82,7 +82,7 @@ impl Command for Raw {
             Block::Known(request) => {
                 let answer = link.raw(request).await?;
                 if answer == Answer::Done {
-                    chosen(link, request);
+                    record_choice(link, request);
                 }
                 answer.text()
             }
@@ -93,7 +93,7 @@ impl Command for Raw {
 }
 
 /// The user chose these settings, so they need no notice.
-fn chosen(link: &mut Link, request: &Request) {
+fn record_choice(link: &mut Link, request: &Request) {
     match request.command() {
         table::Command::Hson => link.choose_host(true),
         table::Command::Hsof => link.choose_host(false),
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_goes_out_as_it_is() {
+    fn a_block_is_sent_unchanged() {
         for text in ["@STAS SNO=0", "@MTSK"] {
             assert_eq!(all_blocks(&["raw", text]).unwrap(), [text]);
         }
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stale_ok_is_not_taken_for_that_of_a_raw_order() {
+    fn a_late_ok_does_not_confirm_a_raw_order() {
         for order in ["@MCST CN06=0001", "@MCST CN06=1"] {
             let late = move |block: &str, _| match block {
                 "@MCST CN05=0007" => Fault::Late(std::time::Duration::from_millis(3010)),
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_an_unknown_order_is_fenced_again() {
+    fn a_fence_follows_an_unknown_order() {
         let (mut bench, heard) = Bench::with_faults("host = true\n", |_, _| Fault::None);
         bench.run(&["raw", "@XXXX"]).unwrap();
         bench.run(&["raw", "@MCST CN06=0001"]).unwrap();
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_manual_does_not_print_counts_as_a_motion() {
+    fn a_block_outside_the_manual_counts_as_a_motion() {
         assert_eq!(risk("@STAS SNO=0"), Risk::Read);
         assert_eq!(risk("@WOVR OV=001"), Risk::Write);
         assert_eq!(risk("@JGST X=SP Y=SP Z=SP R=SP"), Risk::Write);
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_no_block_is_rejected() {
+    fn an_invalid_block_is_rejected() {
         assert!(objection(&["raw", "STAS"]).contains("begin with @"));
         assert!(objection(&["raw", "@STAS\tSNO=0"]).contains("column 6"));
         assert!(objection(&["raw", &format!("@{}", "A".repeat(126))]).contains("128"));
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn the_answer_is_explained_and_a_refusal_is_a_failure() {
+    fn the_answer_is_decoded_and_a_refusal_fails() {
         let mut bench = Bench::new("sim:");
         let status = bench.data(&["raw", "@STAS SNO=3"]);
         assert_eq!((&status["fields"][1]["name"], &status["refused"]), (&"page".into(), &false.into()));

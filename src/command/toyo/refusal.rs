@@ -8,7 +8,7 @@ use crate::controller::toyo::status::{ProgramKind, RunMode, Status};
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::failure::{Failure, Kind};
 
-/// Failure with the reason of a refusal, as far as the status shows it.
+/// Failure with the reason of a refusal, if the status contains one.
 pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     let row = request.row();
     if row.risk == Risk::Read {
@@ -61,13 +61,13 @@ fn refused(request: &Request, why: &str, hint: &str) -> Failure {
 
 /// The most important reason in the status that prevents a command, with its remedy.
 fn reason(status: Status, row: &Row) -> Option<(String, String)> {
-    let told = |why: &str, hint: &str| Some((why.to_owned(), hint.to_owned()));
+    let reason_and_hint = |why: &str, hint: &str| Some((why.to_owned(), hint.to_owned()));
     let moves = row.risk == Risk::Motion;
     if status.pendant_on() {
-        return told("the teach pendant is ON", "switch the teach pendant OFF");
+        return reason_and_hint("the teach pendant is ON", "switch the teach pendant OFF");
     }
     if status.needs_power_cycle() {
-        return told(
+        return reason_and_hint(
             "parameter 2 was changed, and the controller needs a restart",
             "switch the controller's power off and on",
         );
@@ -78,42 +78,49 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
         return Some((format!("error {}", error.in_a_line()), hint));
     }
     if row.needs_host && !status.host_on() {
-        return told("the host is OFF", "`toyo host on`");
+        return reason_and_hint("the host is OFF", "`toyo host on`");
     }
     if status.card_reading() || status.card_writing() {
-        return told(
+        return reason_and_hint(
             "the memory card is in use",
             "wait for the end: `toyo status --until '.data.card | (.reading or .writing) | not'`",
         );
     }
     if status.homing() {
-        return told("the axes are returning to the origin", "wait for the end, or use `toyo stop`");
+        return reason_and_hint("the axes are returning to the origin", "wait for the end, or use `toyo stop`");
     }
     if status.executing() {
-        return told("the controller executes a program or command", "wait for the end, or use `toyo stop`");
+        return reason_and_hint("the controller executes a program or command", "wait for the end, or use `toyo stop`");
     }
     if moves && !status.servo_on() && !matches!(row.command, Command::Svon | Command::Svof | Command::Mrss) {
-        return told("servo power is off", "`toyo servo on`");
+        return reason_and_hint("servo power is off", "`toyo servo on`");
     }
     if let Some((kind, how)) = kind_of(row.command) {
         if status.run_mode() == Some(RunMode::Program) {
-            return told("the controller is in program mode", "`toyo mode auto`");
+            return reason_and_hint("the controller is in program mode", "`toyo mode auto`");
         }
         if status.program_kind() != kind {
             let mode = status.program_kind().name().replace('_', " ");
             return Some((format!("the controller is in {mode} mode"), how.to_owned()));
         }
         if !status.homed() {
-            return told("the axes have not returned to the origin", "`toyo home`");
+            return reason_and_hint("the axes have not returned to the origin", "`toyo home`");
         }
     }
     match row.command {
-        Command::Wmca | Command::Rmca if !status.card_inserted() => told("there is no memory card", "insert one"),
-        Command::Rmca => told("the status shows no reason", "check that the card contains data of this controller"),
-        Command::Mrss => told("the status shows no reason", "earlier coordinates can still wait for their RSMV step"),
-        _ if row.writes_eeprom && status.run_mode() != Some(RunMode::Program) => {
-            told("the controller is not in program mode", "use `toyo mode program` if the controller requires it")
+        Command::Wmca | Command::Rmca if !status.card_inserted() => {
+            reason_and_hint("there is no memory card", "insert one")
         }
+        Command::Rmca => {
+            reason_and_hint("the status shows no reason", "check that the card contains data of this controller")
+        }
+        Command::Mrss => {
+            reason_and_hint("the status shows no reason", "earlier coordinates can still wait for their RSMV step")
+        }
+        _ if row.writes_eeprom && status.run_mode() != Some(RunMode::Program) => reason_and_hint(
+            "the controller is not in program mode",
+            "use `toyo mode program` if the controller requires it",
+        ),
         _ => None,
     }
 }
@@ -160,7 +167,7 @@ pub fn verification_hint(command: Command) -> &'static str {
         Command::Spst | Command::Ppst | Command::Sesy | Command::Extp | Command::Mrss => {
             "keep clear; `toyo status` and `toyo position` show motion and position"
         }
-        Command::Jgst => "keep clear; `toyo stop --jog` stops the axis, `toyo position` shows where it is",
+        Command::Jgst => "keep clear; `toyo stop --jog` stops the axis, `toyo position` shows the position",
         Command::Svon | Command::Svof => "`toyo status` shows whether servo power is on",
         Command::Wpar => "`toyo param get` shows the stored value",
         Command::Wstx | Command::Istx | Command::Dstx | Command::Dstl | Command::Cpss => {
@@ -183,7 +190,7 @@ mod tests {
     use crate::controller::toyo::field::Value;
 
     #[test]
-    fn the_status_tells_why() {
+    fn the_status_gives_the_reason_of_a_refusal() {
         let fine = Status::default().with(0, 0x30).with(2, 0x80).with(3, 0x11);
         let why = |status: Status, command: Command| reason(status, command.row()).map(|(why, _)| why);
         assert_eq!(why(fine, Command::Home), None);

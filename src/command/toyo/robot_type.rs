@@ -57,8 +57,8 @@ impl Command for RobotType {
             context.link.status_of(&[0]).await?;
             return Err(unknown());
         };
-        let shown = |number: i32| fields()[1].written(&Value::Number(number));
-        let in_force = shown(answer.number("in_force").unwrap_or(0));
+        let type_text = |number: i32| fields()[1].written(&Value::Number(number));
+        let in_force = type_text(answer.number("in_force").unwrap_or(0));
         let status = context.link.status_of(&[0]).await.map_err(|failure| {
             let message = format!("robot type {in_force} is active now, but then: {}", failure.message);
             Failure { message, ..failure }
@@ -66,7 +66,7 @@ impl Command for RobotType {
         Ok(InForce {
             axis: u8::try_from(axis).unwrap_or(u8::MAX),
             robot_type: in_force,
-            wanted: shown(robot_type),
+            ordered_type: type_text(robot_type),
             needs_power_cycle: status.needs_power_cycle(),
         })
     }
@@ -80,7 +80,7 @@ pub struct InForce {
     /// Active type: six digits.
     robot_type: String,
     /// Requested type.
-    wanted: String,
+    ordered_type: String,
     /// Whether the controller executes nothing before a restart.
     needs_power_cycle: bool,
 }
@@ -92,10 +92,12 @@ impl Report for InForce {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let Self { axis, robot_type, wanted, .. } = self;
-        let message =
-            format!("the controller does not accept robot type {wanted}: axis {axis} still has type {robot_type}");
-        (robot_type != wanted).then(|| Failure::new(Kind::Refused, message).hint("check the number on the name plate"))
+        let Self { axis, robot_type, ordered_type, .. } = self;
+        let message = format!(
+            "the controller does not accept robot type {ordered_type}: axis {axis} still has type {robot_type}"
+        );
+        (robot_type != ordered_type)
+            .then(|| Failure::new(Kind::Refused, message).hint("check the number on the name plate"))
     }
 }
 
@@ -105,24 +107,24 @@ mod tests {
     use crate::command::toyo::testing::{blocks, intent, objection};
 
     #[test]
-    fn the_type_has_its_block() {
+    fn robot_type_sends_its_block() {
         assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123", "@STAS SNO=0"]);
         assert!(objection(&["robot-type", "5", "0"]).contains("1 to 4"));
         assert!(objection(&["robot-type", "1", "1000000"]).contains("999999"));
-        assert!(intent(&["robot-type", "1", "123"]).contains("axis 1 of robot type 000123"));
+        assert!(intent(&["robot-type", "1", "123"]).contains("axis 1 to robot type 000123"));
     }
 
     #[test]
-    fn a_type_that_is_not_taken_is_a_refusal() {
+    fn a_rejected_type_is_a_refusal() {
         let of = |robot_type: &str| InForce {
             axis: 2,
             robot_type: robot_type.into(),
-            wanted: "000123".into(),
+            ordered_type: "000123".into(),
             needs_power_cycle: false,
         };
         assert_eq!(of("000123").failure(), None);
         let failure = of("000000").failure().unwrap();
         assert_eq!(failure.kind, Kind::Refused);
-        assert_eq!(failure.message, "the controller does not take robot type 000123: axis 2 stays at 000000");
+        assert_eq!(failure.message, "the controller does not accept robot type 000123: axis 2 still has type 000000");
     }
 }

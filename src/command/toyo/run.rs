@@ -13,7 +13,7 @@ use super::point::{parse_point, table as point_table};
 use super::position::{Coordinates, UNIT, titled};
 use super::program::steps;
 use super::tasks;
-use super::waiting::{Accepted, End, Work, step};
+use super::wait::{AcceptedWork, End, Work, step};
 use crate::client::toyo::Letters;
 use crate::command::frame::cycle::{Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
@@ -81,9 +81,9 @@ impl Command for Sequential {
             return Err(Failure::usage("--repeat needs the first step of each run")
                 .hint("type the step, as in `toyo run sequential 1 --repeat 20`; nothing was started"));
         }
-        ask_first(&mut context, Change::new(self.intent()), Program::Sequential(self.step)).await?;
+        confirm_start(&mut context, Change::new(self.intent()), Program::Sequential(self.step)).await?;
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
-        Ok(go(context, &start, self.end.limit(), self.repeat).await?.of("sequential", None))
+        Ok(start_and_wait(context, &start, self.end.limit(), self.repeat).await?.of("sequential", None))
     }
 }
 
@@ -110,14 +110,14 @@ impl Command for Palletizing {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
-        format!("run {}{}", chosen("palletizing", self.number.or(self.program)), self.repeat.in_words())
+        format!("run {}{}", program_text("palletizing", self.number.or(self.program)), self.repeat.in_words())
     }
 
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
         let program = self.number.or(self.program);
-        ask_first(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
-        choose(context.link, table::Command::Spln, program).await?;
-        let ran = go(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
+        confirm_start(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
+        select_program(context.link, table::Command::Spln, program).await?;
+        let ran = start_and_wait(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
         Ok(ran.of("palletizing", program))
     }
 }
@@ -146,14 +146,14 @@ impl Command for Easy {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
-        format!("run {}{}", chosen("easy", self.number.or(self.program)), self.repeat.in_words())
+        format!("run {}{}", program_text("easy", self.number.or(self.program)), self.repeat.in_words())
     }
 
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
         let program = self.number.or(self.program);
-        ask_first(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
-        choose(context.link, table::Command::Sesn, program).await?;
-        let ran = go(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
+        confirm_start(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
+        select_program(context.link, table::Command::Sesn, program).await?;
+        let ran = start_and_wait(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
         Ok(ran.of("easy", program))
     }
 }
@@ -185,22 +185,22 @@ impl Command for Point {
         let (mut from, mut to) = (None, None);
         if authority.asks() {
             let letters = link.letters().await?;
-            let here = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
-            let there = self.place(link).await?;
-            let change = self.change(link, here, there).await?;
+            let current = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
+            let target = self.read_point(link).await?;
+            let change = self.change(link, current, target).await?;
             authority.confirm(&change).await?;
-            if self.place(link).await? != there {
+            if self.read_point(link).await? != target {
                 let message = format!("point {} changed after the confirmation; the robot did not move", self.point);
                 return Err(outdated(message));
             }
-            (from, to) = (Some(here.position()), there.map(|there| there.position()));
+            (from, to) = (Some(current.position()), target.map(|target| target.position()));
         } else {
             authority.confirm(&Change::new(Command::intent(self))).await?;
         }
         let context = Context { link, authority, ..context };
         let start = Request::of(table::Command::Extp, [Value::Number(self.point)]);
-        let ran = go(context, &start, (!self.end.no_wait()).then_some(None), Repeat::once()).await?;
-        let robot::Program { state, elapsed_ms, more: Place { position, .. }, .. } = ran.program;
+        let result = start_and_wait(context, &start, (!self.end.no_wait()).then_some(None), Repeat::once()).await?;
+        let robot::Program { state, elapsed_ms, more: Place { position, .. }, .. } = result.program;
         let reached = (state != Some(ProgramState::Running)).then_some(state == Some(ProgramState::Ended));
         let group = Some(UNIT.to_owned());
         Ok(Moved(Motion { accepted: true, group, from, to, reached, position, elapsed_ms, ..Motion::default() }))
@@ -229,27 +229,32 @@ impl Report for Moved {
 
 impl Point {
     /// Position of the point; `None` if the controller refuses to report it.
-    async fn place(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
+    async fn read_point(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
         let request = Request::read_parameter(point_table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
         let letters = link.letters().await?;
         Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }
 
     /// Change to confirm: present position and target of each axis.
-    async fn change(&self, link: &mut Link, here: Coordinates, there: Option<Coordinates>) -> Result<Change, Failure> {
+    async fn change(
+        &self,
+        link: &mut Link,
+        current: Coordinates,
+        target: Option<Coordinates>,
+    ) -> Result<Change, Failure> {
         let letters = link.letters().await?;
         let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
         let mut change = Change::new(Command::intent(self));
-        let mut way = 0.0;
-        for (at, (old, new)) in here.mm().into_iter().zip(there.iter().flat_map(Coordinates::mm)).enumerate() {
+        let mut distance = 0.0;
+        for (at, (old, new)) in current.mm().into_iter().zip(target.iter().flat_map(Coordinates::mm)).enumerate() {
             let letter = letters.of(at);
             if ["X", "Y", "Z"].contains(&letter) {
-                way = f64::hypot(way, new - old);
+                distance = f64::hypot(distance, new - old);
             }
             change = change.replaces(&titled(at, letter), &format!("{old:.2}"), &format!("{new:.2} mm"));
         }
-        change = match there {
-            Some(_) => change.note(format!("The point is {way:.2} mm away.")),
+        change = match target {
+            Some(_) => change.note(format!("The point is {distance:.2} mm away.")),
             None => change.note(format!("The position of point {} could not be read.", self.point)),
         };
         Ok(change.note(format!("The speed override is {percent} %.")))
@@ -279,8 +284,8 @@ impl Program {
                     Err(_) => format!("It is the program of task {task}; the controller did not report the step."),
                 })
             }
-            Self::Palletizing(wanted) => progress(link, table::Command::Rpld, ("palletizing", *wanted)).await,
-            Self::Easy(wanted) => progress(link, table::Command::Resd, ("easy", *wanted)).await,
+            Self::Palletizing(number) => progress(link, table::Command::Rpld, ("palletizing", *number)).await,
+            Self::Easy(number) => progress(link, table::Command::Resd, ("easy", *number)).await,
         }
     }
 }
@@ -291,11 +296,11 @@ async fn progress(
     question: table::Command,
     (kind, wanted): (&str, Option<i32>),
 ) -> Result<String, Failure> {
-    let Ok(at) = link.try_ask(&Request::bare(question)).await? else {
+    let Ok(progress) = link.try_ask(&Request::bare(question)).await? else {
         let number = wanted.map(|number| format!(" {number}")).unwrap_or_default();
         return Ok(format!("It is {kind} program{number}; the controller did not report the step."));
     };
-    let (number, step) = (at.number("program").unwrap_or(0), at.number("step").unwrap_or(0));
+    let (number, step) = (progress.number("program").unwrap_or(0), progress.number("step").unwrap_or(0));
     Ok(match wanted.filter(|wanted| *wanted != number) {
         None => format!("It is {kind} program {number}, at step {step}."),
         Some(wanted) => {
@@ -305,7 +310,7 @@ async fn progress(
 }
 
 /// Asks for confirmation with number and step of the program, position and speed.
-async fn ask_first(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
+async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
     let Context { link, authority, .. } = context;
     let mut change = change;
     if authority.asks() {
@@ -319,14 +324,14 @@ async fn ask_first(context: &mut Context<'_, Toyo>, change: Change, program: Pro
     authority.confirm(&change).await
 }
 
-fn chosen(kind: &str, program: Option<i32>) -> String {
+fn program_text(kind: &str, program: Option<i32>) -> String {
     match program {
         Some(number) => format!("{kind} program {number}"),
         None => format!("the last selected {kind} program"),
     }
 }
 
-async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) -> Result<(), Failure> {
+async fn select_program(link: &mut Link, command: table::Command, program: Option<i32>) -> Result<(), Failure> {
     match program {
         Some(number) => link.ask(&Request::of(command, [Value::Number(number)])).await.map(|_| ()),
         None => Ok(()),
@@ -335,7 +340,7 @@ async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) 
 
 /// Starts, and waits for the end up to a time limit if requested. A repetition begins only after a confirmed end.
 #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
-async fn go(
+async fn start_and_wait(
     context: Context<'_, Toyo>,
     start: &Request,
     limit: Option<Option<Duration>>,
@@ -373,12 +378,12 @@ async fn within(limit: Option<Duration>, end: impl Future<Output = Result<Ran, F
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
         let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
-        Err(Failure::new(Kind::ConditionNotMet, message).hint("the program continues; `toyo status` shows its state"))
+        Err(Failure::new(Kind::ConditionNotMet, message).hint("the program continues; `toyo status` shows the state"))
     })
 }
 
 async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<Ran, Failure> {
-    let work = Accepted { work: Work::Program, order, done: DONE, doing: "running" };
+    let work = AcceptedWork { work: Work::Program, order, done: DONE, doing: "running" };
     let ended = work.wait(link, screen, letters).await.known()?;
     let Some(End { place, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
     // A move to a point runs no steps.
@@ -403,9 +408,9 @@ fn plan_end(link: &mut Link, order: table::Command) -> Failure {
     if order != table::Command::Extp {
         link.plan(&step(0), "the last step");
     }
-    let stands = Reason::about("whether the program contains a stop").depending_on("whether it is paused");
-    link.plan_depending("@STAS SNO=2", stands);
-    link.plan_depending("@RSTX ?", stands);
+    let stop_check = Reason::about("whether the program contains a stop").depending_on("whether it is paused");
+    link.plan_depending("@STAS SNO=2", stop_check);
+    link.plan_depending("@RSTX ?", stop_check);
     unknown()
 }
 
@@ -416,9 +421,9 @@ async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<b
     if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
         return Ok(true);
     }
-    let before = last.and_then(|(step, _)| u16::try_from(step - 1).ok()).filter(|before| *before > 0);
-    let Some(before) = before else { return Ok(false) };
-    let Ok(record) = steps::numbered(link, before).await? else { return Ok(false) };
+    let previous = last.and_then(|(step, _)| u16::try_from(step - 1).ok()).filter(|previous| *previous > 0);
+    let Some(previous) = previous else { return Ok(false) };
+    let Ok(record) = steps::numbered(link, previous).await? else { return Ok(false) };
     Ok(record.text("text") == Some("STOP"))
 }
 
@@ -487,7 +492,7 @@ mod tests {
         steps = { 1 = [\"TIM TM=000.5\", \"MOVP a PT=001 CN=00 S V=01 POST\", \"OUT STN=0 PN01=.......1\", \"END\"] }\n";
 
     #[test]
-    fn dry_runs_show_the_start_and_what_is_asked_meanwhile() {
+    fn dry_runs_show_the_start_and_the_status_reads() {
         assert_eq!(
             all_blocks(&["run", "sequential", "12", "--wait"]).unwrap(),
             [
@@ -519,7 +524,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_is_waited_for() {
+    fn run_with_wait_ends_with_the_program() {
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         let data = bench.data(&["run", "sequential", "1", "--wait"]);
         assert_eq!((&data["state"], &data["position"]["x_mm"]), (&"ended".into(), &100.0.into()));
@@ -529,16 +534,16 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_was_never_seen_to_run_has_not_ended() {
+    fn a_program_that_never_shows_execution_has_an_unknown_outcome() {
         let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
         let failure =
             Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert!(failure.message.contains("the status did not show it"), "{}", failure.message);
+        assert!(failure.message.contains("the status never showed execution"), "{}", failure.message);
     }
 
     #[test]
-    fn a_stop_of_the_program_is_an_end_and_one_of_somebody_is_not() {
+    fn a_stop_instruction_holds_the_program_and_an_external_stop_fails() {
         let state = "origin = true\nsteps = { 1 = [\"NOP\", \"STOP\", \"NOP\", \"TIM TM=010.0\", \"END\"] }\n\
             [[event]]\nat_ms = 3000\ndo = \"stop\"\n";
         let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
@@ -546,18 +551,18 @@ mod tests {
         assert_eq!((&data["state"], &data["step"]), (&"held".into(), &3.into()));
         let failure = bench.run(&["run", "sequential", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert!(failure.message.contains("somebody stopped it at step 4 (TIM TM=010.0)"), "{}", failure.message);
+        assert!(failure.message.contains("the program was stopped at step 4 (TIM TM=010.0)"), "{}", failure.message);
     }
 
     #[test]
-    fn in_step_mode_every_step_is_an_end() {
+    fn in_step_mode_the_wait_ends_after_one_step() {
         let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         bench.data(&["mode", "step"]);
         assert_eq!(bench.data(&["run", "sequential", "1", "--wait"])["state"], "held");
     }
 
     #[test]
-    fn an_error_that_comes_up_is_a_failure() {
+    fn an_error_during_the_program_fails() {
         let state = format!("{PROGRAM}[[event]]\nat_ms = 1000\ndo = \"estop\"\n");
         let failure =
             Bench::with_faults(&state, |_, _| Fault::None).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
@@ -565,7 +570,7 @@ mod tests {
         assert!(
             failure
                 .message
-                .starts_with("the start was accepted, but an error came up (13: emergency stop); it stands at X "),
+                .starts_with("the start was accepted, but an error occurred (13: emergency stop); the axes are at X "),
             "{}",
             failure.message
         );
@@ -573,7 +578,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_run_needs_is_told_and_not_changed() {
+    fn a_refused_start_names_the_missing_condition_and_changes_nothing() {
         let refused = |state: &str| {
             let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
             let failure = bench.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
@@ -589,7 +594,7 @@ mod tests {
     }
 
     #[test]
-    fn a_start_whose_answer_is_lost_is_sent_once() {
+    fn an_unanswered_start_is_sent_once() {
         for fate in [Fault::Lost, Fault::Unanswered, Fault::Answered("@O")] {
             let (mut bench, heard) =
                 Bench::with_faults(
@@ -604,20 +609,20 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_contact_leaves_the_outcome_open() {
+    fn after_a_lost_connection_the_outcome_is_unknown() {
         let lost = |block: &str, count| if block == "@STAS SNO=0" && count > 2 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert!(
-            failure.message.starts_with("the start was accepted, but its end was not seen: "),
+            failure.message.starts_with("the start was accepted, but its result is unknown: "),
             "{}",
             failure.message
         );
-        assert!(failure.hint.unwrap().starts_with("do not send it again: keep clear; `toyo status`"));
+        assert!(failure.hint.unwrap().starts_with("do not send the command again: keep clear; `toyo status`"));
     }
 
     #[test]
-    fn a_busy_controller_is_asked_again() {
+    fn a_refused_status_read_is_repeated() {
         let busy = |block: &str, count| {
             if block == "@STAS SNO=0" && count % 2 == 0 { Fault::Answered("@NG") } else { Fault::None }
         };
@@ -635,7 +640,10 @@ mod tests {
             for ms in (200..1400).step_by(170) {
                 let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
                 let said = bench.interrupted(words, Duration::from_millis(ms)).unwrap();
-                assert!(said.starts_with("the robot was stopped (@STOP); it stands at X "), "{words:?} {ms}: {said}");
+                assert!(
+                    said.starts_with("the robot was stopped (@STOP); the axes are at X "),
+                    "{words:?} {ms}: {said}"
+                );
                 assert!(heard.borrow().iter().any(|block| block == "@STOP"));
                 let here = bench.data(&["position"]);
                 bench.wait(Duration::from_secs(10));
@@ -646,7 +654,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_ok_to_the_start_is_not_that_to_the_stop() {
+    fn a_late_ok_to_the_start_does_not_confirm_the_stop() {
         // The start is answered after 400 ms; Ctrl-C comes before that, and the first stop is lost.
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |block, count| match block {
             "@SPST 0001" => Fault::Late(Duration::from_millis(400)),
@@ -659,7 +667,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_jog_is_stopped_although_it_was_to_be_left() {
+    fn on_interrupt_leave_still_stops_a_jog() {
         let must_halt = |words: &[&str]| {
             let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
             bench.left(words, Duration::from_millis(450))
@@ -669,7 +677,7 @@ mod tests {
     }
 
     #[test]
-    fn the_host_is_given_back_while_a_program_runs() {
+    fn the_host_is_released_while_a_program_runs() {
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         assert_eq!(bench.data(&["run", "sequential", "1", "--no-wait"])["state"], "running");
         bench.close().unwrap();

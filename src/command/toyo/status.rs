@@ -91,7 +91,7 @@ impl Report for StatusReport {
     fn view(&self) -> View {
         let yes = |is: bool, tone: Tone| if is { Cell::from("yes").tone(tone) } else { "no".into() };
         let state = &self.state;
-        let is = |told: Option<bool>| told == Some(true);
+        let is = |state: Option<bool>| state == Some(true);
         let origin = match (self.homing, is(state.homed)) {
             (true, _) => Cell::from("moving").tone(Tone::Warning),
             (_, true) => Cell::from("done").tone(Tone::Good),

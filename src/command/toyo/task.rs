@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::link::Link;
 use super::link::Toyo;
-use super::numbers::{not_held, number, read_back, small};
+use super::numbers::{number, read_back, small, stored_otherwise};
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -31,7 +31,7 @@ commands! {
 #[derive(Debug, Args)]
 pub struct Get {}
 
-/// Select the current task for all clients, until a client selects another one.
+/// Select the current task for all clients, until a client selects a different task.
 #[derive(Debug, Args)]
 pub struct Set {
     /// 1 to 4
@@ -72,16 +72,16 @@ impl Command for Set {
         let task = |record: &Record| record.number(field().name);
         let old = Old::read(link.before(&read).await?.as_ref().and_then(task));
         link.ask(&order).await?;
-        let chosen = u8::try_from(self.task).unwrap_or(u8::MAX);
-        link.choose_task(chosen);
-        let found = task(&read_back(link, &order, &read).await?);
-        if found != Some(self.task) {
-            let found = found.unwrap_or_default();
-            return Err(not_held(&order, &format!("the current task is {found}"))
+        let task_number = u8::try_from(self.task).unwrap_or(u8::MAX);
+        link.choose_task(task_number);
+        let selected = task(&read_back(link, &order, &read).await?);
+        if selected != Some(self.task) {
+            let selected = selected.unwrap_or_default();
+            return Err(stored_otherwise(&order, &format!("the current task is {selected}"))
                 .hint("check for a second client that selects tasks; `toyo task get` shows the current task"));
         }
-        let words = current_in_words(chosen);
-        Ok(New::of("task", chosen, words).with("task", chosen).replaces(old))
+        let words = current_in_words(task_number);
+        Ok(New::of("task", task_number, words).with("task", task_number).replaces(old))
     }
 }
 
@@ -107,7 +107,7 @@ mod tests {
     use crate::command::toyo::testing::{all_blocks, blocks, objection};
 
     #[test]
-    fn tasks_have_their_blocks() {
+    fn task_commands_send_their_blocks() {
         assert_eq!(all_blocks(&["task", "get"]).unwrap(), ["@MTSK"]);
         assert_eq!(blocks(&["task", "set", "4"]).unwrap(), ["@CTSK TASK=04", "@MTSK"]);
         assert!(objection(&["task", "set", "0"]).contains("1 to 4"));

@@ -255,9 +255,9 @@ impl Bench {
         self.link.grant(grant.clone());
         let authority = Authority::new(Gate::default(), &QUIET, &robot, intent.risk, grant);
         let context = Context { robot: &robot, link: &mut self.link, screen: &QUIET, several: false, authority };
-        let came = self.runtime.block_on(testing::run::<Toyo>(&*command, context)).and_then(|report| report.data());
+        let outcome = self.runtime.block_on(testing::run::<Toyo>(&*command, context)).and_then(|report| report.data());
         self.link.grant(Grant::up_to(Risk::Motion));
-        came
+        outcome
     }
 
     /// Data of a command line that must succeed.

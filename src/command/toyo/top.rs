@@ -1,7 +1,7 @@
 //! Live view of a controller: status and position in one line, or axes with soft limits, alarm and first ports on a
 //! screen. The protocol has no torque.
 
-use super::explain::told;
+use super::explain::alarm_from_code;
 use super::io::{INPUTS, OUTPUTS, PortBank, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
@@ -111,7 +111,7 @@ async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure>
 
 /// The present alarms as a list.
 pub(super) fn alarms(status: Status) -> Vec<Alarm> {
-    status.has_error().then(|| told(status.error)).into_iter().collect()
+    status.has_error().then(|| alarm_from_code(status.error)).into_iter().collect()
 }
 
 fn indicators(status: Status) -> Vec<Indicator> {

@@ -128,13 +128,13 @@ mod tests {
     }
 
     #[test]
-    fn what_goes_over_a_line_is_recorded_with_its_direction() {
+    fn blocks_on_a_serial_line_are_recorded_with_direction() {
         let record = recorded(None);
         assert!(holds(&record, b"\0@HSON\r\n") && holds(&record, b"\x01@OK\r\n"), "{record:?}");
     }
 
     #[test]
-    fn what_goes_to_a_device_server_is_recorded_with_its_ports() {
+    fn blocks_to_a_device_server_are_recorded_with_addresses_and_ports() {
         let ends = ("10.0.0.1:40000".parse().unwrap(), "10.0.0.2:4001".parse().unwrap());
         let record = recorded(Some(ends));
         let [sent, received] = [[0x9C, 0x40, 0x0F, 0xA1], [0x0F, 0xA1, 0x9C, 0x40]];

@@ -28,12 +28,12 @@ pub struct ValueSlot {
 
 /// A value with its description.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct Shown {
+pub struct NamedValue {
     /// As typed before `=`: `ax1`.
     pub name: String,
     /// A number in its unit, a word of the protocol, or a bit of a port as `station/port/bit`.
     pub value: Json,
-    /// Unit of the number: `mm`, `mm/s`, `s`; null if there is none.
+    /// Unit of the number: `mm`, `mm/s`, `s`; null without a unit.
     pub unit: Option<&'static str>,
     /// Meaning of the word; null if the word is clear.
     pub meaning: Option<&'static str>,
@@ -64,8 +64,8 @@ pub fn has_coordinates(layout: &Layout) -> bool {
 }
 
 /// Slots of a layout. Coordinates have these letters.
-pub fn places(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
-    let mut places = Vec::new();
+pub fn slots(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
+    let mut slots = Vec::new();
     let mut words = layout.text.split("{}");
     let mut index = 0;
     while let Some(field) = layout.fields.get(index) {
@@ -75,75 +75,77 @@ pub fn places(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
             // `PN1={}/{}/{}` has its own name.
             let label = before.rsplit(' ').next().and_then(|label| label.strip_suffix('='));
             let label = label.map_or("port".to_owned(), str::to_lowercase);
-            places.push(ValueSlot { name: label, fields: index..index + 3 });
+            slots.push(ValueSlot { name: label, fields: index..index + 3 });
             words.next();
             words.next();
             index += 3;
         } else {
             let name = axis(field).map_or(field.name, |axis| letters.name(axis));
-            places.push(ValueSlot { name: name.to_owned(), fields: index..index + 1 });
+            slots.push(ValueSlot { name: name.to_owned(), fields: index..index + 1 });
             index += 1;
         }
     }
-    places
+    slots
 }
 
 /// Values of a record without coordinates, slot by slot.
-pub fn shown(record: &Record) -> Vec<Shown> {
-    shown_by(record, &Letters::USUAL)
+pub fn named_values(record: &Record) -> Vec<NamedValue> {
+    named_values_with(record, &Letters::USUAL)
 }
 
 /// Values of a record, slot by slot. Coordinates have these letters.
-pub fn shown_by(record: &Record, letters: &Letters) -> Vec<Shown> {
+pub fn named_values_with(record: &Record, letters: &Letters) -> Vec<NamedValue> {
     let layout = record.layout();
     if layout == UNLISTED {
         let text = record.written();
         let (name, meaning) = ("unlisted".to_owned(), Some(NOT_IN_MANUAL));
         let value = Json::from(text.as_str());
-        return vec![Shown { name, value, unit: None, meaning, raw: text.clone(), in_manual: false, text }];
+        return vec![NamedValue { name, value, unit: None, meaning, raw: text.clone(), in_manual: false, text }];
     }
-    places(&layout, letters).into_iter().map(|place| place.shown(&layout, record.values())).collect()
+    slots(&layout, letters).into_iter().map(|slot| slot.named_value(&layout, record.values())).collect()
 }
 
 /// Values in one line, followed by their units: `low=10.0 high=100.0 mm/s`.
-pub fn in_a_line(shown: &[Shown]) -> String {
-    line(shown, shown.len() > 1)
+pub fn in_a_line(values: &[NamedValue]) -> String {
+    line(values, values.len() > 1)
 }
 
 /// Values in one line, with or without names.
-pub fn line(shown: &[Shown], is_named: bool) -> String {
+pub fn line(values: &[NamedValue], is_named: bool) -> String {
     let common =
-        shown.first().and_then(|first| first.unit).filter(|unit| shown.iter().all(|one| one.unit == Some(unit)));
-    let mut texts = Vec::with_capacity(shown.len() + 1);
-    for one in shown {
-        let name = if is_named { format!("{}=", one.name) } else { String::new() };
-        let meaning = one.meaning.map_or(String::new(), |meaning| format!(" ({meaning})"));
-        let unit = one.unit.filter(|_| common.is_none()).map_or(String::new(), |unit| format!(" {unit}"));
-        texts.push(format!("{name}{}{meaning}{unit}", one.text));
+        values.first().and_then(|first| first.unit).filter(|unit| values.iter().all(|value| value.unit == Some(unit)));
+    let mut texts = Vec::with_capacity(values.len() + 1);
+    for value in values {
+        let name = if is_named { format!("{}=", value.name) } else { String::new() };
+        let meaning = value.meaning.map_or(String::new(), |meaning| format!(" ({meaning})"));
+        let unit = value.unit.filter(|_| common.is_none()).map_or(String::new(), |unit| format!(" {unit}"));
+        texts.push(format!("{name}{}{meaning}{unit}", value.text));
     }
     texts.extend(common.map(ToOwned::to_owned));
     texts.join(" ")
 }
 
 /// Values in the form of the command line: `ax1=100.00 ax2=0.00`; a single value has no name.
-pub fn as_typed(shown: &[Shown]) -> String {
-    let typed = |one: &Shown| if shown.len() > 1 { format!("{}={}", one.name, one.text) } else { one.text.clone() };
-    shown.iter().map(typed).collect::<Vec<_>>().join(" ")
+pub fn as_typed(values: &[NamedValue]) -> String {
+    let typed = |value: &NamedValue| {
+        if values.len() > 1 { format!("{}={}", value.name, value.text) } else { value.text.clone() }
+    };
+    values.iter().map(typed).collect::<Vec<_>>().join(" ")
 }
 
 /// Values in which two records differ, one line for each record. Coordinates have these letters.
 pub fn difference(old: &Record, new: &Record, letters: &Letters) -> [String; 2] {
-    let (old, new) = (shown_by(old, letters), shown_by(new, letters));
+    let (old, new) = (named_values_with(old, letters), named_values_with(new, letters));
     let is_named = new.len() > 1;
-    let differ = |one: &[Shown], other: &[Shown]| {
-        let differing = one.iter().filter(|shown| !other.contains(shown)).cloned();
+    let different_values = |left: &[NamedValue], right: &[NamedValue]| {
+        let differing = left.iter().filter(|value| !right.contains(value)).cloned();
         line(&differing.collect::<Vec<_>>(), is_named)
     };
-    [differ(&old, &new), differ(&new, &old)]
+    [different_values(&old, &new), different_values(&new, &old)]
 }
 
 impl ValueSlot {
-    fn shown(&self, layout: &Layout, values: &[Value]) -> Shown {
+    fn named_value(&self, layout: &Layout, values: &[Value]) -> NamedValue {
         let pairs: Vec<(&Field, &Value)> =
             self.fields.clone().filter_map(|index| Some((layout.fields.get(index)?, values.get(index)?))).collect();
         let raw = pairs.iter().map(|(field, value)| field.written(value)).collect::<Vec<_>>().join("/");
@@ -160,7 +162,7 @@ impl ValueSlot {
         let in_manual = pairs.iter().all(|(field, value)| field.is_listed(value));
         let meaning = if in_manual { meaning } else { Some(NOT_IN_MANUAL) };
         let unit = Some(unit).filter(|unit| !unit.is_empty());
-        Shown { name: self.name.clone(), value, unit, meaning, raw, in_manual, text }
+        NamedValue { name: self.name.clone(), value, unit, meaning, raw, in_manual, text }
     }
 
     /// Parses the text for this slot.
@@ -201,42 +203,42 @@ impl Changes {
     /// Parses the values for a layout. Coordinates have these letters. With other letters than the usual ones,
     /// coordinates need names, because their order could mean letters or axes.
     pub fn read_by(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
-        let places = places(layout, letters);
+        let slots = slots(layout, letters);
         let wrong = |error: String| Failure::usage(format!("{what}: {error}"));
-        let misplaced = |error: String| wrong(error).hint(usage(&places, layout));
+        let wrong_slot = |error: String| wrong(error).hint(usage(&slots, layout));
         let named: Vec<Option<(&str, &str)>> = typed.iter().map(|text| assignment(text)).collect();
         let mut changes = vec![None; layout.fields.len()];
         if named.iter().all(Option::is_none) {
             if has_coordinates(layout) && !letters.are_usual() {
                 let message = format!("coordinates need names on this machine: {}", machine(letters));
-                return Err(wrong(message).hint(by_name(&places)));
+                return Err(wrong(message).hint(by_name(&slots)));
             }
-            if typed.len() != places.len() {
-                let values = if places.len() == 1 { "value" } else { "values" };
-                let message = format!("{} {values} needed, {} given", places.len(), typed.len());
-                return Err(misplaced(message));
+            if typed.len() != slots.len() {
+                let values = if slots.len() == 1 { "value" } else { "values" };
+                let message = format!("{} {values} needed, {} given", slots.len(), typed.len());
+                return Err(wrong_slot(message));
             }
-            for (place, text) in places.iter().zip(typed) {
-                place.put(&mut changes, place.read(layout, text).map_err(wrong)?);
+            for (slot, text) in slots.iter().zip(typed) {
+                slot.put(&mut changes, slot.read(layout, text).map_err(wrong)?);
             }
             return Ok(Self(changes));
         }
         for (assignment, text) in named.into_iter().zip(typed) {
             let (name, value) =
-                assignment.ok_or_else(|| misplaced(format!("'{text}' has no name, but other values have")))?;
-            let place = named_place(&places, layout, name).ok_or_else(|| {
+                assignment.ok_or_else(|| wrong_slot(format!("'{text}' has no name, but other values have")))?;
+            let slot = slot_by_name(&slots, layout, name).ok_or_else(|| {
                 if has_coordinates(layout) && ["x", "y", "z", "r"].iter().any(|axis| axis.eq_ignore_ascii_case(name)) {
                     let message = format!("the axis of {} is unknown: {}", name.to_uppercase(), machine(letters));
-                    return wrong(message).hint(by_name(&places));
+                    return wrong(message).hint(by_name(&slots));
                 }
-                let near = nearest(name, places.iter().map(|place| &place.name[..]));
+                let near = nearest(name, slots.iter().map(|slot| &slot.name[..]));
                 let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-                misplaced(format!("unknown value '{}'{near}", name.escape_debug()))
+                wrong_slot(format!("unknown value '{}'{near}", name.escape_debug()))
             })?;
-            if changes[place.fields.start].is_some() {
-                return Err(misplaced(format!("{} appears twice", place.name)));
+            if changes[slot.fields.start].is_some() {
+                return Err(wrong_slot(format!("{} appears twice", slot.name)));
             }
-            place.put(&mut changes, place.read(layout, value).map_err(wrong)?);
+            slot.put(&mut changes, slot.read(layout, value).map_err(wrong)?);
         }
         Ok(Self(changes))
     }
@@ -265,10 +267,10 @@ impl Changes {
         read: &Request,
         sketch: impl FnOnce(&[Option<Value>]) -> String,
     ) -> Result<(Vec<Value>, Option<Record>), Failure> {
-        let found = link.ask(read).await.known()?;
-        match (self.whole(), &found) {
-            (Some(values), _) => Ok((values, found)),
-            (None, Some(there)) => Ok((self.over(there)?, found)),
+        let stored = link.ask(read).await.known()?;
+        match (self.whole(), &stored) {
+            (Some(values), _) => Ok((values, stored)),
+            (None, Some(record)) => Ok((self.over(record)?, stored)),
             (None, None) => {
                 link.plan_overwriting(read, &sketch(&self.0)).await?;
                 Err(unknown())
@@ -280,34 +282,34 @@ impl Changes {
     ///
     /// # Errors
     /// If a kept value cannot be written again.
-    pub fn over(&self, found: &Record) -> Result<Vec<Value>, Failure> {
+    pub fn over(&self, stored: &Record) -> Result<Vec<Value>, Failure> {
         // Numbers of rows and programs precede the values.
-        let keys = found.values().len().saturating_sub(self.0.len());
-        let kept = found.pairs().skip(keys).zip(&self.0).filter(|(_, change)| change.is_none());
+        let keys = stored.values().len().saturating_sub(self.0.len());
+        let kept = stored.pairs().skip(keys).zip(&self.0).filter(|(_, change)| change.is_none());
         let foreign = kept.map(|((field, value), _)| (field, value)).find(|(field, value)| !field.is_listed(value));
-        if found.layout() == UNLISTED {
-            return Err(kept_unlisted(&found.written()));
+        if stored.layout() == UNLISTED {
+            return Err(kept_unlisted(&stored.written()));
         }
         if let Some((field, value)) = foreign {
             return Err(kept_unlisted(&format!("{}={}", field.name, field.written(value))));
         }
-        Ok(self.applied(&found.values()[keys..]))
+        Ok(self.applied(&stored.values()[keys..]))
     }
 
     /// All values; unchanged fields keep the values of `found`.
-    pub fn applied(&self, found: &[Value]) -> Vec<Value> {
-        self.0.iter().zip(found).map(|(change, found)| change.as_ref().unwrap_or(found).clone()).collect()
+    pub fn applied(&self, stored: &[Value]) -> Vec<Value> {
+        self.0.iter().zip(stored).map(|(change, stored)| change.as_ref().unwrap_or(stored).clone()).collect()
     }
 }
 
 /// Slot by name. A coordinate is also named by the number of its axis: `ax2`.
-fn named_place<'p>(places: &'p [ValueSlot], layout: &Layout, name: &str) -> Option<&'p ValueSlot> {
-    let numbered = |place: &&ValueSlot| {
-        let field = layout.fields.get(place.fields.start)?;
+fn slot_by_name<'p>(slots: &'p [ValueSlot], layout: &Layout, name: &str) -> Option<&'p ValueSlot> {
+    let numbered = |slot: &&ValueSlot| {
+        let field = layout.fields.get(slot.fields.start)?;
         Some(Letters::UNKNOWN.name(axis(field)?).eq_ignore_ascii_case(name)).filter(|is_it| *is_it)
     };
-    let named = places.iter().find(|place| place.name.eq_ignore_ascii_case(name));
-    named.or_else(|| places.iter().find(|place| numbered(place).is_some()))
+    let named = slots.iter().find(|slot| slot.name.eq_ignore_ascii_case(name));
+    named.or_else(|| slots.iter().find(|slot| numbered(slot).is_some()))
 }
 
 /// Sentence about the letters of the axes of this machine.
@@ -320,14 +322,14 @@ pub fn machine(letters: &Letters) -> String {
 }
 
 /// Hint for coordinates by name.
-fn by_name(places: &[ValueSlot]) -> String {
-    let names: Vec<String> = places.iter().map(|place| format!("{}=…", place.name)).collect();
+fn by_name(slots: &[ValueSlot]) -> String {
+    let names: Vec<String> = slots.iter().map(|slot| format!("{}=…", slot.name)).collect();
     format!("type them by name: {}; ax1 to ax4 also work on every machine", names.join(" "))
 }
 
 /// Failure for a kept value that cannot be written again.
-fn kept_unlisted(found: &str) -> Failure {
-    Failure::usage(format!("the stored value '{found}' is not in the manual and cannot be written again"))
+fn kept_unlisted(stored: &str) -> Failure {
+    Failure::usage(format!("the stored value '{stored}' is not in the manual and cannot be written again"))
         .hint("nothing was written; type all values")
 }
 
@@ -354,9 +356,9 @@ pub fn assignment(text: &str) -> Option<(&str, &str)> {
 pub fn word(field: &Field, text: &str) -> Result<Value, String> {
     let Form::Word(words) = field.form else { return field.read(text).map_err(|error| error.to_string()) };
     let same = |other: &str| slug(other) == slug(text);
-    let found = words.iter().find(|word| word.text.trim_end() == text.trim_end());
-    let found = found.or_else(|| words.iter().find(|word| same(word.text) || same(word.about)));
-    match found {
+    let word = words.iter().find(|word| word.text.trim_end() == text.trim_end());
+    let word = word.or_else(|| words.iter().find(|word| same(word.text) || same(word.about)));
+    match word {
         Some(word) => Ok(Value::Word(word.text)),
         None => Err(format!("{}: '{}' is not {}", field.name, text.escape_debug(), expected(field))),
     }
@@ -384,11 +386,11 @@ fn slug(text: &str) -> String {
 }
 
 /// Hint about the values of a record.
-fn usage(places: &[ValueSlot], layout: &Layout) -> String {
-    match places {
-        [place] => format!("type the value: {}", place.expected(layout)),
+fn usage(slots: &[ValueSlot], layout: &Layout) -> String {
+    match slots {
+        [slot] => format!("type the value: {}", slot.expected(layout)),
         [first, ..] => {
-            let names: Vec<&str> = places.iter().map(|place| &place.name[..]).collect();
+            let names: Vec<&str> = slots.iter().map(|slot| &slot.name[..]).collect();
             format!("type all values in the order {}, or only some by name, such as {}=…", names.join(" "), first.name)
         }
         [] => "it takes no values".to_owned(),
@@ -405,7 +407,7 @@ mod tests {
     }
 
     fn names(name: &str) -> Vec<String> {
-        places(&body(name), &Letters::USUAL).into_iter().map(|place| place.name).collect()
+        slots(&body(name), &Letters::USUAL).into_iter().map(|slot| slot.name).collect()
     }
 
     fn read(name: &str, typed: &[&str]) -> Result<String, String> {
@@ -415,10 +417,10 @@ mod tests {
     }
 
     #[test]
-    fn every_parameter_has_places_for_all_its_fields() {
+    fn the_slots_of_each_parameter_cover_all_fields() {
         for row in &crate::controller::toyo::table::parameters::PARAMETERS {
-            let (layout, places) = (row.body(), places(&row.body(), &Letters::USUAL));
-            let covered: Vec<usize> = places.iter().flat_map(|place| place.fields.clone()).collect();
+            let (layout, slots) = (row.body(), slots(&row.body(), &Letters::USUAL));
+            let covered: Vec<usize> = slots.iter().flat_map(|slot| slot.fields.clone()).collect();
             assert_eq!(covered, (0..layout.fields.len()).collect::<Vec<_>>(), "{}", row.id);
         }
         assert_eq!(names("M01"), ["port"]);
@@ -426,8 +428,8 @@ mod tests {
         assert_eq!(names("M14"), ["ta1", "ta2", "ta3", "ta4"]);
         assert_eq!(names("P08"), ["low", "high"]);
         assert_eq!(names("P13"), ["compare", "place", "port"]);
-        let whole = places(&Parameter::named("M14").unwrap().layout, &Letters::USUAL);
-        assert_eq!(whole.iter().map(|place| &place.name[..]).collect::<Vec<_>>(), ["ta1", "ta2", "ta3", "ta4"]);
+        let whole = slots(&Parameter::named("M14").unwrap().layout, &Letters::USUAL);
+        assert_eq!(whole.iter().map(|slot| &slot.name[..]).collect::<Vec<_>>(), ["ta1", "ta2", "ta3", "ta4"]);
         assert_eq!(names("M17"), ["station", "rate", "options"]);
     }
 
@@ -445,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_stays() {
+    fn omitted_values_stay_unchanged() {
         let layout = body("P08");
         let changes = Changes::read("P08", &layout, &["high=9".to_owned()]).unwrap();
         assert_eq!(changes.whole(), None);
@@ -453,16 +455,16 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_name_range_unit_and_choice() {
+    fn error_messages_name_range_unit_and_choices() {
         let error = |name, typed: &[&str]| read(name, typed).unwrap_err();
         assert_eq!(error("P01", &["1", "2"]), "P01: 4 values needed, 2 given");
         assert_eq!(
             error("P01", &["9000", "0", "0", "0"]),
             "P01: ax1: 9000.00 is out of range (a number, -8000.00 to 8000.00 mm)"
         );
-        assert_eq!(error("P08", &["lwo=1"]), "P08: there is no value 'lwo'; did you mean low?");
-        assert_eq!(error("P08", &["low=1", "low=2"]), "P08: low is given twice");
-        assert_eq!(error("P08", &["low=1", "2"]), "P08: '2' has no name, and others have");
+        assert_eq!(error("P08", &["lwo=1"]), "P08: unknown value 'lwo'; did you mean low?");
+        assert_eq!(error("P08", &["low=1", "low=2"]), "P08: low appears twice");
+        assert_eq!(error("P08", &["low=1", "2"]), "P08: '2' has no name, but other values have");
         assert_eq!(error("M09", &["french"]), "M09: language: 'french' is not J (japanese) or E (english)");
         assert_eq!(error("M01", &["3"]), "M01: port: '3' is not STATION/PORT/BIT, such as 0/01/3");
         assert!(error("M01", &["9/01/3"]).starts_with("M01: station: 9 is out of range"));
@@ -470,13 +472,13 @@ mod tests {
 
     #[test]
     fn values_are_shown_as_they_are_typed() {
-        let line = |name: &str, text: &str| in_a_line(&shown(&body(name).parse(text).unwrap()));
+        let line = |name: &str, text: &str| in_a_line(&named_values(&body(name).parse(text).unwrap()));
         assert_eq!(line("P08", "L=010.0 H=100.0"), "low=10.0 high=100.0 mm/s");
         assert_eq!(line("M01", "0/01/3"), "0/01/3");
         assert_eq!(line("M09", "E"), "E (English)");
         assert_eq!(line("M16", "10"), "10 m");
         assert_eq!(line("P13", "AX1<=-0100.00 0/01/3"), "compare=<= (at most) place=-100.00 mm port=0/01/3");
-        let [low, _] = &shown(&body("P08").parse("L=010.5 H=100.0").unwrap())[..] else { panic!() };
+        let [low, _] = &named_values(&body("P08").parse("L=010.5 H=100.0").unwrap())[..] else { panic!() };
         assert_eq!((&low.value, low.unit, &low.raw[..]), (&Json::from(10.5), Some("mm/s"), "010.5"));
     }
 }

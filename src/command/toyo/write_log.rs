@@ -31,7 +31,7 @@ pub struct WriteLog {
     /// Writes of this link.
     own: HashMap<String, u32>,
     /// Writes of other links in the period; read at the first write.
-    others: Option<HashMap<String, u32>>,
+    counts_of_others: Option<HashMap<String, u32>>,
 }
 
 #[derive(Debug)]
@@ -56,11 +56,12 @@ impl WriteLog {
     /// Counts a write to a cell. Returns a warning for too many writes.
     pub fn written(&mut self, cell: &str) -> Option<String> {
         let log = self.log.as_ref();
-        let others = self.others.get_or_insert_with(|| log.map(|log| log.read(now())).unwrap_or_default());
-        let others = others.get(cell).copied().unwrap_or_default();
+        let counts_of_others =
+            self.counts_of_others.get_or_insert_with(|| log.map(|log| log.read(now())).unwrap_or_default());
+        let counts_of_others = counts_of_others.get(cell).copied().unwrap_or_default();
         let own = self.own.entry(cell.to_owned()).or_default();
         *own += 1;
-        let total = *own + others;
+        let total = *own + counts_of_others;
         let warning = if *own == LOOP {
             format!("{cell} was written {LOOP} times in a row")
         } else if *own == 1 && total >= LOOP_OF_COMMANDS {
@@ -99,7 +100,7 @@ impl LogFile {
     /// Recent writes to each cell of the robot.
     fn read(&self, now: u64) -> HashMap<String, u32> {
         let mut counts = HashMap::new();
-        for (_, count, robot, cell) in fresh(&content(&self.path), now).filter_map(entry) {
+        for (_, count, robot, cell) in recent_lines(&content(&self.path), now).filter_map(entry) {
             if robot == self.robot {
                 let sum: &mut u32 = counts.entry(cell.to_owned()).or_default();
                 *sum = sum.saturating_add(count);
@@ -112,7 +113,7 @@ impl LogFile {
         if let Some(folder) = self.path.parent() {
             fs::create_dir_all(folder)?;
         }
-        if fs::metadata(&self.path).is_ok_and(|found| found.len() > SIZE) {
+        if fs::metadata(&self.path).is_ok_and(|metadata| metadata.len() > SIZE) {
             self.shorten(now)?;
         }
         let mut lines = String::new();
@@ -127,11 +128,11 @@ impl LogFile {
     /// Removes old lines.
     fn shorten(&self, now: u64) -> std::io::Result<()> {
         let text = content(&self.path);
-        let mut beside = files::draft_in(&files::folder_of(&self.path))?;
-        for line in fresh(&text, now) {
-            writeln!(beside, "{line}")?;
+        let mut draft = files::draft_in(&files::folder_of(&self.path))?;
+        for line in recent_lines(&text, now) {
+            writeln!(draft, "{line}")?;
         }
-        beside.persist(&self.path)?;
+        draft.persist(&self.path)?;
         Ok(())
     }
 }
@@ -142,7 +143,7 @@ fn content(path: &Path) -> String {
 }
 
 /// Lines of the period.
-fn fresh(text: &str, now: u64) -> impl Iterator<Item = &str> {
+fn recent_lines(text: &str, now: u64) -> impl Iterator<Item = &str> {
     let since = now.saturating_sub(WINDOW.as_secs());
     text.lines().filter(move |line| entry(line).is_some_and(|(time, ..)| (since..=now).contains(&time)))
 }
@@ -157,28 +158,28 @@ mod tests {
     }
 
     #[test]
-    fn three_writes_of_one_cell_over_one_link_are_told_once() {
+    fn three_writes_of_one_cell_in_one_link_give_one_warning() {
         let mut writes = WriteLog::without_file();
-        let told: Vec<bool> = (0..5).map(|_| writes.written("@RPAR P01").is_some()).collect();
-        assert_eq!(told, [false, false, true, false, false]);
+        let has_warning: Vec<bool> = (0..5).map(|_| writes.written("@RPAR P01").is_some()).collect();
+        assert_eq!(has_warning, [false, false, true, false, false]);
         assert_eq!(writes.written("@RPAR P02"), None);
     }
 
     #[test]
-    fn a_script_that_starts_a_command_for_each_write_is_told_from_the_tenth_on() {
+    fn separate_commands_are_warned_from_the_tenth_write_of_a_cell() {
         let folder = tempfile::tempdir().unwrap();
         for count in 1..=11 {
             let mut other = writes(folder.path(), "press");
             assert_eq!(other.written("@RPNT 001"), None, "another robot's");
             let mut writes = writes(folder.path(), "cell 1");
-            let told = writes.written("@RPNT 001");
-            assert_eq!(told.is_some(), count >= 10, "{told:?}");
+            let warning = writes.written("@RPNT 001");
+            assert_eq!(warning.is_some(), count >= 10, "{warning:?}");
             writes.keep().unwrap();
         }
     }
 
     #[test]
-    fn what_is_too_old_or_no_entry_does_not_count_and_goes_when_the_log_is_long() {
+    fn old_and_invalid_entries_do_not_count_and_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         let log = writes(folder.path(), "cell").log.unwrap();
         let cells = HashMap::from([("@RPNT 001".to_owned(), 4)]);

@@ -44,7 +44,7 @@ pub struct FieldNote {
     pub about: &'static str,
 }
 
-/// Who sent a line.
+/// Sender of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Sender {
     /// The host: commands.
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_block_contains_is_explained_too() {
+    fn the_content_of_a_block_is_explained() {
         assert_eq!(
             meanings("@WPAR P08 L=001.5 H=100.0")[1..],
             ["parameter jog-speed-1", "low 1.5 mm/s", "high 100.0 mm/s"]
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn the_form_tells_who_sent_it() {
+    fn the_sender_is_guessed_from_the_format() {
         for (host, controller) in [
             ("@STAS SNO=0", "@STAS SNO=0 ST1=00 ST2=00"),
             ("@RPAR M01", "@RPAR M01 0/01/0"),
@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_told_with_its_place() {
+    fn damage_is_reported_with_its_column() {
         assert_eq!(problem("STAS SNO=0"), "a block must begin with @");
         assert_eq!(problem("@STOS SNO=0"), "unknown command 'STOS'");
         assert_eq!(problem("@STAS SNO=x"), "page: 'x' is not a number, 0 to 4 at column 11");
@@ -435,7 +435,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_to_something_else_shows() {
+    fn an_answer_to_another_request_is_reported() {
         let request = Request::parse("@MCNT CN=01").unwrap();
         let other = describe("@MCNT CN02=0000", Sender::Controller, Some(&request));
         assert_eq!(other.problem.as_deref(), Some("it answers another request: counter is 02, not 01"));

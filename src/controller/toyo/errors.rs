@@ -4,7 +4,7 @@
 
 use std::borrow::Cow;
 
-/// No error. It is not in the table of the manual; sample session 3-1 shows it (ambiguity R26).
+/// No error. It is not in the table of the manual; sample session 3-1 has it (ambiguity R26).
 pub const NONE: u8 = 0x00;
 
 /// Description of an error code.

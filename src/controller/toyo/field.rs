@@ -524,7 +524,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_come_in_full_width() {
+    fn received_numbers_must_have_full_width() {
         let take = |text| X.take(text).map(|(value, rest)| (value, rest.to_owned()));
         assert_eq!(take("+0100.00 Y"), Ok((Value::Number(10_000), " Y".into())));
         assert_eq!(take("+9999.99"), Ok((Value::Number(999_999), String::new())));
@@ -536,7 +536,7 @@ mod tests {
     }
 
     #[test]
-    fn people_write_numbers_as_they_like() {
+    fn typed_numbers_can_have_any_width() {
         assert_eq!(X.read("-1.5").unwrap(), Value::Number(-150));
         assert_eq!(X.read("100").unwrap(), Value::Number(10_000));
         assert_eq!(X.read("0.100").unwrap(), Value::Number(10));
@@ -551,7 +551,7 @@ mod tests {
     }
 
     #[test]
-    fn a_decimal_too_many_is_kept_where_the_manual_is_of_two_minds() {
+    fn an_additional_decimal_is_kept_where_the_manual_is_ambiguous() {
         let number = Number::signed(3, 2, -99_990, 99_990).with_spare(1);
         let offset = Field::new("ax1", Form::Number(number), "offset");
         let (value, _) = offset.take("+12.345").unwrap();
@@ -571,7 +571,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mask_leaves_bits_alone() {
+    fn a_mask_leaves_bits_unchanged() {
         let (value, rest) = PORT.take(".......1 AND").unwrap();
         assert_eq!((value.clone(), rest), (Value::Mask(Mask { care: 1, bits: 1 }), " AND"));
         assert_eq!(PORT.emit(&value).unwrap(), ".......1");
@@ -582,7 +582,7 @@ mod tests {
     }
 
     #[test]
-    fn what_somebody_wrote_must_be_in_range() {
+    fn typed_values_must_be_in_range() {
         assert!(STEP.read("5000").is_ok());
         assert!(matches!(STEP.read("5001"), Err(FieldError::Range { .. })));
         assert!(matches!(STEP.read("x"), Err(FieldError::Form { .. })));

@@ -194,7 +194,7 @@ fn kept<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value, &'t str)
     (!own.is_empty()).then(|| (Value::Text(own.to_owned()), rest))
 }
 
-/// Skips the expected words; a blank stands for one or more. Returns the rest, or the position of the difference.
+/// Skips the expected words; a blank matches one or more. Returns the rest, or the position of the difference.
 fn pass<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
     for expected in words.chars() {
         let rest = text.strip_prefix(expected).ok_or(text)?;
@@ -299,7 +299,7 @@ mod tests {
     );
 
     #[test]
-    fn what_is_sent_is_what_is_printed() {
+    fn emitted_text_equals_the_manual() {
         let values = [Value::Number(1), Value::Number(0)];
         assert_eq!(TWO.emit(&values).unwrap(), "MCNT CN01=0000");
         assert_eq!(TWO.parse("MCNT CN01=0000").unwrap().values(), values);
@@ -307,12 +307,12 @@ mod tests {
     }
 
     #[test]
-    fn blanks_do_not_matter() {
+    fn additional_blanks_are_accepted() {
         assert_eq!(TWO.parse("  MCNT   CN01=0012  ").unwrap().written(), "MCNT CN01=0012");
     }
 
     #[test]
-    fn a_value_that_is_not_in_its_form_is_kept_and_never_sent() {
+    fn a_value_outside_its_format_is_kept_and_never_sent() {
         let kept = |text: &str| TWO.parse_kept(text).map(|record| (record.written(), record.is_listed()));
         assert_eq!(kept("MCNT CN01=0000"), Ok(("MCNT CN01=0000".into(), true)));
         assert_eq!(kept("MCNT CN1=00012"), Ok(("MCNT CN1=00012".into(), false)));
@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn the_place_of_a_mistake_is_told() {
+    fn an_error_has_the_column_of_the_difference() {
         let error = |text| TWO.parse(text).unwrap_err().to_string();
         assert_eq!(error("MCNT XN01=0000"), "'MCNT CN' is expected at column 6");
         assert_eq!(error("MCNT CN01=x"), "count: 'x' is not a number, 0 to 9999 at column 11");

@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn addresses_are_written_one_way() {
+    fn addresses_have_one_spelling() {
         let written = |text| (GRAMMAR.address)(text).map(|(_, address)| address);
         for (text, address) in [
             ("in2.1", "IN2.1"),

@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reads_and_stops_pass_and_nothing_else() {
+    fn only_reads_and_stops_pass() {
         for block in ["@STAS SNO=0\r\n", "@STOP\r\n", "@JGST X=SP Y=SP Z=SP R=SP\r\n", "@MPST\r\n@STAS SNO=1\r\n"] {
             assert!(only_reads_or_stops(block.as_bytes()), "{block}");
         }

@@ -417,7 +417,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_to_something_else_is_none() {
+    fn an_answer_to_another_request_is_rejected() {
         assert!(answer("@STAS SNO=0", "@STAS SNO=0 ST1=22 ST2=00").is_ok());
         assert!(matches!(answer("@STAS SNO=0", "@STAS SNO=1 ST1=22 ST2=00"), Err(BlockError::Other { .. })));
         assert!(matches!(answer("@STAS SNO=0", "@MTSK TASK=01"), Err(BlockError::Other { .. })));
@@ -433,13 +433,13 @@ mod tests {
     }
 
     #[test]
-    fn the_current_step_has_a_number_of_its_own() {
+    fn the_answer_about_the_current_step_has_its_real_number() {
         assert!(answer("@RSTX 0000", "@RSTX 0017 NOP").is_ok());
         assert!(answer("@RSTX 0001", "@RSTX 0017 NOP").is_err());
     }
 
     #[test]
-    fn what_the_manual_does_not_list_is_kept_where_it_is_stored() {
+    fn stored_content_outside_the_manual_is_kept() {
         let kept = |request: &str, block: &str| {
             let request = Request::parse(request).unwrap();
             assert!(request.check_answer(block).is_err(), "{block}");
@@ -468,13 +468,13 @@ mod tests {
     }
 
     #[test]
-    fn rsmv_passes_by_however_it_is_written() {
+    fn rsmv_is_always_sent_with_pass() {
         let record = instruction("RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=00 POST").unwrap();
         assert!(record.emit().unwrap().ends_with(" PASS"));
     }
 
     #[test]
-    fn anything_may_be_refused() {
+    fn every_request_can_be_refused() {
         for request in ["@HOME", "@STAS SNO=0"] {
             assert_eq!(answer(request, "@NG\r\n"), Ok(Answer::Refused));
         }
@@ -482,7 +482,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jog_that_moves_nothing_is_a_stop() {
+    fn a_jog_without_a_moving_axis_is_a_stop() {
         let risk = |text| Request::parse(text).unwrap().risk();
         assert_eq!(risk("@JGST X=SP Y=SP Z=SP R=SP"), Risk::Write);
         assert_eq!(risk("@JGST X=RS Y=RS Z=RS R=RS"), Risk::Write);
@@ -490,7 +490,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_block_says_why() {
+    fn an_invalid_block_gives_the_reason() {
         let error = |text: &str| Request::parse(text).unwrap_err().to_string();
         assert_eq!(error("STAS"), "a block must begin with @");
         assert_eq!(error("@XXXX"), "unknown command 'XXXX'");

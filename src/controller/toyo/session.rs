@@ -381,8 +381,8 @@ impl LineSession {
         self.refuted = other.map(|(decided, _)| decided).or(self.refuted.take());
     }
 
-    /// Handles a garbled answer. A repeatable request is sent again as soon as the line is quiet; another one waits for
-    /// its deadline.
+    /// Handles a garbled answer. A repeatable request is sent again as soon as the line is quiet. Other requests
+    /// wait for their deadline.
     fn again(&mut self, now: Now, mut exchange: Exchange, deadline: Now, unfitting: (String, String)) -> State {
         self.counters.garbled += 1;
         exchange.unfitting = Some(unfitting);

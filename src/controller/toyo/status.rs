@@ -201,7 +201,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_example_of_the_manual() {
+    fn the_example_of_the_manual_is_decoded() {
         // TO 2-2: 22H is "in execution" and "positioning complete". TO 3-1 step 11: 30H after a return to origin.
         let status = Status::default().with(0, 0x22);
         assert!(status.executing() && status.in_position() && !status.homed());
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_slave_is_a_bit_that_is_off() {
+    fn a_missing_slave_is_a_cleared_bit() {
         assert!(Status::default().slave_not_ready());
         assert!(!Status::default().with(3, 0x10).slave_not_ready());
     }

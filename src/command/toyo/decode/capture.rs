@@ -86,12 +86,12 @@ impl CaptureDecoder for LineDecoder {
             Conversation::default()
         });
         conversation.packets += 1;
-        let kept = conversation.kept;
-        let (mut begins, mut lost) = (false, 0);
-        if let Carrier::Stream { begins: anew, lost: missing, .. } = message.carrier {
-            (begins, lost) = (anew, missing);
+        let stored_before = conversation.kept;
+        let (mut is_new_connection, mut lost) = (false, 0);
+        if let Carrier::Stream { begins, lost: missing, .. } = message.carrier {
+            (is_new_connection, lost) = (begins, missing);
         }
-        if begins {
+        if is_new_connection {
             conversation.pending = [Vec::new(), Vec::new()];
         }
         if lost > 0 {
@@ -108,7 +108,7 @@ impl CaptureDecoder for LineDecoder {
         if message.is_cut {
             conversation.line(end, message, true);
         }
-        self.kept += conversation.kept - kept;
+        self.kept += conversation.kept - stored_before;
     }
 
     fn decoded(&mut self) -> &mut DecodedCapture<FieldNote> {
@@ -169,13 +169,13 @@ impl Conversation {
             decoded.notes.push(format!("incomplete last line: '{}'", rest.escape_ascii()));
         }
         self.lines.sort_by_key(|line| line.number);
-        let mut asked: Option<(u64, Request)> = None;
+        let mut pending_request: Option<(u64, Request)> = None;
         for ReceivedLine { number, time, end, text, is_cut } in self.lines {
             let is_answer = end == controller;
             let (sender, direction) =
                 if is_answer { (Sender::Controller, Direction::Received) } else { (Sender::Host, Direction::Sent) };
-            let before = asked.take().filter(|_| is_answer);
-            let request = before.as_ref().map(|(_, request)| request);
+            let question = pending_request.take().filter(|_| is_answer);
+            let request = question.as_ref().map(|(_, request)| request);
             let description = describe(&text, sender, request);
             decoded.messages.push(DecodedMessage {
                 number,
@@ -183,14 +183,14 @@ impl Conversation {
                 direction,
                 link: link.clone(),
                 text: format!("{text}  # {}", summary(&text, sender, request)),
-                answers: before.as_ref().map(|(number, _)| *number),
+                answers: question.as_ref().map(|(number, _)| *number),
                 section: description.section,
                 fields: description.fields,
                 problem: if is_cut { Some(cut()) } else { description.problem },
                 raw: text.clone(),
             });
             if !is_answer {
-                asked = Request::parse(&text).ok().map(|request| (number, request));
+                pending_request = Request::parse(&text).ok().map(|request| (number, request));
             }
         }
     }

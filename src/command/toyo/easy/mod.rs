@@ -139,7 +139,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, blocks, objection};
 
     #[test]
-    fn programs_are_read_alone_or_all() {
+    fn one_program_or_all_programs_are_read() {
         assert_eq!(blocks(&["easy", "get", "2"]).unwrap(), ["@RESY PNO=02 ST=000"]);
         assert_eq!(blocks(&["easy", "get"]).unwrap().len(), 8);
         assert_eq!(blocks(&["easy", "progress"]).unwrap(), ["@RESD"]);
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_is_compared_before_it_is_written() {
+    fn an_equal_program_is_not_written() {
         let read = "@RESY PNO=01 ST=000";
         assert_eq!(
             blocks(&["easy", "set", "1", "10", "5", "20"]).unwrap(),
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_is_made_once() {
+    fn a_second_copy_writes_nothing() {
         let mut bench = Bench::new("sim:");
         bench.data(&["easy", "set", "1", "10", "5", "20"]);
         assert_eq!(bench.data(&["easy", "set", "1", "loop=6"])["items"][0]["new"]["loops"], 6);

@@ -81,7 +81,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn only_the_screens_of_the_signals_are_asked_for() {
+    fn only_the_screens_of_the_signals_are_read() {
         assert_eq!(
             all_blocks(&["io", "get", "OUT16.1", "IN1.3,IN2"]).unwrap(),
             ["@MINP SNO=0 GN=1", "@MOUT SNO=0 GN=5"]
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn one_refusal_hides_nothing() {
+    fn one_refusal_does_not_hide_other_answers() {
         let fate = |block: &str, _| if block.contains("GN=2") { Fault::Answered("@NG") } else { Fault::None };
         let (read, failure) = Bench::with_faults("", fate).0.run(&["io", "get", "IN1.1", "IN4.1"]).unwrap();
         assert_eq!((&read["items"][0]["ok"], &read["items"][1]["value"]), (&true.into(), &serde_json::Value::Null));

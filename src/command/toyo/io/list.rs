@@ -61,7 +61,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault, all_blocks};
 
     #[test]
-    fn all_screens_of_a_station_are_asked_for() {
+    fn io_list_reads_all_screens_of_a_station() {
         let screens = |command: &str, count: i32| -> Vec<String> {
             (1..=count).map(|screen| format!("@{command} SNO=0 GN={screen}")).collect()
         };
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn a_controller_with_fewer_ports_is_no_error() {
+    fn fewer_ports_on_the_controller_are_not_an_error() {
         let fate = |block: &str, _| if block.contains("GN=6") { Fault::Answered("@NG") } else { Fault::None };
         let listed = Bench::with_faults("", fate).0.data(&["io", "list", "--in", "--off"]);
         let items = listed["items"].as_array().unwrap();

@@ -3,8 +3,8 @@
 //! A signal is a bit of a port: `IN1.3`, `OUT1.3`, `INT1.3` (an internal port). `IN0` and `OUT0` are the system ports
 //! SY01.
 //!
-//! The manual does not define the order of the bits. armctl prints bit 8 first and bit 1 last: the comments of sample
-//! 3-1 call `.......1` output bit 1 (ambiguity C9).
+//! The manual does not define the order of the bits. armctl prints bit 8 first and bit 1 last, because the comments of
+//! sample 3-1 call `.......1` output bit 1 (ambiguity C9).
 
 mod get;
 mod list;

@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_ports_and_ranges() {
+    fn signals_ports_and_ranges_are_parsed() {
         assert_eq!(names("IN1.3"), ["IN1.3"]);
         assert_eq!(names("out2.7..OUT3.1"), ["OUT2.7", "OUT2.8", "OUT3.1"]);
         assert_eq!(names("INT1.7..8"), ["INT1.7", "INT1.8"]);
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_port_is_on_its_screen() {
+    fn a_port_is_read_from_its_screen() {
         let screens: Vec<(u8, u8)> =
             [0, 1, 3, 4, 7, 8, 11, 12, 19, 20, 23].map(|port| (port, INPUTS.screen(0, port))).into();
         assert_eq!(
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_is_there_twice_is_that_of_the_next_port() {
+    fn a_repeated_port_number_counts_as_the_next_port() {
         let request = Request::parse("@MOUT SNO=0 GN=1").unwrap();
         // Text of TO 2-8.
         let printed = "@MOUT SNO=0 GN=1 SY01=00000001 PN01=00000010 PN02=00000100 PN02=00001000";

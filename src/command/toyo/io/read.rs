@@ -16,15 +16,15 @@ pub type Bytes = BTreeMap<(PortBank, u8), Result<u8, Failure>>;
 /// # Errors
 /// A port that the station does not have, or a lost connection. A dry run ends here.
 pub async fn read(link: &mut Link, station: u8, spots: &[Spot]) -> Result<Bytes, Failure> {
-    let wanted: BTreeSet<(PortBank, u8)> = spots.iter().map(|spot| (spot.bank, spot.port)).collect();
-    for (bank, port) in &wanted {
+    let ports: BTreeSet<(PortBank, u8)> = spots.iter().map(|spot| (spot.bank, spot.port)).collect();
+    for (bank, port) in &ports {
         exists(*bank, station, *port)?;
     }
     let screen = |(bank, port): &(PortBank, u8)| (*bank, bank.screen(station, *port));
-    let screens: BTreeSet<(PortBank, u8)> = wanted.iter().map(screen).collect();
+    let screens: BTreeSet<(PortBank, u8)> = ports.iter().map(screen).collect();
     let request = |(bank, screen): &(PortBank, u8)| bank.request(station, *screen);
     link.plan_all(&screens.iter().map(request).collect::<Vec<_>>())?;
-    let (mut found, mut silence) = (Bytes::new(), None);
+    let (mut bytes, mut silence) = (Bytes::new(), None);
     for at in &screens {
         let answer = match &silence {
             Some(failure) => Err(Failure::clone(failure)),
@@ -35,16 +35,16 @@ pub async fn read(link: &mut Link, station: u8, spots: &[Spot]) -> Result<Bytes,
             Err(failure) if !matches!(failure.kind, Kind::Refused | Kind::Malformed) => return Err(failure.clone()),
             _ => {}
         }
-        for port in wanted.iter().filter(|port| screen(port) == *at) {
+        for port in ports.iter().filter(|port| screen(port) == *at) {
             let byte = answer.as_ref().map_err(Failure::clone).and_then(|record| {
                 let own = ports_of(record).into_iter().find(|other| other.number == port.1).map(|port| port.byte);
                 let missing = || format!("{} is not in '{}'", name(port.1), record.written());
                 own.ok_or_else(|| Failure::new(Kind::Malformed, missing()))
             });
-            found.insert(*port, byte);
+            bytes.insert(*port, byte);
         }
     }
-    Ok(found)
+    Ok(bytes)
 }
 
 /// Report item of a signal.

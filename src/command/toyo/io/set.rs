@@ -5,7 +5,7 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::super::link::{Link, wrong};
-use super::super::numbers::{not_held, number, read_back};
+use super::super::numbers::{number, read_back, stored_otherwise};
 use super::super::refusal;
 use super::Station;
 use super::port::{OUTPUTS, Spot, name, ports_of};
@@ -114,17 +114,17 @@ impl Set {
     fn orders(&self) -> Result<Vec<Assignment>, Failure> {
         let mut orders: Vec<Assignment> = Vec::new();
         for assignment in &self.assignments {
-            let Some(known) = orders.iter_mut().find(|order| order.port == assignment.port) else {
+            let Some(first_order) = orders.iter_mut().find(|order| order.port == assignment.port) else {
                 orders.push(*assignment);
                 continue;
             };
-            let (one, other) = (known.mask, assignment.mask);
-            let twice = one.care & other.care;
+            let (first, added) = (first_order.mask, assignment.mask);
+            let twice = first.care & added.care;
             if twice != 0 {
-                let message = format!("bit {} of port {} appears twice", twice.trailing_zeros() + 1, known.port);
+                let message = format!("bit {} of port {} appears twice", twice.trailing_zeros() + 1, first_order.port);
                 return Err(Failure::usage(message).hint("type one state for each bit"));
             }
-            known.mask = Mask { care: one.care | other.care, bits: one.bits | other.bits };
+            first_order.mask = Mask { care: first.care | added.care, bits: first.bits | added.bits };
         }
         Ok(orders)
     }
@@ -199,15 +199,15 @@ impl Assignment {
             return Ok(Around::UNREAD);
         }
         let answer = read_back(link, &order, &read).await?;
-        let Some(found) = own(&answer) else {
+        let Some(written) = own(&answer) else {
             let message =
                 format!("{} was accepted, but {} is not in '{}'", order.text(), name(self.port), answer.written());
             return Err(Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command())));
         };
-        let reads = format!("{} reads {:08b}", found.name, found.byte);
-        let failure = not_held(&order, &reads)
+        let reads = format!("{} reads {:08b}", written.name, written.byte);
+        let failure = stored_otherwise(&order, &reads)
             .hint("a running program can set the same outputs; `toyo io list --out` shows the outputs");
-        Ok(Around { old, now: Some(found.byte), failure: Some(failure) })
+        Ok(Around { old, now: Some(written.byte), failure: Some(failure) })
     }
 
     /// Request that sets the port.
@@ -227,10 +227,10 @@ fn account(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
         return failure;
     }
     let names = |orders: &[Assignment]| orders.iter().map(|order| name(order.port)).collect::<Vec<_>>().join(", ");
-    let (before, rest) = orders.split_at(done);
+    let (done_orders, rest) = orders.split_at(done);
     let (failed, after) = rest.split_at(1.min(rest.len()));
     let mut message = format!("{}: {}", names(failed), failure.message);
-    for (words, orders) in [("set before that", before), ("not set", after)] {
+    for (words, orders) in [("set before that", done_orders), ("not set", after)] {
         if !orders.is_empty() {
             message.push_str(&format!("; {words}: {}", names(orders)));
         }
@@ -261,7 +261,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
 
     #[test]
-    fn bits_and_whole_ports() {
+    fn bits_and_whole_ports_are_set() {
         let read = "@MOUT SNO=0 GN=1";
         assert_eq!(blocks(&["io", "set", "1=.......1"]).unwrap(), ["@DOUT STN=0 PN01=.......1", read]);
         assert_eq!(blocks(&["io", "set", "1.3=on"]).unwrap(), ["@DOUT STN=0 PN01=.....1..", read]);
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_told_before_anything_is_sent() {
+    fn wrong_arguments_are_rejected_before_any_block_is_sent() {
         for (words, why) in [
             (["io", "set", "1"], "as in OUT1.3=on"),
             (["io", "set", "1.9=on"], "bits 1 to 8"),
@@ -292,11 +292,11 @@ mod tests {
             assert!(objection(&words).contains(why), "{words:?}: {}", objection(&words));
         }
         let twice = blocks(&["io", "set", "1.3=on", "1=00000000"]).unwrap_err();
-        assert_eq!(twice.message, "bit 3 of port 1 is given twice");
+        assert_eq!(twice.message, "bit 3 of port 1 appears twice");
     }
 
     #[test]
-    fn a_failure_tells_what_became_of_each_port() {
+    fn a_failure_reports_the_result_of_each_port() {
         let orders: Vec<Assignment> = ["1=......01", "2.1=on", "3.1=on"].map(|text| text.parse().unwrap()).into();
         let message = |orders: &[Assignment], done| account(Failure::local("no"), orders, done).message;
         assert_eq!(message(&orders[..1], 0), "no");
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_set_is_read_back() {
+    fn set_outputs_are_read_back() {
         let set = Bench::new("sim:").data(&["io", "set", "OUT1.3=on", "18.1=on"]);
         let keys = |item: &Value| [item["name"].clone(), item["old"].clone(), item["value"].clone()];
         assert_eq!(keys(&set["items"][0]), [Value::from("OUT1.3"), false.into(), true.into()], "{set}");

@@ -54,7 +54,7 @@ fn a_dry_run_shows_the_whole_sequence() {
 }
 
 #[test]
-fn a_jog_without_end_is_refused_before_anything_is_sent() {
+fn a_jog_without_time_limit_is_rejected_before_any_block_is_sent() {
     assert!(objection(&["jog", "X", "+", "low"]).contains("--for"));
     assert!(objection(&["jog", "X", "+", "high", "--for", "61s"]).contains("100ms to 1m"));
     assert!(objection(&["jog", "X", "+", "high", "--for", "50ms"]).contains("100ms to 1m"));
@@ -79,7 +79,7 @@ fn an_axis_moves_for_its_time() {
 }
 
 #[test]
-fn small_steps_are_done_one_by_one() {
+fn inching_steps_are_sent_one_by_one() {
     let (mut bench, heard) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&["jog", "y", "-", "inch", "--steps", "3"]);
     assert_eq!((&data["moved_mm"], &data["steps"]), (&(-0.03).into(), &3.into()));
@@ -117,12 +117,12 @@ fn with_faults(
 }
 
 #[test]
-fn an_order_whose_answer_is_lost_is_sent_once_and_stopped() {
+fn an_unanswered_jog_is_sent_once_and_stopped() {
     let (outcome, _, moved) = with_faults(|block, _| if block == GO { Fault::Unanswered } else { Fault::None });
     let failure = outcome.unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
     assert!(failure.hint.unwrap().contains("toyo stop --jog"));
-    assert!(failure.message.contains("the axis was stopped and stands at X "), "{}", failure.message);
+    assert!(failure.message.contains("the axis was stopped at X "), "{}", failure.message);
     assert!((2.0..4.0).contains(&moved), "a silence of 300 ms ends it: {moved} mm");
 
     let (outcome, _, moved) = with_faults(|block, _| if block == GO { Fault::Lost } else { Fault::None });
@@ -130,7 +130,7 @@ fn an_order_whose_answer_is_lost_is_sent_once_and_stopped() {
 }
 
 #[test]
-fn a_silence_while_an_axis_moves_ends_it() {
+fn a_lost_answer_during_a_jog_stops_the_axis() {
     for lost in ["@STAS SNO=0", "@MPST"] {
         for fate in [Fault::Lost, Fault::Unanswered, Fault::Late(Duration::from_millis(700))] {
             let (outcome, _, moved) =
@@ -143,7 +143,7 @@ fn a_silence_while_an_axis_moves_ends_it() {
 }
 
 #[test]
-fn a_stop_that_is_lost_is_repeated() {
+fn an_unconfirmed_stop_is_repeated() {
     let late = Fault::Late(Duration::from_millis(450));
     for (fate, least) in [(Fault::Lost, 4), (Fault::Unanswered, 4), (Fault::Answered("@NG"), 4), (late, 2)] {
         let (outcome, heard, moved) =
@@ -155,7 +155,7 @@ fn a_stop_that_is_lost_is_repeated() {
 }
 
 #[test]
-fn a_dead_line_says_what_to_do() {
+fn a_lost_line_has_a_hint_to_press_the_emergency_stop() {
     let dead = Arc::new(AtomicBool::new(false));
     let is_dead = Arc::clone(&dead);
     let (mut bench, heard) = Bench::with_faults(READY, move |block, _| {
@@ -165,7 +165,11 @@ fn a_dead_line_says_what_to_do() {
     });
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.contains("the axis may still move: nothing tells that it stands"), "{}", failure.message);
+    assert!(
+        failure.message.contains("the axis can still move: it is unknown whether the robot stopped"),
+        "{}",
+        failure.message
+    );
     let hint = failure.hint.unwrap();
     assert!(hint.starts_with("press the emergency stop") && hint.contains("`toyo stop --jog`"), "{hint}");
     assert!(count(&heard, STOP) > 10);
@@ -177,18 +181,18 @@ fn a_dead_line_says_what_to_do() {
 }
 
 #[test]
-fn a_controller_that_does_not_stop_is_told() {
+fn a_controller_that_does_not_stop_is_an_error() {
     let (mut bench, heard) =
         Bench::with_faults(READY, |block, _| if block == STOP { Fault::Answered("@OK") } else { Fault::None });
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.kind, Kind::ConditionNotMet);
-    assert!(failure.message.contains("may still move: the controller answered @OK, but the robot still moves"));
+    assert!(failure.message.contains("can still move: the controller answered @OK, but the robot still moves"));
     assert!(failure.hint.unwrap().starts_with("press the emergency stop"));
     ends_with_a_stop(&heard);
 }
 
 #[test]
-fn a_refusal_is_explained_and_stopped_all_the_same() {
+fn a_refused_jog_is_explained_and_still_stopped() {
     let (mut bench, heard) = Bench::with_faults("servo = false\n", |_, _| Fault::None);
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!(failure.message, "the controller refused JGST X=+L Y=SP Z=SP R=SP (@NG): servo power is off");
@@ -196,13 +200,15 @@ fn a_refusal_is_explained_and_stopped_all_the_same() {
 }
 
 #[test]
-fn an_error_ends_a_jog() {
+fn a_controller_error_ends_a_jog() {
     let state = "origin = true\nposition = [998.0, 0.0, 0.0, 0.0]\n";
     let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
     let failure = bench.run(&LOW).unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("28")));
     assert!(
-        failure.message.starts_with("an error came up (28: axis 1: beyond the plus soft limit while moving); the axis")
+        failure
+            .message
+            .starts_with("an error occurred (28: axis 1: beyond the plus soft limit while moving); the axis")
     );
     ends_with_a_stop(&heard);
 }
@@ -215,7 +221,7 @@ fn ctrl_c_at_any_moment_stops_the_axis() {
         let has_moved = count(&heard, GO) > 0 || said.starts_with("the robot was stopped");
         if has_moved {
             ends_with_a_stop(&heard);
-            assert!(said.contains("it stands at X "), "{ms}: {said}");
+            assert!(said.contains("the axes are at X "), "{ms}: {said}");
         }
         let here = bench.data(&["position"]);
         bench.wait(Duration::from_secs(10));
@@ -224,7 +230,7 @@ fn ctrl_c_at_any_moment_stops_the_axis() {
 }
 
 #[test]
-fn a_small_step_whose_answer_is_lost_is_not_repeated() {
+fn an_unanswered_inching_step_is_not_repeated() {
     let step = "@JGST X=+C Y=SP Z=SP R=SP";
     let (mut bench, heard) =
         Bench::with_faults(
@@ -235,12 +241,12 @@ fn a_small_step_whose_answer_is_lost_is_not_repeated() {
         );
     let failure = bench.run(&["jog", "X", "+", "inch", "--steps", "5"]).unwrap_err();
     assert_eq!((failure.kind, count(&heard, step)), (Kind::OutcomeUnknown, 2));
-    assert!(failure.message.starts_with("step 2 of 5: ") && failure.message.contains("stands at X 0.02"));
+    assert!(failure.message.starts_with("step 2 of 5: ") && failure.message.contains("the axis was stopped at X 0.02"));
     ends_with_a_stop(&heard);
 }
 
 #[test]
-fn the_shortest_jog_is_one_too() {
+fn the_shortest_jog_moves_the_axis() {
     let (mut bench, heard) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&["jog", "X", "+", "high", "--for", "100ms"]);
     // 50 mm/s, reached after 0.1 s.
@@ -249,7 +255,7 @@ fn the_shortest_jog_is_one_too() {
 }
 
 #[test]
-fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
+fn a_refused_jog_does_not_stop_a_running_program() {
     let program = "origin = true\nsteps = { 1 = [\"SPD V=01\", \"MOV a X=+0500.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=01 \
                    POST\", \"END\"] }\n";
     let (mut bench, heard) = Bench::with_faults(program, |block, _| {
@@ -266,7 +272,7 @@ fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
 }
 
 #[test]
-fn a_letter_is_the_axis_that_the_machine_calls_so() {
+fn a_letter_selects_the_axis_with_this_letter_on_the_machine() {
     let lettered = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\n";
     let (mut bench, heard) = Bench::with_faults(lettered, |_, _| Fault::None);
     let data = bench.data(&["jog", "z", "+", "low", "--for", "300ms"]);
@@ -282,13 +288,13 @@ fn a_letter_is_the_axis_that_the_machine_calls_so() {
     let twice = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=X AX3=Z AX4=R\"]\n";
     let (mut bench, heard) = Bench::with_faults(twice, |_, _| Fault::None);
     let failure = bench.run(&["jog", "x", "+", "low", "--for", "300ms"]).unwrap_err();
-    assert_eq!(failure.message, "which axis X is, is not known: the letters of axes 1 to 4 are X, X, Z, R");
+    assert_eq!(failure.message, "the axis of X is unknown: axes 1 to 4 have the letters X, X, Z, R");
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@JGST")));
     assert_eq!(bench.data(&["jog", "2", "+", "low", "--for", "300ms"])["axis"], "X");
 }
 
 #[test]
-fn a_jog_that_somebody_else_stops_says_so() {
+fn a_jog_stopped_by_another_client_reports_it() {
     let state = format!("{READY}[[event]]\nat_ms = 1000\ndo = \"stop\"\n");
     let stopped = Bench::with_faults(&state, |_, _| Fault::None).0.run(&["jog", "X", "+", "low", "--for", "10s"]);
     let failure = stopped.unwrap_err();

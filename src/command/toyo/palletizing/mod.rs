@@ -15,7 +15,7 @@ use super::link::{Link, Toyo, wrong};
 use super::numbers;
 use super::programs::{Copy, Kind, Select};
 use super::rows::{EepromRow, Listed, is_zero, unlisted};
-use super::values::{self, Shown};
+use super::values::{self, NamedValue};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::commands;
@@ -156,7 +156,7 @@ impl Store for Records {
     type Family = Toyo;
     type Key = Key;
     type Wire = Record;
-    type Value = Vec<Shown>;
+    type Value = Vec<NamedValue>;
     type More = About;
     type Options = ProgramOptions;
 
@@ -175,12 +175,12 @@ impl Store for Records {
     const COMPLETE: ValueKind = complete::RECORD;
 
     fn keys(text: &str) -> Result<Vec<Key>, String> {
-        let found = Pallet::named(&text.to_lowercase()).ok_or_else(|| {
+        let record = Pallet::named(&text.to_lowercase()).ok_or_else(|| {
             let near = nearest(text, RECORDS.iter().map(|record| record.name));
             let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
             format!("unknown record{near}")
         });
-        Ok(vec![Key(found?)])
+        Ok(vec![Key(record?)])
     }
 
     fn all() -> Vec<Key> {
@@ -204,7 +204,7 @@ impl Store for Records {
     }
 
     fn texts(&self, record: &Record) -> Vec<String> {
-        vec![values::as_typed(&values::shown_by(record, &self.letters))]
+        vec![values::as_typed(&values::named_values_with(record, &self.letters))]
     }
 
     fn headings(&self) -> Vec<&'static str> {
@@ -212,7 +212,7 @@ impl Store for Records {
     }
 
     fn cells(&self, Key(pallet): Key, record: &Record) -> Vec<view::Cell> {
-        let value = values::in_a_line(&values::shown_by(record, &self.letters));
+        let value = values::in_a_line(&values::named_values_with(record, &self.letters));
         vec![pallet.number.into(), value.into()]
     }
 
@@ -220,8 +220,8 @@ impl Store for Records {
         values::difference(old, new, &self.letters)
     }
 
-    fn value(&self, record: &Record) -> Option<Vec<Shown>> {
-        Some(values::shown_by(record, &self.letters))
+    fn value(&self, record: &Record) -> Option<Vec<NamedValue>> {
+        Some(values::named_values_with(record, &self.letters))
     }
 
     fn more(&self, Key(pallet): Key, record: Option<&Record>) -> About {
@@ -262,7 +262,7 @@ impl EepromRow for Records {
         cell(self.program, record, values)
     }
 
-    /// Block that writes a record; `?` stands for kept values.
+    /// Block that writes a record, with `?` in place of unchanged values.
     fn sketch(&self, Key(record): Key, values: &[Option<Value>]) -> String {
         let body = record.layout.sketch(values).unwrap_or_default();
         format!("@WPLT {:02} SNO={:02} {body}", self.program, record.number)
@@ -274,7 +274,7 @@ mod tests {
     use crate::command::toyo::testing::{Bench, blocks, objection};
 
     #[test]
-    fn a_program_is_sixteen_records() {
+    fn a_program_is_read_from_sixteen_records() {
         let blocks = |words: &[&str]| blocks(words).unwrap();
         assert_eq!(blocks(&["palletizing", "get", "3"]).len(), 16);
         assert_eq!(blocks(&["palletizing", "get", "3", "source-p1", "16"]), ["@RPLT 03 SNO=03", "@RPLT 03 SNO=16"]);
@@ -284,11 +284,11 @@ mod tests {
         assert_eq!((copied.len(), &copied[32][..]), (49, "@CPPL STA=01 TOP=02"));
         assert!(objection(&["palletizing", "get", "17"]).contains("17 is out of range (a number, 1 to 16)"));
         let error = objection(&["palletizing", "get", "1", "sorce-p1"]);
-        assert!(error.contains("there is no such record; did you mean source-p1?"), "{error}");
+        assert!(error.contains("unknown record; did you mean source-p1?"), "{error}");
     }
 
     #[test]
-    fn a_record_is_compared_before_it_is_written() {
+    fn an_equal_record_is_not_written() {
         assert_eq!(
             blocks(&["palletizing", "set", "1", "Source-P1", "1.5", "-2", "0"]).unwrap(),
             ["@RPLT 01 SNO=03", "@WPLT 01 SNO=03 X=+0001.50 Y=-0002.00 Z=+0000.00", "@RPLT 01 SNO=03"]
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_goes_through_a_file_and_is_copied() {
+    fn a_program_is_dumped_restored_and_copied() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
         let (first, second) = (path("first.csv"), path("second.csv"));
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn progress_tells_the_program_that_was_chosen() {
+    fn progress_reports_the_selected_program() {
         let mut bench = Bench::new("sim:");
         bench.data(&["palletizing", "select", "4"]);
         let progress = bench.data(&["palletizing", "progress"]);

@@ -32,12 +32,12 @@ fn of_machine(what: &str, has_steps: bool) -> String {
 }
 
 /// Warnings before a parameter changes.
-pub fn warnings(parameter: &Parameter, found: Option<&Record>, values: &[Value]) -> Vec<String> {
+pub fn warnings(parameter: &Parameter, stored: Option<&Record>, values: &[Value]) -> Vec<String> {
     if parameter.group() == Group::Special {
         return vec![format!("warning: {} ({}) is not for normal use", parameter.id, parameter.name)];
     }
-    match found {
-        Some(found) if is_task_steps(parameter) => lost_steps(found, values),
+    match stored {
+        Some(stored) if is_task_steps(parameter) => lost_steps(stored, values),
         _ => Vec::new(),
     }
 }
@@ -57,16 +57,16 @@ pub fn is_task_steps(parameter: &Parameter) -> bool {
     parameter.id == "E22"
 }
 
-fn lost_steps(found: &Record, values: &[Value]) -> Vec<String> {
+fn lost_steps(stored: &Record, values: &[Value]) -> Vec<String> {
     let mut lost = Vec::new();
-    for (task, (before, after)) in found.values().iter().zip(values).enumerate() {
-        if let (Value::Number(before), Value::Number(after)) = (before, after)
-            && after < before
+    for (task, (old, new)) in stored.values().iter().zip(values).enumerate() {
+        if let (Value::Number(old), Value::Number(new)) = (old, new)
+            && new < old
         {
-            lost.push(format!("warning: steps {} to {before} of task {} become NOP", after + 1, task + 1));
+            lost.push(format!("warning: steps {} to {old} of task {} become NOP", new + 1, task + 1));
         }
     }
-    if total(values) > BESIDE_EASY && total(found.values()) <= BESIDE_EASY {
+    if total(values) > BESIDE_EASY && total(stored.values()) <= BESIDE_EASY {
         lost.push(format!("warning: with more than {BESIDE_EASY} steps, all easy programs are erased"));
     }
     lost

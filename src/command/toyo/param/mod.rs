@@ -15,7 +15,7 @@ use super::items::{Answers as Records, read_each_twice};
 use super::link::{Link, Toyo, wrong};
 use super::numbers::Numbers;
 use super::rows::{EepromRow, Listed, unlisted};
-use super::values::{self, Shown};
+use super::values::{self, NamedValue};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::commands;
@@ -157,13 +157,13 @@ pub fn key_text(Key { parameter, row }: Key) -> String {
 }
 
 /// Values of a parameter, without the number of a row.
-fn values_of(record: &Record) -> Vec<Shown> {
+fn values_of(record: &Record) -> Vec<NamedValue> {
     let table = PARAMETERS.iter().find(|parameter| parameter.row().is_some() && parameter.layout == record.layout());
     let body = table.and_then(|table| {
         let values = record.values()[table.key.fields.len()..].to_vec();
         table.body().record(values).ok()
     });
-    values::shown(body.as_ref().unwrap_or(record))
+    values::named_values(body.as_ref().unwrap_or(record))
 }
 
 /// Command name for the rows of a table.
@@ -204,7 +204,7 @@ impl Store for Parameters {
     type Family = Toyo;
     type Key = Key;
     type Wire = Record;
-    type Value = Vec<Shown>;
+    type Value = Vec<NamedValue>;
     type More = About;
     type Options = Single;
 
@@ -274,7 +274,7 @@ impl Store for Parameters {
         values::difference(old, new, &Letters::USUAL)
     }
 
-    fn value(&self, record: &Record) -> Option<Vec<Shown>> {
+    fn value(&self, record: &Record) -> Option<Vec<NamedValue>> {
         Some(values_of(record))
     }
 

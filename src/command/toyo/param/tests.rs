@@ -58,7 +58,7 @@ fn a_write_compares_first_and_takes_the_host() {
 }
 
 #[test]
-fn what_cannot_be_meant_is_not_sent() {
+fn wrong_arguments_send_nothing() {
     let failed = |words: &[&str]| {
         let failure = blocks(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2, "{words:?}");
@@ -79,25 +79,25 @@ fn what_cannot_be_meant_is_not_sent() {
 }
 
 #[test]
-fn what_follows_from_machine_parameters_is_said() {
+fn the_confirmation_names_the_effects_of_machine_parameters() {
     let told = |id| machine::consequence_of(&[Parameter::named(id).unwrap()]);
     assert_eq!(told("E06"), "after a change of E06 (max-speed) the controller executes nothing before a restart");
     assert!(told("E22").contains("easy programs"));
 }
 
 #[test]
-fn what_is_lost_is_said_before() {
+fn the_confirmation_names_steps_that_would_be_lost() {
     let steps = Parameter::named("E22").unwrap();
     let record = |numbers: [i32; 4]| steps.layout.record(numbers.map(Value::Number).into()).unwrap();
-    let told = |found, wanted| machine::warnings(steps, Some(&record(found)), record(wanted).values());
+    let warnings_of = |old, new| machine::warnings(steps, Some(&record(old)), record(new).values());
     assert_eq!(
-        told([1000, 0, 0, 0], [500, 1501, 0, 0]),
+        warnings_of([1000, 0, 0, 0], [500, 1501, 0, 0]),
         [
             "warning: steps 501 to 1000 of task 1 become NOP",
             "warning: with more than 2000 steps, all easy programs are erased"
         ]
     );
-    assert!(told([3000, 0, 0, 0], [4000, 0, 0, 0]).is_empty());
+    assert!(warnings_of([3000, 0, 0, 0], [4000, 0, 0, 0]).is_empty());
     assert_eq!(
         machine::warnings(Parameter::named("U03").unwrap(), None, &[]),
         ["warning: U03 (resolver-cable-length) is not for normal use"]
@@ -118,7 +118,7 @@ fn file_of(text: &str) -> (tempfile::TempDir, String) {
 }
 
 #[test]
-fn a_restore_leaves_the_machine_for_the_end_or_out() {
+fn restore_writes_machine_parameters_last_or_leaves_them_out() {
     let text = "name,value\nE06,ax1=1000 ax2=1000 ax3=1000 ax4=1000\nT2.3,99.5\nP16,\"compare=<= place=1.0 port=0/01/0\"\n\
                 M09,E\n";
     let (_folder, path) = file_of(text);
@@ -151,7 +151,7 @@ fn a_restore_leaves_the_machine_for_the_end_or_out() {
 }
 
 #[test]
-fn a_dump_is_restored_to_the_last_value() {
+fn restore_of_a_dump_restores_every_value() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (first, second) = (path("first.csv"), path("second.csv"));
@@ -173,7 +173,7 @@ fn a_dump_is_restored_to_the_last_value() {
 }
 
 #[test]
-fn a_busy_controller_is_asked_again() {
+fn a_refused_read_is_repeated_once() {
     let (mut bench, _) = Bench::with_faults("", |block, count| match block {
         "@RPAR U21" if count == 1 => Fault::Answered("@NG"),
         "@RPAR U22" => Fault::Answered("@NG"),
@@ -187,7 +187,7 @@ fn a_busy_controller_is_asked_again() {
 }
 
 #[test]
-fn a_file_of_another_controller_is_stored_as_far_as_it_goes() {
+fn a_file_of_another_controller_restores_the_parameters_that_fit() {
     let (_folder, path) = file_of("name,value\nM09,J\nP17,ax1=1 ax2=0 ax3=0 ax4=0\nT2.1,5\n");
     let mut bench = Bench::new("sim:");
     let (data, failure) = bench.run(&["param", "restore", &path]).unwrap();
@@ -253,7 +253,7 @@ proptest! {
 }
 
 #[test]
-fn a_machine_parameter_asks_for_the_power_to_be_cycled() {
+fn a_written_machine_parameter_needs_a_power_cycle() {
     let mut bench = Bench::new("sim:");
     let before = bench.data(&["param", "get", "e06"])["items"][0]["value"][0]["value"].clone();
     let same = bench.data(&["param", "set", "e06", &format!("ax1={before}")]);
@@ -264,7 +264,7 @@ fn a_machine_parameter_asks_for_the_power_to_be_cycled() {
 }
 
 #[test]
-fn a_change_of_a_part_reads_once_before_it_writes() {
+fn a_partial_change_reads_the_parameter_once_before_the_write() {
     let (mut bench, heard) = Bench::with_faults("", |_, _| Fault::None);
     for (words, read) in [
         (&["param", "set", "P01", "ax2=150"][..], "@RPAR P01"),

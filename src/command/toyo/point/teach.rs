@@ -36,7 +36,7 @@ pub struct Teach {
 }
 
 /// Position as text.
-fn shown(place: &Coordinates) -> String {
+fn position_text(place: &Coordinates) -> String {
     format!("{} (mm)", place.in_a_line())
 }
 
@@ -68,38 +68,38 @@ impl Teach {
     async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<Taught, Failure> {
         let Context { link, screen, authority, .. } = context;
         let point = self.point;
-        let here = stands(link).await.known()?;
-        let found = link.ask(&points.request(point)?).await.known()?;
-        let Some((here, found)) = here.zip(found) else {
+        let current = read_position(link).await.known()?;
+        let stored = link.ask(&points.request(point)?).await.known()?;
+        let Some((current, stored)) = current.zip(stored) else {
             points.plan(link, &[(point, Changes::of(vec![None; AXES]))]).await?;
             return Err(unknown());
         };
-        let place = Coordinates::of(&here, points.letters());
-        let old = Coordinates::of(&found, points.letters());
-        let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(here.number(axis).unwrap_or_default()));
+        let place = Coordinates::of(&current, points.letters());
+        let old = Coordinates::of(&stored, points.letters());
+        let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(current.number(axis).unwrap_or_default()));
         let new = points.cell(point, axes.into())?.wanted;
-        let is_asked = authority.asks();
-        let change = overwritten(points, &[(point, Some(&found), &new)]);
+        let needs_confirmation = authority.asks();
+        let change = overwritten(points, &[(point, Some(&stored), &new)]);
         authority.confirm(&change).await?;
-        if is_asked {
-            let now = Coordinates::of(&stands(link).await?, points.letters());
+        if needs_confirmation {
+            let now = Coordinates::of(&read_position(link).await?, points.letters());
             if now != place {
-                let message = format!("the axes moved after the confirmation, to {}", shown(&now));
+                let message = format!("the axes moved after the confirmation, to {}", position_text(&now));
                 return Err(outdated(format!("{message}; nothing was stored")));
             }
         }
-        let is_there = found == new;
-        if !is_there {
-            points.write(link, screen, &[(point, Some(&found), &new)]).await?;
+        let is_stored = stored == new;
+        if !is_stored {
+            points.write(link, screen, &[(point, Some(&stored), &new)]).await?;
         }
         // The value was written and read back.
         let name = point.to_string();
         let taught = Taught::new(name, Some(old.position()), place.position(), place.position().of_group(UNIT));
-        Ok(taught.unchanged(is_there).with("point", point).with("task", points.task()))
+        Ok(taught.unchanged(is_stored).with("point", point).with("task", points.task()))
     }
 }
 
 /// Reads the position of the axes.
-async fn stands(link: &mut Link) -> Result<Record, Failure> {
+async fn read_position(link: &mut Link) -> Result<Record, Failure> {
     link.ask(&Request::bare(Word::Mpst)).await
 }

@@ -3,7 +3,7 @@
 use crate::command::toyo::testing::{Bench, Fault, blocks, objection};
 
 #[test]
-fn points_and_ranges_are_read_once_each() {
+fn each_point_of_overlapping_ranges_is_read_once() {
     assert_eq!(
         blocks(&["point", "get", "9-10,20", "9"]).unwrap(),
         ["@MTSK", "@RPAR T1 PT=009", "@RPAR T1 PT=010", "@RPAR T1 PT=020"]
@@ -18,7 +18,7 @@ fn points_and_ranges_are_read_once_each() {
 }
 
 #[test]
-fn a_point_is_compared_before_it_is_written() {
+fn an_equal_point_is_not_written() {
     assert_eq!(
         blocks(&["point", "set", "7", "100", "-20.5", "0", "0"]).unwrap(),
         ["@MTSK", "@RPAR T1 PT=007", "@WPAR T1 PT=007 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00", "@RPAR T1 PT=007"]
@@ -35,7 +35,7 @@ fn a_point_is_compared_before_it_is_written() {
 }
 
 #[test]
-fn points_go_through_a_file_and_back() {
+fn points_are_dumped_and_restored() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (first, second) = (path("first.csv"), path("second.csv"));
@@ -60,7 +60,7 @@ fn points_go_through_a_file_and_back() {
 }
 
 #[test]
-fn one_coordinate_is_changed_alone() {
+fn one_coordinate_can_be_changed_alone() {
     let mut bench = Bench::new("sim:");
     bench.data(&["point", "set", "5", "1", "2", "3", "4"]);
     let changed = bench.data(&["point", "set", "5", "Y=-7.5"]);
@@ -70,7 +70,7 @@ fn one_coordinate_is_changed_alone() {
 }
 
 #[test]
-fn every_mistake_of_a_file_is_told_and_nothing_sent() {
+fn all_errors_of_a_file_are_reported_and_nothing_is_sent() {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), "name,x_mm,y_mm,z_mm,r_mm\n1,0,0,0\n1000,0,0,0,0\n").unwrap();
     let name = file.path().to_str().unwrap();
@@ -89,7 +89,7 @@ fn five_points() -> tempfile::NamedTempFile {
 }
 
 #[test]
-fn a_worn_cell_ends_it_with_an_account() {
+fn a_failed_write_ends_the_restore_with_a_report() {
     let (mut bench, _) = Bench::with_faults("eeprom_limit = 1", |_, _| Fault::None);
     bench.data(&["point", "set", "3", "9", "9", "9", "9"]);
     let points = five_points();
@@ -110,7 +110,7 @@ fn outcomes(report: &serde_json::Value) -> Vec<(bool, bool)> {
 }
 
 #[test]
-fn a_refusal_on_the_way_says_why_and_what_is_done() {
+fn a_refusal_during_a_restore_gives_the_reason_and_the_points_written() {
     let event = "[[event]]\nat_ms = 1200\ndo = \"pendant on\"\n";
     let (mut bench, _) = Bench::with_faults(event, |_, _| Fault::None);
     let points = five_points();
@@ -121,7 +121,7 @@ fn a_refusal_on_the_way_says_why_and_what_is_done() {
 }
 
 #[test]
-fn what_was_accepted_and_not_read_back_is_open() {
+fn an_accepted_write_without_read_back_has_an_unknown_outcome() {
     let (mut bench, heard) = Bench::with_faults("", |block, count| match block {
         "@RPAR T1 PT=003" if count > 1 => Fault::Lost,
         _ => Fault::None,
@@ -135,7 +135,7 @@ fn what_was_accepted_and_not_read_back_is_open() {
 }
 
 #[test]
-fn a_silent_controller_had_nothing_written() {
+fn without_an_answer_to_the_first_read_nothing_is_written() {
     let (mut bench, _) =
         Bench::with_faults("", |block, _| if block == "@RPAR T1 PT=001" { Fault::Lost } else { Fault::None });
     let points = five_points();
@@ -145,7 +145,7 @@ fn a_silent_controller_had_nothing_written() {
 }
 
 #[test]
-fn a_task_that_was_chosen_is_put_back() {
+fn the_current_task_is_restored_after_the_command() {
     let mut bench = Bench::new("sim:");
     bench.data(&["task", "set", "3"]);
     assert_eq!(bench.data(&["point", "set", "1", "1", "2", "3", "4", "--task", "2"])["items"][0]["task"], 2);
@@ -157,7 +157,7 @@ fn a_task_that_was_chosen_is_put_back() {
 const CROSSED: &str = "write = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\norigin = true\n";
 
 #[test]
-fn a_letter_is_the_same_axis_everywhere() {
+fn all_commands_use_the_axis_letters_of_the_machine() {
     let (mut bench, heard) = Bench::with_faults(CROSSED, |_, _| Fault::None);
     let stored = bench.data(&["point", "set", "1", "z=12.5"]);
     assert_eq!(
@@ -182,19 +182,19 @@ fn a_letter_is_the_same_axis_everywhere() {
 }
 
 #[test]
-fn values_without_names_are_refused_where_they_could_mean_two_axes() {
+fn values_without_names_are_rejected_if_letters_are_not_in_default_order() {
     let (mut bench, heard) = Bench::with_faults(CROSSED, |_, _| Fault::None);
     for words in [&["point", "set", "1", "1", "2", "3", "4"][..], &["coordinate", "set", "1", "2", "3", "4"]] {
         let failure = bench.run(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2);
-        assert!(failure.message.ends_with("the letters of axes 1 to 4 are X, Z, Y, R"), "{failure}");
-        assert!(failure.hint.unwrap().starts_with("give them by name: x=… z=… y=… r=…"));
+        assert!(failure.message.ends_with("axes 1 to 4 have the letters X, Z, Y, R"), "{failure}");
+        assert!(failure.hint.unwrap().starts_with("type them by name: x=… z=… y=… r=…"));
     }
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR T1") || block.starts_with("@MRSS")));
 }
 
 #[test]
-fn letters_that_are_not_told_mean_no_axis() {
+fn without_reported_letters_axes_have_numbers() {
     let mute = |block: &str, _| match block {
         "@SYSP" | "@RPAR E01" => Fault::Answered("@NG"),
         _ => Fault::None,
@@ -203,7 +203,7 @@ fn letters_that_are_not_told_mean_no_axis() {
     for words in [&["point", "set", "1", "z=12.5"][..], &["jog", "Z", "+", "low", "--for", "1s"]] {
         let failure = bench.run(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2, "{failure}");
-        assert!(failure.message.contains("which axis Z is, is not known"), "{failure}");
+        assert!(failure.message.contains("the axis of Z is unknown"), "{failure}");
     }
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR") || block.starts_with("@JGST")));
     assert_eq!(bench.data(&["point", "set", "1", "ax3=12.5"])["items"][0]["value"]["joints"][2]["mm"], 12.5);
@@ -211,7 +211,7 @@ fn letters_that_are_not_told_mean_no_axis() {
 }
 
 #[test]
-fn a_file_has_the_letters_of_the_machine() {
+fn a_dump_has_the_axis_letters_of_the_machine() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (letters, numbers, saved) = (path("letters.csv"), path("numbers.csv"), path("saved.csv"));
@@ -227,7 +227,7 @@ fn a_file_has_the_letters_of_the_machine() {
 }
 
 #[test]
-fn an_update_keeps_to_the_points_of_its_file() {
+fn an_update_dumps_only_the_points_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.csv").to_str().unwrap().to_owned();
     std::fs::write(&path, "comment,name,x_mm,y_mm,z_mm,r_mm\ngate,7,,,,\nbin,3,1,1,1,1\n").unwrap();

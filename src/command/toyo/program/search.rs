@@ -11,7 +11,7 @@ use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::refusal;
 use crate::command::toyo::tasks;
-use crate::command::toyo::waiting::status_page;
+use crate::command::toyo::wait::status_page;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;

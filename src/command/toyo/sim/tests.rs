@@ -53,7 +53,7 @@ fn words(data: &Value) -> Vec<&str> {
 }
 
 #[test]
-fn the_sample_of_the_manual_ends_at_its_place_with_its_output_on() {
+fn the_sample_program_ends_at_its_position_with_its_output_on() {
     let desk = Desk::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
     let data = desk.data(&["./a.txt", "--points", "./points.csv"]);
     assert_eq!(data["end"], "ended");
@@ -73,7 +73,7 @@ fn the_sample_of_the_manual_ends_at_its_place_with_its_output_on() {
 }
 
 #[test]
-fn steps_are_told_with_line_and_label() {
+fn the_trace_shows_steps_with_line_and_label() {
     let desk = Desk::new(&[("a.txt", "# A comment.\n\nnext: CNT+ CN1=1\nJMPC TAG=next CN1<2\nEND\n")]);
     let data = desk.data(&["./a.txt"]);
     assert_eq!(words(&data)[..3], ["next: TAG TAG=001", "CNT+ CN01=0001", "JMPC TAG=001 CN01< 0002 (next)"]);
@@ -82,7 +82,7 @@ fn steps_are_told_with_line_and_label() {
 }
 
 #[test]
-fn inputs_come_when_they_should() {
+fn inputs_change_at_their_times() {
     let desk = Desk::new(&[("a.txt", "IN STN=0 PN1=.....1.. AND\nEND\n")]);
     let data = desk.data(&["./a.txt", "--input", "at 2s 0/01/3 on"]);
     assert_eq!(words(&data), ["IN STN=0 PN01=.....1.. AND", "input 0/01/3 on", "END", "task 1 has ended"]);
@@ -93,18 +93,18 @@ fn inputs_come_when_they_should() {
 }
 
 #[test]
-fn what_waits_for_good_is_told_with_its_place() {
+fn a_program_that_waits_forever_is_reported_with_its_step() {
     let desk = Desk::new(&[("a.txt", "NOP\nIN STN=0 PN1=.....1.. AND\nEND\n")]);
     let failure = desk.failure(&["./a.txt"]);
     assert_eq!(failure.kind, Kind::ConditionNotMet);
     let (message, hint) = (failure.message, failure.hint.unwrap());
-    assert!(message.contains("everything waits for an input that never comes: "), "{message}");
+    assert!(message.contains("all tasks wait for an input without end: "), "{message}");
     assert!(message.ends_with("a.txt:2, task 1, step 2: IN STN=0 PN01=.....1.. AND"), "{message}");
-    assert_eq!(hint, "--input \"at 2s 0/01/3 on\" gives it");
+    assert_eq!(hint, "set it with --input \"at 2s 0/01/3 on\"");
 }
 
 #[test]
-fn an_error_is_told_with_its_code_and_place() {
+fn an_error_is_reported_with_code_and_step() {
     let desk = Desk::new(&[("a.txt", "NOP\nMOV a X=8000 Y=0 Z=0 R=0 S V=1 POST\nEND\n")]);
     let (data, failure) = desk.run(&["./a.txt"]).unwrap();
     let failure = failure.unwrap();
@@ -114,7 +114,7 @@ fn an_error_is_told_with_its_code_and_place() {
 }
 
 #[test]
-fn time_is_up_some_day() {
+fn the_run_ends_at_its_time_limit() {
     let desk = Desk::new(&[("a.txt", "a: JMP TAG=a\n")]);
     let (data, failure) = desk.run(&["./a.txt", "--for", "2s", "--rows", "3"]).unwrap();
     assert_eq!(
@@ -160,7 +160,7 @@ fn faulty_files_are_wrong_arguments() {
         ("params.csv", "name,value\nT2.5,0\n"),
         ("state.toml", "axes = 9\n"),
     ]);
-    for (words, told) in [
+    for (words, message) in [
         (&["./a.txt"][..], "a.txt:1:1: unknown instruction 'EMD'"),
         (&["./good.txt", "--points", "./points.csv"], "points.csv: point 1: values are missing"),
         (&["./good.txt", "--params", "./params.csv"], "params.csv:2:1: T2.5: speed: 0.0 is out of range"),
@@ -168,7 +168,7 @@ fn faulty_files_are_wrong_arguments() {
     ] {
         let failure = desk.failure(words);
         assert_eq!(failure.kind, Kind::Usage);
-        assert!(failure.message.contains(told), "{}", failure.message);
+        assert!(failure.message.contains(message), "{}", failure.message);
     }
     assert_eq!(desk.failure(&["./nothing.txt"]).kind, Kind::Local);
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::command::Report;
 use crate::command::robot::alarm::Alarm;
-use crate::command::toyo::explain::told;
+use crate::command::toyo::explain::alarm_from_code;
 use crate::command::toyo::position::Coordinates;
 use crate::controller::toyo::errors;
 use crate::controller::toyo::program::Program;
@@ -62,7 +62,7 @@ pub struct Recorder {
 pub struct Trace {
     /// `ended`, `stopped`, `error`, `waits` or `time_up`.
     end: &'static str,
-    /// Alarm at the end; null if there is none.
+    /// Alarm at the end; null without an alarm.
     alarm: Option<Alarm>,
     /// Time of the program at the end.
     elapsed_s: f64,
@@ -195,7 +195,7 @@ impl Recorder {
         Trace {
             stop,
             end: end.name(),
-            alarm: if let End::Error(code) = end { Some(told(code)) } else { None },
+            alarm: if let End::Error(code) = end { Some(alarm_from_code(code)) } else { None },
             elapsed_s: after_s,
             position: Coordinates::at(state.position),
             outputs: ports.map(|((station, port), bits)| Port::new(*station, *port, *bits)).collect(),
@@ -216,16 +216,16 @@ impl Recorder {
 
     fn find(&self, task: usize, step: usize) -> Option<At> {
         let Source { file, program, .. } = self.sources.iter().find(|source| source.task == task)?;
-        let found = program.steps.get(step.checked_sub(1)?)?;
-        let tag = ["tag", "then"].into_iter().find_map(|name| found.record.number(name));
+        let program_step = program.steps.get(step.checked_sub(1)?)?;
+        let tag = ["tag", "then"].into_iter().find_map(|name| program_step.record.number(name));
         let label = program.labels.iter().find(|label| Some(label.tag) == tag);
         Some(At {
             task,
             step,
             file: file.clone(),
-            line: found.line,
+            line: program_step.line,
             label: label.map(|label| label.name.clone()),
-            instruction: found.text(),
+            instruction: program_step.text(),
         })
     }
 }
@@ -256,7 +256,7 @@ impl End {
                     .code(format!("{code:02X}"))
             }
             Self::Waits => {
-                let what = steps.iter().find_map(At::wanted).unwrap_or("something");
+                let what = steps.iter().find_map(At::awaited_condition).unwrap_or("something");
                 let hint = steps.iter().find_map(At::help).unwrap_or_else(|| "no other task runs".into());
                 failed(format!("after {after:.3} s, all tasks wait for {what} without end: {places}")).hint(hint)
             }
@@ -288,7 +288,7 @@ impl At {
     }
 
     /// Condition that a step waits for.
-    fn wanted(&self) -> Option<&'static str> {
+    fn awaited_condition(&self) -> Option<&'static str> {
         Some(match self.op()? {
             Op::In => "an input",
             Op::Insp => "an internal port",

@@ -202,7 +202,7 @@ fn named_value(field: &Field, text: &str, known: &Names) -> Result<Value, (Strin
     })
 }
 
-/// What is wrong with a text that looks like a name and is none, and a hint; `None` where no name may stand.
+/// Error and hint for an unknown name; `None` if the field cannot have a name.
 fn unknown_name(field: &Field, text: &str, known: &Names) -> Option<(String, String)> {
     let (kind, prefix) = names::of_field(field.name).filter(|_| is_label(text))?;
     let alike = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());

@@ -20,7 +20,7 @@ fn finding(line: &str) -> String {
 }
 
 #[test]
-fn short_forms_become_the_forms_of_the_line() {
+fn short_forms_become_protocol_text() {
     for (short, whole) in [
         ("MOVP a PT=1 CN=0 S V=0 POST", "MOVP a PT=001 CN=00 S V=00 POST"),
         ("movp A pt=1 cn=0 s v=0 post", "MOVP a PT=001 CN=00 S V=00 POST"),
@@ -40,7 +40,7 @@ fn short_forms_become_the_forms_of_the_line() {
 }
 
 #[test]
-fn the_sample_of_the_manual_is_read() {
+fn the_sample_of_the_manual_is_parsed() {
     let sample = "SPD V=05\nMOVP a PT=001 CN=00 S V=00 POST\nOUT STN=0 PN01=.......1\nEND\n";
     assert_eq!(texts(sample).join("\n") + "\n", sample);
     let numbered: String = sample.lines().enumerate().map(|(at, line)| format!("{:04} {line}\n", at + 1)).collect();
@@ -48,7 +48,7 @@ fn the_sample_of_the_manual_is_read() {
 }
 
 #[test]
-fn labels_become_free_tags_in_their_order() {
+fn labels_get_free_tags_in_text_order() {
     let text = "
         # TAG 1 is taken by a jump, 2 by a label.
         start:  NOP
@@ -90,7 +90,7 @@ fn labels_become_free_tags_in_their_order() {
 }
 
 #[test]
-fn mistakes_are_told_with_their_place_and_what_was_meant() {
+fn errors_have_a_position_and_a_suggestion() {
     for (line, expected) in [
         ("MOVE a", "line 1, column 1: error: unknown instruction 'MOVE' (did you mean MOV?)"),
         ("  xyzzy", "line 1, column 3: error: unknown instruction 'xyzzy'"),
@@ -156,7 +156,7 @@ fn mistakes_are_told_with_their_place_and_what_was_meant() {
 }
 
 #[test]
-fn all_mistakes_are_told_in_the_order_of_the_text() {
+fn all_errors_are_reported_in_text_order() {
     let text = "JMP TAG=nowhere\nACC A=21\nMOV a X=9000 Y=0 Z=0 R=0 Q V=11 POST\nEMD\n";
     let found = findings(text);
     let places: Vec<_> = found.iter().map(|finding| finding.split(": ").next().unwrap().to_owned()).collect();
@@ -179,7 +179,7 @@ fn all_mistakes_are_told_in_the_order_of_the_text() {
 }
 
 #[test]
-fn what_only_looks_wrong_is_no_error() {
+fn suspicious_text_is_a_warning() {
     assert_eq!(findings("a: NOP\nJMP TAG=a"), [] as [&str; 0]);
     assert_eq!(
         findings("a: END\n"),
@@ -204,7 +204,7 @@ fn what_only_looks_wrong_is_no_error() {
 }
 
 #[test]
-fn a_program_must_fit() {
+fn a_program_must_fit_its_task() {
     let text = "NOP\nHOME\nhere: END\n";
     let found = |room| {
         let checked = check(text.as_bytes(), room);
@@ -222,7 +222,7 @@ fn a_program_must_fit() {
 }
 
 #[test]
-fn bytes_that_are_no_text_are_told() {
+fn bytes_that_are_not_utf8_are_reported() {
     for (bytes, expected) in [
         (
             &b"END # \xE9t\xE9\nNOP # \xFF"[..],
@@ -280,7 +280,7 @@ fn a_listing_reads_back() {
 }
 
 #[test]
-fn what_is_not_in_the_manual_keeps_its_place_and_is_no_program() {
+fn a_step_outside_the_manual_keeps_its_number_and_is_not_valid() {
     let steps: Vec<Record> = ["SPD V=05", "END"].map(|text| request::instruction(text).unwrap()).into();
     let steps = [&steps[..1], &[Record::unlisted("FOO X=1 #2")], &steps[1..]].concat();
     let text = listing(&steps, whole(false), &Rows::new()).text;
@@ -302,7 +302,7 @@ fn least(field: &crate::toyo::field::Field) -> crate::toyo::field::Value {
 }
 
 #[test]
-fn a_listing_explains_what_it_names() {
+fn a_listing_has_comments_for_table_rows() {
     let steps = ["SPD V=05", "MOVP a PT=001 CN=00 S V=00 POST", "JMP TAG=003", "TAG TAG=003", "END"]
         .map(|text| request::instruction(text).unwrap());
     assert_eq!(uses(&steps).into_iter().collect::<Vec<_>>(), [("T1", 1), ("T2", 5)]);
@@ -329,7 +329,7 @@ fn a_listing_explains_what_it_names() {
 }
 
 #[test]
-fn five_thousand_steps_are_read_whole() {
+fn five_thousand_steps_are_parsed() {
     let mut text = String::new();
     for step in 0..999 {
         text.push_str(&format!("label{step}: MOV a X={step} Y=0 Z=0 R=0 S V=1 POST\nJMPC TAG=label{step} CN1>=5\n"));
@@ -344,7 +344,7 @@ fn five_thousand_steps_are_read_whole() {
 }
 
 #[test]
-fn a_part_knows_the_tags_around_it() {
+fn a_part_is_checked_with_the_tags_outside_it() {
     let around = |tags: Option<&[i32]>| Part { first: 100, tags: tags.map(|tags| tags.iter().copied().collect()) };
     let part = |text: &str, tags| check_part(text.as_bytes(), 10, &around(tags));
     let text = "here: CAL TAG=5\nJMP TAG=here\n";
@@ -375,14 +375,13 @@ fn a_part_knows_the_tags_around_it() {
 }
 
 #[test]
-fn a_file_of_something_else_is_told_in_one_sentence() {
+fn a_file_of_another_type_gives_one_error() {
     let points = format!("name,x_mm,y_mm,z_mm,r_mm\n{}", "1,2,3,4,5\n".repeat(50));
     assert_eq!(
         findings(points),
         ["line 1, column 1: error: this is a CSV table, not a program (`toyo point restore FILE` or \
-             points)"]
+          `toyo param restore FILE` writes it)"]
     );
     assert_eq!(findings("\u{FEFF}\"Name\";\"x_mm\"\n").len(), 1);
-    assert_eq!(findings("[parameters]\nP01 = 1\nP02 = 2\n").len(), 1);
     assert_eq!(findings("name: NOP\nEND\n").len(), 1, "a label may be called so");
 }

@@ -57,7 +57,7 @@ fn reads_are_repeated_and_orders_are_not() {
 }
 
 #[test]
-fn a_yes_and_a_no_that_come_together_are_no_answer() {
+fn ok_and_ng_together_are_not_an_answer() {
     for answers in ["@OK\r\n@NG\r\n", "@NG\r\n@OK\r\n"] {
         let mut line = sent("@HOME", false);
         line.handle(ms(20), answers.as_bytes());
@@ -70,7 +70,7 @@ fn a_yes_and_a_no_that_come_together_are_no_answer() {
 }
 
 #[test]
-fn a_no_in_a_later_read_takes_a_yes_back() {
+fn an_ng_during_the_next_read_refutes_an_ok() {
     for text in ["@HOME", "@SVON", "@MINT PR=0"] {
         let mut line = sent(text, false);
         line.handle(ms(20), b"@OK\r\n");
@@ -90,7 +90,7 @@ fn a_no_in_a_later_read_takes_a_yes_back() {
 }
 
 #[test]
-fn a_no_before_the_next_answer_takes_a_yes_back() {
+fn an_ng_before_the_next_answer_refutes_an_ok() {
     let accepted = || {
         let mut line = sent("@HOME", false);
         line.handle(ms(20), b"@OK\r\n");
@@ -115,7 +115,7 @@ fn a_no_before_the_next_answer_takes_a_yes_back() {
 }
 
 #[test]
-fn an_order_is_open_until_a_question_was_answered() {
+fn an_order_is_open_until_a_read_is_answered() {
     for (first, other) in [("@OK", "@NG"), ("@NG", "@OK")] {
         for row in ROWS.iter().filter(|row| row.is_order()) {
             let order = example(row);
@@ -172,7 +172,7 @@ fn a_late_ok_is_not_the_answer_to_the_next_order() {
 }
 
 #[test]
-fn an_exchange_that_is_given_up_is_still_owed_its_answer() {
+fn the_answer_of_an_abandoned_exchange_is_discarded() {
     let mut line = sent("@SPST 0001", false);
     line.begin(&request("@STOP"), true);
     assert!(matches!(line.poll(ms(5)), Step::Wait(_)), "the line settles first");
@@ -181,7 +181,7 @@ fn an_exchange_that_is_given_up_is_still_owed_its_answer() {
 }
 
 #[test]
-fn a_stop_does_not_wait_for_what_is_owed() {
+fn an_urgent_stop_does_not_wait_for_pending_answers() {
     let mut line = sent("@SPST 0001", false);
     // The answer to the start is pending or lost: the stop is sent at once, and both answers are discarded.
     assert_eq!(line.urgent(ms(5), &request("@STOP")), Some(b"@STOP\r\n".to_vec()));
@@ -196,7 +196,7 @@ fn a_stop_does_not_wait_for_what_is_owed() {
 }
 
 #[test]
-fn a_line_in_peace_needs_no_urgency() {
+fn without_a_pending_answer_urgent_sends_nothing() {
     let mut line = LineSession::new(POLICY);
     assert_eq!(line.urgent(Now::ZERO, &request("@STOP")), None);
     let mut line = sent("@SPST 0001", false);
@@ -205,7 +205,7 @@ fn a_line_in_peace_needs_no_urgency() {
 }
 
 #[test]
-fn an_answer_to_something_else_is_passed_over() {
+fn an_answer_to_another_request_is_discarded() {
     let mut line = sent("@STAS SNO=1", true);
     line.handle(ms(10), b"@OK\r\n@STAS SNO=0 ST1=22 ST2=00\r\n@STAS SNO=1 ST1=00 ST2=00\r\n");
     assert_eq!(line.poll(ms(10)), answered("@STAS SNO=1 ST1=00 ST2=00"));
@@ -213,7 +213,7 @@ fn an_answer_to_something_else_is_passed_over() {
 }
 
 #[test]
-fn noise_around_an_answer_does_not_matter() {
+fn noise_around_an_answer_is_ignored() {
     let mut line = sent("@MTSK", true);
     line.handle(ms(10), b"\x00\xffx@MT\x80@MTSK TASK=01\r\n");
     assert_eq!(line.poll(ms(10)), answered("@MTSK TASK=01"));
@@ -221,7 +221,7 @@ fn noise_around_an_answer_does_not_matter() {
 }
 
 #[test]
-fn a_garbled_read_is_asked_again_when_the_line_is_quiet() {
+fn a_garbled_read_is_repeated_on_a_quiet_line() {
     let mut line = sent("@MTSK", true);
     line.handle(ms(10), b"@MTSK TA\x80K=01\r\n");
     assert_eq!(line.poll(ms(10)), Step::Wait(ms(60)));
@@ -234,7 +234,7 @@ fn a_garbled_read_is_asked_again_when_the_line_is_quiet() {
 }
 
 #[test]
-fn a_garbled_answer_to_an_order_leaves_it_open() {
+fn a_garbled_answer_leaves_an_order_open() {
     let mut line = sent("@SVON", false);
     line.handle(ms(10), b"@O\x80\r\n");
     let deadline = waits(&mut line, ms(10));
@@ -242,7 +242,7 @@ fn a_garbled_answer_to_an_order_leaves_it_open() {
 }
 
 #[test]
-fn a_line_that_echoes_is_no_controller() {
+fn an_echo_is_not_an_answer() {
     let mut line = sent("@STAS SNO=0", true);
     line.handle(ms(5), b"@STAS SNO=0\r\n@STAS SNO=0 ST1=00 ST2=00\r\n");
     assert_eq!(line.poll(ms(5)), answered("@STAS SNO=0 ST1=00 ST2=00"));
@@ -256,7 +256,7 @@ fn a_line_that_echoes_is_no_controller() {
 }
 
 #[test]
-fn an_answer_that_looks_like_its_request_counts_in_the_end() {
+fn an_answer_equal_to_its_request_counts_after_the_timeout() {
     let mut line = sent("@TYPE AX1 RTYP=000001", false);
     line.handle(ms(20), b"@TYPE AX1 RTYP=000001\r\n");
     let deadline = waits(&mut line, ms(20));
@@ -264,7 +264,7 @@ fn an_answer_that_looks_like_its_request_counts_in_the_end() {
 }
 
 #[test]
-fn ten_thousand_characters_without_an_end_are_bounded() {
+fn ten_thousand_characters_without_line_end_use_bounded_memory() {
     let mut line = sent("@MTSK", false);
     line.handle(ms(10), &[b'A'; 10_000]);
     line.handle(ms(10), b"@");
@@ -275,7 +275,7 @@ fn ten_thousand_characters_without_an_end_are_bounded() {
 }
 
 #[test]
-fn whatever_answers_a_raw_block_is_its_answer() {
+fn any_block_answers_a_raw_block() {
     let mut line = LineSession::new(POLICY);
     line.begin_raw("@ABCD");
     assert_eq!(line.poll(Now::ZERO), Step::Send(b"@ABCD\r\n".to_vec()));
@@ -284,7 +284,7 @@ fn whatever_answers_a_raw_block_is_its_answer() {
 }
 
 #[test]
-fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
+fn an_order_waits_a_limited_time_for_a_quiet_line_and_a_stop_does_not_wait() {
     let mut line = LineSession::new(POLICY);
     line.handle(ms(0), b"@OK\r\n");
     line.begin(&request("@SVON"), false);
@@ -304,7 +304,7 @@ fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
 }
 
 #[test]
-fn what_the_manual_does_not_list_is_believed_the_second_time() {
+fn an_answer_outside_the_manual_is_accepted_when_it_repeats() {
     let mut line = sent("@RPAR E17", true);
     line.handle(ms(10), b"@RPAR E17 E=I\r\n");
     let again = waits(&mut line, ms(10));

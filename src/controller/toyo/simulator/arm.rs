@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_braked_goes_on() {
+    fn a_stopped_move_continues() {
         let mut arm = Arm::default();
         to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
         arm.brake(ms(500));
@@ -345,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_moved_since_goes_on_to_the_same_place() {
+    fn a_stopped_move_continues_to_its_target_after_a_jog() {
         let mut arm = Arm::default();
         to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
         arm.freeze(ms(500));
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_gets_past_a_wall() {
+    fn an_axis_stops_at_a_wall() {
         let mut arm = Arm::default();
         arm.set_wall(0, Some(30.0), ms(0));
         to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn a_crossing_is_found_both_ways() {
+    fn a_crossing_is_found_in_both_directions() {
         let mut arm = Arm::default();
         to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
         let at = arm.crossing(0, |x| x >= 55.0, ms(0)).unwrap();

@@ -142,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_default_may_be_sent() {
+    fn every_default_can_be_sent() {
         for parameter in &PARAMETERS {
             let values = values(parameter, 1);
             let row = parameter.row().map(|_| Value::Number(1));

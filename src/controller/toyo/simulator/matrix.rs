@@ -122,7 +122,7 @@ mod tests {
     };
 
     #[test]
-    fn places_are_even() {
+    fn positions_have_equal_distances() {
         assert_eq!(MATRIX.place([1, 1, 1]), Ok([10.0, 20.0, 5.0, 0.0]));
         assert_eq!(MATRIX.place([2, 2, 0]), Ok([20.0, 50.0, 5.0, 0.0]));
         assert_eq!(MATRIX.place([4, 1, 1]), Err(code::CALCULATION));
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_direction_counts_fastest() {
+    fn the_counter_of_the_first_direction_changes_fastest() {
         let mut piece = Some([1, 1, 1]);
         let mut all = Vec::new();
         while let Some(at) = piece {

@@ -1,8 +1,10 @@
 //! Simulated Toyo controller: answers the host, moves, and runs programs, without a line and without a clock.
 //!
-//! The caller passes bytes and the time, and sends the answers. The simulator shares the tables with the client but
-//! is stricter: a block must be exact to the character, and the state must allow the command. `why` on the console
+//! The caller passes bytes and the time, and sends the answers. The simulator shares the tables with the client, but
+//! is stricter. A block must be exact to the character, and the state must allow the command. `why` on the console
 //! shows the reason of the last refusal.
+//!
+//! Modules:
 //!
 //! | module | content |
 //! |---|---|
@@ -20,10 +22,9 @@
 //!
 //! - Coordinates X, Y, Z, R are axes 1 to 4, regardless of their letters (E01) and tasks.
 //! - A move reaches the speed of T2, lowered by override and E06, in the ramp times of T3. A short move has the same
-//!   accelerations. With S the speed is that of the axis with the longest way; with T it is the path speed in the
-//!   plane or space of the task. All axes start and stop together. There is no lag: a move is in position when it
-//!   ends.
-//! - At a pass point the next move begins during the deceleration of the last one. PASS is the share of that ramp.
+//!   accelerations. With S the speed is that of the axis with the longest distance. With T it is the path speed in the
+//!   plane or space of the task. All axes start and stop together. A move is in position when it ends, without lag.
+//! - At a pass point, the next move begins during the deceleration of the last move. PASS is the share of that ramp.
 //!   P05 is not used.
 //! - SPST starts task 1; TSTR starts the others at their first step. A task ends at its END; programs are in
 //!   execution while any task runs. Tags belong to their task. Calls nest up to 16 levels. Every instruction takes
@@ -32,25 +33,26 @@
 //!   error the other tasks have ended. SPST 0000 then continues with task 1, and completes its interrupted move
 //!   first. PPST and SESY continue a stopped program.
 //! - A start without origin is accepted; its first move is error 61, without servo power 62. A target beyond a soft
-//!   limit is error C0 to C7 before any motion. If only the offset or a JOG leads beyond the limit, it is error 28
-//!   and so on.
+//!   limit is error C0 to C7 before any motion. If only the offset or a JOG leads beyond the limit, it is an
+//!   error from 28 on.
 //! - MRSS supplies one move (RSMV) of a task, before or while it waits. V=00 is the row of the step.
 //! - TLMV limits the next move of its axis. At an obstacle the torque is at its limit; after the judgement time the
 //!   axis is locked. The move ends then, with TE or LE. It ends on arrival with AE, or if neither TE nor LE is on.
-//! - An axis that pushes farther than E03 has an overflow; one that pushes for a second without torque limit has an
-//!   overload.
+//! - An axis that pushes farther than E03 has an overflow. An axis that pushes for a second without torque limit has
+//!   an overload.
 //! - MVB returns to the start of the last move. An arc has two steps, and lies in the first two or three axes of the
 //!   task.
 //! - OUTP inverts its bits again after its time. Timers count up from the value of TIMP. A counter below 0 or above
 //!   9999 is error A7. PSEL reads the tag number from the bits of the port of M05, from its bit on.
 //! - MVM counters count from 1; LOOP jumps to THEN while positions are left.
-//! - Palletizing moves above the position, down, runs the hand program, and moves up: first at the source, then at
-//!   the destination. An easy program calls its START tag LOOP times, at least once, then its END tag.
+//! - Palletizing moves above the position, moves down, runs the hand program, and moves up. It does so at the source,
+//!   then at the destination. An easy program calls its START tag LOOP times, at least once, then its END tag.
 //! - After a return to origin the coordinate is P06. HOME resets programs.
-//! - JOG uses the first row of T3, without override. M20, M22, M23, P03 to P05, P17, P18, E02, E04 and parameters of
-//!   cables and fieldbuses are stored without effect.
-//! - Any write of parameter 2 counts as a change; E22 changes the memory at once.
-//! - SY01 of the inputs: origin, start, stop, reset; of the outputs: error, positioned, origin, ready.
+//! - JOG uses the first row of T3, without override.
+//! - These parameters are stored without effect: M20, M22, M23, P03 to P05, P17, P18, E02, E04, and those of cables
+//!   and fieldbuses.
+//! - Any write of parameter 2 counts as a change. E22 changes the memory at once.
+//! - SY01 of the inputs has origin, start, stop and reset. SY01 of the outputs has error, positioned, origin and ready.
 //! - Power off clears outputs, counters and timers, and with incremental encoders the origin.
 
 mod action;

@@ -353,7 +353,7 @@ mod tests {
     const DRIVE: Drive = Drive { speed: 100.0, up: 0.2, down: 0.4 };
 
     #[test]
-    fn a_long_way_is_a_trapezoid() {
+    fn a_long_move_has_a_trapezoid_profile() {
         // 10 mm up, 170 mm steady, 20 mm down.
         let profile = Profile::trapezoid(200.0, DRIVE);
         assert!(near(profile.seconds(), 0.2 + 1.7 + 0.4));
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_way_is_a_triangle() {
+    fn a_short_move_has_a_triangle_profile() {
         // 7.5 mm are a quarter of the 30 mm that the ramps need: half the speed, half the times.
         let profile = Profile::trapezoid(7.5, DRIVE);
         assert!(near(profile.seconds(), 0.3));
@@ -383,13 +383,13 @@ mod tests {
         assert!(near(path.length(), 100.0 * TAU / 4.0));
         let middle = path.at(path.length() / 2.0);
         assert!(near(middle[0], half) && near(middle[1], half), "{middle:?}");
-        assert!(near(middle[2], 10.0), "what is not in the plane goes in proportion");
+        assert!(near(middle[2], 10.0), "the axis outside the plane moves in proportion to the path");
         assert!(near(path.at(path.length())[1], 100.0));
         assert!(near(path.range(0).0, 0.0) && near(path.range(0).1, 100.0));
     }
 
     #[test]
-    fn an_arc_reaches_beyond_its_points() {
+    fn the_range_of_an_arc_exceeds_its_points() {
         // Three quarters of a circle around the origin, clockwise.
         let arc = Arc::through([0.0, 10.0, 0.0, 0.0], [10.0, 0.0, 0.0, 0.0], [-10.0, 0.0, 0.0, 0.0], &[0, 1]).unwrap();
         let path = Path::Arc(arc);
@@ -399,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn points_on_a_line_have_no_circle() {
+    fn points_on_a_line_give_no_arc() {
         assert_eq!(Arc::through([0.0; 4], [1.0, 1.0, 0.0, 0.0], [2.0, 2.0, 0.0, 0.0], &[0, 1]), None);
     }
 

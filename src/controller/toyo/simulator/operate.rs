@@ -247,7 +247,7 @@ impl World {
         }
     }
 
-    /// Selects sequential or palletizing mode, unless M10 selects another one.
+    /// Selects sequential or palletizing mode, unless M10 selects a different mode.
     pub(super) fn choose_kind(&mut self, palletizing: bool) -> Result<(), Refusal> {
         self.idle()?;
         if self.settings.special != Special::None {

@@ -221,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_are_given_to_tasks_in_their_order() {
+    fn axes_are_assigned_to_tasks_in_order() {
         let axes = tasks("1210").map(|task| task.axes);
         assert_eq!(axes, [vec![0], vec![1, 2], vec![3], vec![]]);
         assert_eq!(tasks("5000")[0], Axes { axes: vec![0, 1, 2, 3], space: 3 });
@@ -229,13 +229,13 @@ mod tests {
     }
 
     #[test]
-    fn tasks_have_their_turn_by_priority() {
+    fn tasks_run_in_order_of_priority() {
         assert_eq!(order([1, 1, 1, 1]), [0, 1, 2, 3]);
         assert_eq!(order([3, 1, 0, 1]), [2, 1, 3, 0]);
     }
 
     #[test]
-    fn defaults_make_sense() {
+    fn default_settings_are_valid() {
         let content = Content::new(4, 0);
         let (settings, machine) = (Settings::from_content(&content), Machine::from_content(&content));
         assert!(settings.signals.is_empty());

@@ -365,7 +365,7 @@ fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), Str
     }
     let mut sizes: [usize; TASKS] = std::array::from_fn(|index| world.memory.size(index));
     sizes[task - 1] = sizes[task - 1].max(steps.len());
-    // Task 1 has all steps at first. It gives up what others need, so that easy programs keep their room.
+    // Task 1 has all steps at first. The other tasks take their steps from it, not from the easy programs.
     let others: usize = sizes[1..].iter().sum();
     sizes[0] = sizes[0].min(STEPS_WITH_EASY.saturating_sub(others)).max(world.memory.used(0));
     if task == 1 {

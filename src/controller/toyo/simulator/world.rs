@@ -145,7 +145,7 @@ impl World {
     /// Handles the events that are due.
     fn happen(&mut self) {
         while let Some(line) = self.events.take(self.now) {
-            // An impossible line is ignored; `why` and the trace show it.
+            // An impossible line is ignored; `why` and the trace report it.
             if let Err(why) = console::execute(self, &line) {
                 self.note(What::Console(format!("{line}: {why}")));
                 self.refusal = Some((line, why));

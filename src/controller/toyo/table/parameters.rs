@@ -581,7 +581,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_tells_its_parameter() {
+    fn a_text_identifies_its_parameter() {
         for row in &PARAMETERS {
             let values: Vec<_> = row.key.fields.iter().map(|_| crate::toyo::field::Value::Number(1)).collect();
             let key = row.key.emit(&values).unwrap();
@@ -594,7 +594,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_is_what_follows_the_key() {
+    fn the_body_is_the_text_after_the_key() {
         let body = |id| Parameter::named(id).unwrap().body().text;
         assert_eq!(body("T2"), "{}");
         assert_eq!(body("T1"), "X={} Y={} Z={} R={}");

@@ -55,7 +55,7 @@ fn everything_else_is_answered_without_the_host() {
 }
 
 #[test]
-fn the_pendant_takes_the_hosts_place() {
+fn the_pendant_disables_the_host() {
     let mut bench = Bench::new("");
     bench.ok("@HSON");
     assert_eq!(bench.page(2), 0b1000_0000);
@@ -69,7 +69,7 @@ fn the_pendant_takes_the_hosts_place() {
 }
 
 #[test]
-fn the_start_input_counts_while_the_host_is_off() {
+fn the_start_input_works_only_with_the_host_off() {
     let mut bench = Bench::with(&["CNT+ CN01=0001", "END"], "");
     assert!(bench.sim.console(bench.now, "start").unwrap_err().contains("host is ON"));
     bench.console("input 0/SY/2 on");
@@ -102,7 +102,7 @@ fn the_servo_input_switches_servo_power() {
 }
 
 #[test]
-fn a_change_of_parameter_2_waits_for_power() {
+fn a_change_of_parameter_2_needs_a_power_cycle() {
     let mut bench =
         Bench::ready("steps.1 = [\"MOV a X=+0100.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST\", \"END\"]");
     bench.ok("@WPAR E06 AX1=0050 AX2=1000 AX3=1000 AX4=1000");
@@ -134,7 +134,7 @@ fn absolute_encoders_keep_the_origin() {
 }
 
 #[test]
-fn errors_are_remembered() {
+fn errors_are_stored_in_the_history() {
     let mut bench =
         Bench::ready("hours = 999\nhistory = [{ code = \"28\", after_seconds = 3661 }, { power_cut = true }]");
     assert_eq!(bench.ask("@EHTR NO=01"), "@EHTR NO=01 ER=28 AL=00 H=001 M=01 S=01");
@@ -199,7 +199,7 @@ fn outputs_are_set_directly() {
 }
 
 #[test]
-fn the_system_says_what_it_is() {
+fn sysp_reports_the_controller_type() {
     let mut bench = Bench::ready(
         "version = \"3.40\"\nrobot_types = [120000, 120100]\nwrite = [\"WPAR M09 J\", \"WPAR E01 AX1=Y AX2=X AX3=Z AX4=R\"]",
     );
@@ -215,7 +215,7 @@ fn the_system_says_what_it_is() {
 }
 
 #[test]
-fn an_old_version_lacks_what_came_later() {
+fn an_old_version_refuses_newer_commands() {
     let mut bench = Bench::ready("version = \"3.35\"");
     bench.ng("@WPAR E23 E", "does not have E23");
     Bench::ready("version = \"3.36\"").ok("@WPAR E23 E");

@@ -17,7 +17,7 @@ fn order(bench: &mut Bench) -> Vec<usize> {
 }
 
 #[test]
-fn counters_count() {
+fn counter_instructions_change_counters() {
     let bench = ran(&["CNT CN01=0010", "CNT+ CN01=0005", "CNT- CN01=0002", "CNT CN02=0001", "END"]);
     assert_eq!((bench.counter(1), bench.counter(2)), (13, 1));
     assert_eq!(ran(&["CNT CN01=0010", "CNTC", "END"]).counter(1), 0);
@@ -26,7 +26,7 @@ fn counters_count() {
 }
 
 #[test]
-fn jumps_go_by_what_they_compare() {
+fn jumps_depend_on_their_conditions() {
     let steps = |jump| vec!["CNT CN01=0005", jump, "CNT CN02=0001", "TAG TAG=007", "END"];
     for (jump, jumps) in [
         ("JMP TAG=007", true),
@@ -52,7 +52,7 @@ fn jumps_go_by_what_they_compare() {
 }
 
 #[test]
-fn tags_must_be_there_once() {
+fn each_tag_must_exist_exactly_once() {
     fails(&["JMP TAG=001", "END"], 0xA1);
     fails(&["JMP TAG=001", "TAG TAG=001", "TAG TAG=001", "END"], 0xA2);
     fails(&["BRAC CN=00 OFS=000", "END"], 0xB1);
@@ -90,7 +90,7 @@ fn a_program_needs_its_end() {
 }
 
 #[test]
-fn waits_end_when_inputs_are_so() {
+fn waits_end_when_inputs_match() {
     let mut bench = Bench::with(
         &[
             "IN STN=0 PN02=......11 AND",
@@ -179,7 +179,7 @@ fn ports_and_counters_are_copied() {
 }
 
 #[test]
-fn timers_run() {
+fn timer_instructions_wait_for_their_time() {
     let mut bench = Bench::with(
         &["TIMP TN1=001.0", "TIM TM=002.5", "JMPT TAG=001 TN1>=003.5", "END", "TAG TAG=001", "CNT CN01=0001", "END"],
         "",
@@ -197,7 +197,7 @@ fn timers_run() {
 }
 
 #[test]
-fn selection_inputs_make_a_tag() {
+fn selection_inputs_select_a_tag() {
     let steps = ["PSEL", "CNT CN01=0001", "END", "TAG TAG=005", "CNT CN01=0002", "END"];
     let mut bench = Bench::with(&steps, "write = [\"WPAR M05 0/01/5\"]\ninputs = { \"0/01\" = \"00001111\" }");
     bench.run();
@@ -211,7 +211,7 @@ fn selection_inputs_make_a_tag() {
 }
 
 #[test]
-fn stop_stands_until_it_is_started_again() {
+fn a_stop_instruction_waits_for_the_next_start() {
     let mut bench = Bench::with(&["CNT CN01=0001", "STOP", "CNT CN01=0002", "END"], "");
     bench.run();
     assert_eq!((bench.counter(1), bench.page(0)), (1, 0b0011_0100), "paused");
@@ -269,7 +269,7 @@ fn a_controller_without_an_instruction_refuses_it() {
 }
 
 #[test]
-fn a_loop_asks_for_the_same_pulse_once() {
+fn a_loop_schedules_the_same_pulse_once() {
     let steps = [
         "TAG TAG=001",
         "OUTP STN=0 PN01=.......1 TM=00.5",
@@ -290,7 +290,7 @@ fn a_loop_asks_for_the_same_pulse_once() {
 }
 
 #[test]
-fn more_axes_than_there_are_is_an_error() {
+fn an_instruction_for_a_missing_axis_is_an_error() {
     let mut bench = Bench::new("axes = 2\nwrite = [\"WPAR E19 4000\"]");
     assert_eq!(bench.page(1), 0xA8);
 }

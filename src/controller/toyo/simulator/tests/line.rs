@@ -14,7 +14,7 @@ fn sent(bench: &mut Bench, bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn a_block_ends_with_cr_and_may_have_lf() {
+fn a_block_ends_with_cr_or_crlf() {
     let mut bench = Bench::new("");
     assert_eq!(sent(&mut bench, b"@HSON\r"), b"@OK\r\n");
     assert_eq!(sent(&mut bench, b"\n@HSOF\r\n"), b"@OK\r\n");
@@ -25,14 +25,14 @@ fn a_block_ends_with_cr_and_may_have_lf() {
 }
 
 #[test]
-fn noise_before_a_block_does_not_matter() {
+fn noise_before_a_block_is_ignored() {
     let mut bench = Bench::new("");
     assert_eq!(sent(&mut bench, b"\x00\xFFxx@MTSK\r\n"), b"@MTSK TASK=01\r\n");
     assert_eq!(sent(&mut bench, b"@MT@MTSK\r\n"), b"@MTSK TASK=01\r\n", "a block that was cut off");
 }
 
 #[test]
-fn what_the_line_damaged_has_no_answer() {
+fn a_damaged_block_has_no_answer() {
     let mut bench = Bench::new("");
     assert_eq!(sent(&mut bench, b"@MT\xC1K\r\n"), b"");
     sent(&mut bench, b"@HS");
@@ -44,7 +44,7 @@ fn what_the_line_damaged_has_no_answer() {
 }
 
 #[test]
-fn what_is_no_command_is_refused() {
+fn an_unknown_command_is_refused() {
     let mut bench = Bench::ready("");
     bench.ng("@XXXX", "unknown command");
     bench.ng("@stas SNO=0", "unknown command");
@@ -61,7 +61,7 @@ fn what_is_no_command_is_refused() {
 }
 
 #[test]
-fn answers_can_take_their_time() {
+fn answers_can_be_delayed() {
     let mut bench = Bench::new("answer_delay_ms = 15");
     bench.sim.receive(bench.now, b"@MTSK\r");
     assert_eq!(bench.sim.transmit(bench.now), None);
@@ -71,7 +71,7 @@ fn answers_can_take_their_time() {
 }
 
 #[test]
-fn a_share_is_refused_as_busy_and_always_the_same() {
+fn busy_refuses_the_same_requests_with_the_same_seed() {
     let count = |seed: u64| -> Vec<bool> {
         let mut bench = Bench::new(&format!("busy = 0.3\nseed = {seed}"));
         (0..200).map(|_| bench.ask("@MTSK") == "@NG").collect()
@@ -83,7 +83,7 @@ fn a_share_is_refused_as_busy_and_always_the_same() {
 }
 
 #[test]
-fn no_bytes_upset_it() {
+fn random_bytes_cause_no_panic() {
     let mut bench = Bench::ready("");
     let mut random = fastrand::Rng::with_seed(3);
     let words = ["@", "WPAR ", "T1 PT=", "999", "JGST X=", "\r", "\n", "é", "=", "000000000000", "@WSTX 0001 ", "MVM "];

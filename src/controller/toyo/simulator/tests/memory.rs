@@ -21,7 +21,7 @@ fn tasks_have_their_own_points_and_steps() {
 }
 
 #[test]
-fn steps_are_shared_out() {
+fn parameter_e22_divides_the_steps_among_tasks() {
     let mut bench = Bench::ready(
         "steps.1 = [\"NOP\", \"NOP\", \"END\"]\nwrite = [\"WESY PNO=01 ST=000 START=001 LOOP=0002 END=003\"]",
     );
@@ -94,7 +94,7 @@ fn writes_are_counted_by_cell() {
 }
 
 #[test]
-fn a_worn_cell_keeps_nothing_but_says_ok() {
+fn a_worn_cell_answers_ok_and_keeps_its_old_value() {
     let mut bench =
         Bench::ready("eeprom_limit = 2\nsteps = { 1 = [\"NOP\"], 2 = [\"NOP\"], 3 = [\"NOP\"], 4 = [\"END\"] }");
     assert!(bench.sim.step(4, 1).is_some(), "what was there at the start wore nothing");
@@ -129,7 +129,7 @@ fn left(bench: &mut Bench) -> [bool; 8] {
 }
 
 #[test]
-fn memory_is_cleared_in_part_or_whole() {
+fn memory_is_cleared_in_part_or_completely() {
     assert_eq!(left(&mut Bench::ready(FULL)), [true; 8]);
     for (what, gone) in [
         ("0", vec![0, 1, 2, 3, 4, 5, 6, 7]),
@@ -148,7 +148,7 @@ fn memory_is_cleared_in_part_or_whole() {
 }
 
 #[test]
-fn the_card_takes_its_time_and_brings_everything_back() {
+fn a_card_transfer_takes_time_and_restores_everything() {
     let mut bench = Bench::ready(&format!("card = \"empty\"\n{FULL}"));
     assert_eq!(bench.page(3), 0b0011_0001);
     bench.ng("@RMCA", "no memory card with data");
@@ -175,7 +175,7 @@ fn the_card_takes_its_time_and_brings_everything_back() {
 }
 
 #[test]
-fn a_card_that_is_taken_out_is_an_error() {
+fn a_removed_card_is_an_error() {
     let mut bench = Bench::ready("card = \"empty\"");
     bench.ok("@WMCA");
     bench.pass(500);

@@ -26,7 +26,7 @@ fn about(time: Duration, seconds: f64) {
 }
 
 #[test]
-fn a_move_is_a_trapezoid() {
+fn a_move_has_a_trapezoid_profile() {
     let mut bench = Bench::with(&[TO_100, "END"], "");
     bench.ok("@SPST 0001");
     for (ms, x) in [(50, 2.5), (100, 10.0), (300, 50.0), (500, 90.0), (550, 97.5), (600, 100.0)] {
@@ -54,7 +54,7 @@ fn speed_and_ramps_come_from_tables_and_override() {
 }
 
 #[test]
-fn line_speed_is_along_the_line_and_axis_speed_that_of_the_longest_way() {
+fn path_speed_is_along_the_line_and_axis_speed_is_of_the_longest_axis() {
     // 30 and 40 mm: 50 mm along the line. 20 mm of ramps.
     about(time_of(&[&mov(30.0, 40.0, "T V=05 POST"), "END"], "").1, 0.2 + 30.0 / 200.0);
     about(time_of(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "").1, 0.2 + 20.0 / 200.0);
@@ -65,7 +65,7 @@ fn line_speed_is_along_the_line_and_axis_speed_that_of_the_longest_way() {
 }
 
 #[test]
-fn override_counts_while_nothing_runs() {
+fn override_takes_effect_at_the_next_start() {
     let mut bench = Bench::with(&[TO_100, "END"], "");
     bench.ok("@SPST 0001");
     bench.ng("@WOVR OV=050", "or jog runs");
@@ -94,7 +94,7 @@ fn pass_points_are_rounded_and_do_not_stop() {
 }
 
 #[test]
-fn places_come_from_rows_counters_and_increments() {
+fn targets_come_from_rows_counters_and_increments() {
     let toml = "points.1 = { 1 = [1.0, 0.0, 0.0, 0.0], 12 = [12.0, 1.0, 0.0, 0.0] }\ncounters = { 3 = 11 }";
     let mut bench = Bench::with(&["MOVP a PT=001 CN=03 S V=05 POST", "MOVP i PT=001 CN=00 S V=05 POST", "END"], toml);
     bench.run();
@@ -110,7 +110,7 @@ fn places_come_from_rows_counters_and_increments() {
 }
 
 #[test]
-fn offsets_add_to_absolute_places() {
+fn offsets_are_added_to_absolute_positions() {
     let steps = [
         "OFS X=+0010.00 Y=+0000.00 Z=+0000.00 R=+0000.00",
         TO_100,
@@ -153,7 +153,7 @@ fn arcs_go_through_their_points() {
 }
 
 #[test]
-fn arcs_need_their_data() {
+fn an_arc_without_its_data_is_an_error() {
     fails(&["MVC a X=+0000.00 Y=+0100.00 Z=+0000.00 R=+0000.00 V=05 POST", "END"], 0xA5);
     fails(
         &[
@@ -166,7 +166,7 @@ fn arcs_need_their_data() {
 }
 
 #[test]
-fn soft_limits_are_looked_at_before_and_during_moves() {
+fn soft_limits_are_checked_before_and_during_moves() {
     for (step, code) in [
         ("MOV a X=+1000.01 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", 0xC0),
         ("MOV a X=-1000.01 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", 0xC1),
@@ -220,7 +220,7 @@ fn a_move_needs_origin_and_servo_power() {
 }
 
 #[test]
-fn stop_and_start_go_on_where_they_were() {
+fn a_start_after_a_stop_continues_the_move() {
     let steps = ["MOV i X=+0100.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "CNT+ CN01=0001", "END"];
     let mut bench = Bench::with(&steps, "");
     bench.ok("@SPST 0001");
@@ -245,7 +245,7 @@ fn stop_and_start_go_on_where_they_were() {
 }
 
 #[test]
-fn a_jog_in_between_does_not_shift_the_move() {
+fn a_jog_during_a_stop_does_not_shift_the_target() {
     let steps = ["MOV i X=+0100.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"];
     let mut bench = Bench::with(&steps, "");
     bench.ok("@SPST 0001");
@@ -283,7 +283,7 @@ fn an_emergency_stop_stops_at_once() {
 }
 
 #[test]
-fn the_origin_is_sought_axis_by_axis() {
+fn the_origin_return_moves_axis_by_axis() {
     let mut bench = Bench::new(
         "host = true\nposition = [20.0, 0.0, 10.0, 0.0]\naxes = 3\nwrite = [\"WPAR P06 AX1=+0005.00 AX2=+0000.00 AX3=+0000.00 AX4=+0000.00\"]",
     );
@@ -308,7 +308,7 @@ fn the_origin_is_sought_axis_by_axis() {
 }
 
 #[test]
-fn a_return_that_is_stopped_is_not_complete() {
+fn a_stopped_return_to_origin_is_not_complete() {
     let mut bench = Bench::ready("position = [100.0, 0.0, 0.0, 0.0]");
     bench.ok("@HOME");
     bench.pass(300);
@@ -333,7 +333,7 @@ fn a_return_that_is_stopped_is_not_complete() {
 }
 
 #[test]
-fn jog_is_reset_first_and_moves_one_axis() {
+fn a_jog_needs_a_reset_and_moves_one_axis() {
     let mut bench = Bench::ready("");
     bench.ng("@JGST X=+H Y=SP Z=SP R=SP", "not reset");
     bench.ok("@JGST X=RS Y=RS Z=RS R=RS");
@@ -356,7 +356,7 @@ fn jog_is_reset_first_and_moves_one_axis() {
 }
 
 #[test]
-fn jog_stops_when_the_host_goes() {
+fn a_jog_stops_when_the_host_goes_off() {
     for gone in ["@HSOF", "pendant on", "@STOP"] {
         let mut bench = Bench::ready("");
         bench.ok("@JGST X=RS Y=RS Z=RS R=RS");
@@ -373,7 +373,7 @@ fn jog_stops_when_the_host_goes() {
 }
 
 #[test]
-fn jog_gets_no_farther_than_the_soft_limit() {
+fn a_jog_stops_at_the_soft_limit() {
     let toml = "position = [990.0, 0.0, 0.0, 0.0]";
     let mut bench = Bench::ready(toml);
     bench.ok("@JGST X=RS Y=RS Z=RS R=RS");
@@ -418,7 +418,7 @@ fn an_escape_input_ends_a_move() {
 }
 
 #[test]
-fn outputs_follow_places() {
+fn position_outputs_follow_the_position() {
     let steps = [
         "OUTS TA=0 STN=0 PN01=.......1 X>=+0050.00",
         "OUTS TA=1 STN=0 PN01=......1. X<=+0010.00",
@@ -450,7 +450,7 @@ fn outputs_follow_places() {
 }
 
 #[test]
-fn things_in_the_way_are_noticed() {
+fn an_obstacle_causes_overflow_or_overload() {
     let mut bench = Bench::with(&[TO_100, "END"], "");
     bench.console("obstacle X 30");
     bench.ok("@SPST 0001");

@@ -7,7 +7,7 @@ const GROUP: &str = "points.1 = { 1 = [10.0, 10.0, 0.0, 0.0], 2 = [30.0, 10.0, 0
     \"WPAR T4 S3 GRP=02 P1=11 P2=12 P3=13\", \"WPAR T4 S4 GRP=02 i Z=+0050.00 R=+0001.00\", \"WPAR T4 S5 GRP=02 R=+0045.00\"]";
 
 #[test]
-fn groups_visit_every_place() {
+fn groups_visit_every_position() {
     let steps = [
         "MINI GRP=02",
         "TAG TAG=001",
@@ -74,7 +74,7 @@ const HANDS: [&str; 15] = [
 ];
 
 #[test]
-fn pallets_are_emptied_piece_by_piece() {
+fn palletizing_moves_all_pieces() {
     let mut bench = Bench::with(&HANDS, PALLET);
     assert_eq!(bench.page(2) & 0b11, 0b01);
     bench.ng("@SPST 0001", "sequential mode");
@@ -110,7 +110,7 @@ fn pallets_are_emptied_piece_by_piece() {
 }
 
 #[test]
-fn inputs_choose_the_pallet() {
+fn inputs_select_the_pallet() {
     let toml = PALLET.replace("write = [", "inputs = { \"0/01\" = \"00110000\" }\nwrite = [\"WPAR M06 0/01/5\", ");
     let mut bench = Bench::with(&HANDS, &toml);
     bench.ok("@PPST");
@@ -151,7 +151,7 @@ fn easy_programs_repeat() {
 }
 
 #[test]
-fn external_points_are_moved_to() {
+fn external_point_mode_moves_to_the_point() {
     let toml = "points = { 1 = { 7 = [70.0, 7.0, 0.0, 0.0], 8 = [9999.0, 0.0, 0.0, 0.0] } }\nwrite = [\"WPAR M10 P\"]";
     let toml = toml.replace("9999.0", "7999.0");
     let mut bench = Bench::ready(&toml);

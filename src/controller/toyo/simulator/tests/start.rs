@@ -7,7 +7,7 @@ use super::Bench;
 use crate::toyo::request::instruction;
 
 #[test]
-fn the_example_is_a_start_state() {
+fn the_example_is_a_valid_start_state() {
     let mut bench = Bench::new(EXAMPLE);
     assert_eq!((bench.page(1), bench.counter(1), bench.port(2)), (0x13, 7, 0x80));
     assert_eq!(bench.ask("@RPAR T2 V05"), "@RPAR T2 V05=0200.0");
@@ -18,7 +18,7 @@ fn the_example_is_a_start_state() {
 }
 
 #[test]
-fn every_key_of_the_example_is_explained_by_its_mistake() {
+fn a_wrong_value_of_each_key_has_a_clear_error() {
     for (toml, what) in [
         ("modell = 1", "line 1: unknown field"),
         ("axes = 5", "line 1: axes must be from 1 to 4"),
@@ -63,7 +63,7 @@ fn programs_and_writes_can_be_added() {
 }
 
 #[test]
-fn events_happen_in_their_time() {
+fn events_happen_at_their_times() {
     let mut bench = Bench::new(
         "[[event]]\nat_ms = 2000\ndo = \"input 0/01/1 off\"\n[[event]]\nat_ms = 1000\ndo = \"input 0/01/1 on\"",
     );
@@ -80,7 +80,7 @@ fn events_happen_in_their_time() {
 }
 
 #[test]
-fn the_console_tells_how_it_is() {
+fn the_console_shows_the_state() {
     let mut bench = Bench::with(&["OUT STN=0 PN01=.......1", "END"], "");
     bench.run();
     assert_eq!(

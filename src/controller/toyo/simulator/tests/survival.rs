@@ -94,7 +94,7 @@ fn any_program_runs_or_ends_with_an_error() {
 
 /// The result does not depend on the step size of time.
 #[test]
-fn pieces_of_time_do_not_matter() {
+fn the_length_of_time_slices_does_not_matter() {
     let mut random = fastrand::Rng::with_seed(5);
     for _ in 0..40 {
         let mut start = Start::parse("host = true\norigin = true").unwrap();

@@ -3,7 +3,7 @@
 use super::{Bench, What};
 
 #[test]
-fn tasks_run_beside_each_other() {
+fn tasks_run_in_parallel() {
     let mut bench = Bench::with(
         &["TSTR TASK=02", "TSTR TASK=03", "TIM TM=001.0", "CNT CN01=0001", "END"],
         "steps.2 = [\"TIM TM=003.0\", \"CNT CN02=0002\", \"END\"]\nsteps.3 = [\"CNT CN03=0003\", \"END\"]",
@@ -32,7 +32,7 @@ fn tasks_move_their_own_axes() {
 }
 
 #[test]
-fn tasks_are_stopped_go_on_and_are_cancelled() {
+fn tasks_can_be_stopped_continued_and_cancelled() {
     let toml = "steps.2 = [\"TAG TAG=001\", \"CNT+ CN02=0001\", \"TIM TM=000.1\", \"JMP TAG=001\"]";
     let mut bench = Bench::with(
         &[
@@ -59,7 +59,7 @@ fn tasks_are_stopped_go_on_and_are_cancelled() {
 }
 
 #[test]
-fn a_task_starts_once() {
+fn a_running_task_is_not_started_again() {
     let toml = "steps.2 = [\"TIM TM=001.0\", \"END\"]";
     let mut bench = Bench::with(&["TSTR TASK=02", "TSTR TASK=02", "END"], toml);
     bench.run();
@@ -70,7 +70,7 @@ fn a_task_starts_once() {
 }
 
 #[test]
-fn a_move_of_another_task_goes_on_after_a_stop() {
+fn a_move_of_another_task_continues_after_a_stop() {
     let toml = "write = [\"WPAR E19 1100\"]\naxes = 2\n\
         steps.2 = [\"MOV i X=+0000.00 Y=+0100.00 Z=+0000.00 R=+0000.00 S V=05 POST\", \"CNT CN02=0001\", \"END\"]";
     let mut bench =
@@ -85,7 +85,7 @@ fn a_move_of_another_task_goes_on_after_a_stop() {
 }
 
 #[test]
-fn a_return_to_origin_of_another_task_is_done_anew() {
+fn a_stopped_return_to_origin_of_another_task_starts_again() {
     let toml = "write = [\"WPAR E19 1100\"]\naxes = 2\nposition = [0.0, 50.0, 0.0, 0.0]\nsteps.2 = [\"HOME\", \"CNT CN02=0001\", \"END\"]";
     let steps = ["TSTR TASK=02", "TIM TM=000.3", "TSTO TASK=02", "TIM TM=001.0", "TRSA TASK=02", "END"];
     let mut bench = Bench::with(&steps, toml);
@@ -98,7 +98,7 @@ fn a_return_to_origin_of_another_task_is_done_anew() {
 }
 
 #[test]
-fn step_mode_does_one_step_at_a_time() {
+fn step_mode_executes_one_step_at_each_start() {
     let mut bench = Bench::with(&["CNT CN01=0001", "CNT CN01=0002", "END"], "mode = \"step\"");
     bench.run();
     assert_eq!((bench.counter(1), bench.page(0), bench.page(2)), (1, 0b0011_0100, 0b1000_0100));
@@ -130,7 +130,7 @@ fn single_operation_stops_after_every_move() {
 }
 
 #[test]
-fn the_pause_input_holds_and_lets_go() {
+fn the_pause_input_holds_and_releases() {
     let steps = ["MOV a X=+0100.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "CNT CN01=0001", "END"];
     let mut bench = Bench::with(&steps, "write = [\"WPAR M04 0/01/1\", \"WPAR M07 0/02/1\", \"WPAR M13 0/02/2\"]");
     assert_eq!(bench.port(2), 0b10, "ready");
@@ -147,7 +147,7 @@ fn the_pause_input_holds_and_lets_go() {
 }
 
 #[test]
-fn the_continuous_input_begins_again() {
+fn the_continuous_input_restarts_the_program() {
     let mut bench = Bench::with(
         &["CNT+ CN01=0001", "TIM TM=001.0", "END"],
         "write = [\"WPAR M02 0/01/1\"]\ninputs = { \"0/01\" = \"00000001\" }",
@@ -161,7 +161,7 @@ fn the_continuous_input_begins_again() {
 }
 
 #[test]
-fn after_an_error_the_first_task_can_go_on() {
+fn after_an_error_the_first_task_can_continue() {
     let mut bench = Bench::with(&["CNT CN01=0001", "JMP TAG=001", "END"], "steps.2 = [\"TIM TM=100.0\", \"END\"]");
     bench.run();
     assert_eq!((bench.error(), bench.page(0), bench.page(1)), (Some(0xA1), 0b0011_0001, 0xA1));
@@ -176,7 +176,7 @@ fn after_an_error_the_first_task_can_go_on() {
 }
 
 #[test]
-fn reset_begins_anew() {
+fn reset_returns_to_the_first_step() {
     let mut bench = Bench::with(&["OUT STN=0 PN01=.......1", "STOP", "END"], "write = [\"WPAR M11 E\"]");
     bench.run();
     assert_eq!(bench.port(1), 1);
@@ -192,7 +192,7 @@ fn reset_begins_anew() {
 }
 
 #[test]
-fn a_search_moves_the_current_step() {
+fn a_tag_search_changes_the_current_step() {
     let mut bench = Bench::with(&["END", "NOP", "TAG TAG=020", "CNT CN01=0001", "END"], "");
     bench.ok("@SSTG TAG=020");
     assert_eq!(bench.ask("@RSTX 0000"), "@RSTX 0003 TAG TAG=020");
@@ -203,7 +203,7 @@ fn a_search_moves_the_current_step() {
 }
 
 #[test]
-fn the_trace_tells_what_happened() {
+fn the_trace_contains_all_events() {
     let mut bench = Bench::with(
         &["OUT STN=0 PN01=......1.", "MOV a X=+0010.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"],
         "",

@@ -102,7 +102,7 @@ fn the_program_of_the_first_session_moves_and_switches() {
 }
 
 #[test]
-fn the_second_session_jogs_to_a_place() {
+fn the_second_session_jogs_to_a_position() {
     let mut bench = Bench::new("origin = true");
     let steps = transcripts()["sessions"][1]["steps"].as_array().unwrap().clone();
     for step in &steps {

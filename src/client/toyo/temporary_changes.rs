@@ -9,15 +9,15 @@ use crate::{Grant, Reason};
 
 /// State of host control (host ON / OFF).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Host {
+pub(super) enum HostState {
     /// Not read yet.
     Unknown,
     /// The host was ON already.
-    Found,
+    AlreadyOn,
     /// This client switched the host ON, and must switch it OFF at its end.
-    Taken,
+    SwitchedOn,
     /// Dry run: the host state is read and the host switched ON only if an earlier answer requires it.
-    Perhaps,
+    Unclear,
 }
 
 /// `depends_on` of the order that switches the host ON.
@@ -39,12 +39,12 @@ impl Client {
             self.plan_to_take_host(None);
             return Ok(());
         }
-        if self.host != Host::Unknown {
+        if self.host != HostState::Unknown {
             return Ok(());
         }
         let status = self.status_of(&[HOST_PAGE]).await?;
         if status.host_on() {
-            self.host = Host::Found;
+            self.host = HostState::AlreadyOn;
             return Ok(());
         }
         if status.pendant_on() {
@@ -52,13 +52,13 @@ impl Client {
         }
         let order = Request::bare(Command::Hson);
         grant.check(order.risk(), &order.text())?;
-        self.watcher.event(Event::TakesHost(true));
+        self.watcher.event(Event::HostSwitch(true));
         let answer = match self.transact(&order, false).await {
             // The host status shows whether the order was carried out.
             Err(error @ Error::OutcomeUnknown(_)) => match self.is_host_on().await {
                 Ok(true) => Answer::Done,
                 Ok(false) => {
-                    self.watcher.event(Event::TakesHost(false));
+                    self.watcher.event(Event::HostSwitch(false));
                     return Err(Error::NotSent(Box::new(error)));
                 }
                 Err(_) => return Err(error),
@@ -67,11 +67,11 @@ impl Client {
         };
         match answer {
             Answer::Refused => {
-                self.watcher.event(Event::TakesHost(false));
+                self.watcher.event(Event::HostSwitch(false));
                 Err(Error::PendantOn)
             }
             Answer::Done | Answer::Data(_) => {
-                self.host = Host::Taken;
+                self.host = HostState::SwitchedOn;
                 Ok(())
             }
         }
@@ -79,16 +79,16 @@ impl Client {
 
     /// Plans the host switch of a dry run; `on` is the earlier answer that decides whether it is sent.
     pub(super) fn plan_to_take_host(&mut self, on: Option<&str>) {
-        let asked = Reason::about("whether the host is ON");
-        let asked = match (self.host, on) {
-            (Host::Taken | Host::Found, _) => return,
-            (_, Some(on)) => asked.depending_on(on),
-            (Host::Perhaps, None) => asked.depending_on("whether the host state was read before"),
-            (Host::Unknown, None) => asked,
+        let host_read = Reason::about("whether the host is ON");
+        let host_read = match (self.host, on) {
+            (HostState::SwitchedOn | HostState::AlreadyOn, _) => return,
+            (_, Some(on)) => host_read.depending_on(on),
+            (HostState::Unclear, None) => host_read.depending_on("whether the host state was read before"),
+            (HostState::Unknown, None) => host_read,
         };
-        self.note(&status_page(HOST_PAGE), asked);
+        self.note(&status_page(HOST_PAGE), host_read);
         self.note(&Request::bare(Command::Hson), Reason::default().depending_on(HOST));
-        self.host = if on.is_some() { Host::Perhaps } else { Host::Taken };
+        self.host = if on.is_some() { HostState::Unclear } else { HostState::SwitchedOn };
     }
 
     /// Plans a temporary change. `back` is the block that undoes it, with `?` for the value found.
@@ -96,20 +96,20 @@ impl Client {
         self.plan_to_take_host(Some(on));
         self.fence().await?;
         self.plan_if(change, on);
-        self.owed.push(back.to_owned());
+        self.planned_undo_blocks.push(back.to_owned());
         Ok(())
     }
 
     /// Makes a temporary change. `back` undoes it, in [`Client::put_back`] or when the client ends.
     pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Error> {
         // Recorded before sending: if the answer is lost, the change may have been made.
-        self.watcher.event(Event::Borrows(back.clone()));
-        self.borrowed.push(back);
+        self.watcher.event(Event::TemporaryChange(back.clone()));
+        self.undo_requests.push(back);
         match self.try_ask(change).await? {
             Ok(_) => Ok(()),
             Err(refusal) => {
-                if let Some(back) = self.borrowed.pop() {
-                    self.watcher.event(Event::PutBack(back));
+                if let Some(back) = self.undo_requests.pop() {
+                    self.watcher.event(Event::Undone(back));
                 }
                 Err(refusal.into())
             }
@@ -120,20 +120,20 @@ impl Client {
     /// first one is returned.
     ///
     /// # Errors
-    /// [`Error::NotPutBack`].
+    /// [`Error::NotUndone`].
     pub async fn put_back(&mut self) -> Result<(), Error> {
         self.plan_put_back();
         let mut outcome = Ok(());
-        while let Some(back) = self.borrowed.pop() {
-            if self.is_gone {
-                self.watcher.event(Event::NotPutBack(back));
+        while let Some(back) = self.undo_requests.pop() {
+            if self.is_line_lost {
+                self.watcher.event(Event::NotUndone(back));
                 continue;
             }
             outcome = outcome.and(self.fence_at_end().await);
             let block = back.text();
-            match undone(self.transact(&back, true).await) {
-                Ok(()) => self.watcher.event(Event::PutBack(back)),
-                Err(cause) => outcome = outcome.and(Err(Error::NotPutBack { block, cause })),
+            match undo_result(self.transact(&back, true).await) {
+                Ok(()) => self.watcher.event(Event::Undone(back)),
+                Err(cause) => outcome = outcome.and(Err(Error::NotUndone { block, cause })),
             }
         }
         outcome
@@ -141,34 +141,34 @@ impl Client {
 
     /// Leaves the host ON when the client ends, as the user requested.
     pub fn keep_host(&mut self) {
-        self.host = Host::Found;
+        self.host = HostState::AlreadyOn;
     }
 
     /// Switches the host OFF again if this client switched it ON, without a check of the grant.
     ///
     /// # Errors
-    /// [`Error::HostKept`].
+    /// [`Error::HostNotReleased`].
     pub async fn give_back(&mut self) -> Result<(), Error> {
-        if self.host != Host::Taken || self.is_dry() || self.is_gone {
+        if self.host != HostState::SwitchedOn || self.is_dry() || self.is_line_lost {
             return Ok(());
         }
-        self.host = Host::Unknown;
+        self.host = HostState::Unknown;
         let fenced = self.fence_at_end().await;
         let answer = match self.transact(&Request::bare(Command::Hsof), false).await {
-            // The status tells what became of it.
+            // The status shows whether the order was executed.
             Err(Error::OutcomeUnknown(_)) if matches!(self.is_host_on().await, Ok(false)) => Ok(Answer::Done),
             answer => answer,
         };
-        undone(answer).map_err(Error::HostKept)?;
-        self.watcher.event(Event::TakesHost(false));
+        undo_result(answer).map_err(Error::HostNotReleased)?;
+        self.watcher.event(Event::HostSwitch(false));
         fenced
     }
 
-    /// Whether the host is ON after an order of this client to switch it. The watcher is not told of another host.
+    /// Whether the host is ON after an order of this client to switch it. The watcher gets no event of a foreign host.
     async fn is_host_on(&mut self) -> Result<bool, Error> {
-        let before = std::mem::replace(&mut self.host, Host::Taken);
+        let old = std::mem::replace(&mut self.host, HostState::SwitchedOn);
         let status = self.status_of(&[HOST_PAGE]).await;
-        self.host = before;
+        self.host = old;
         Ok(status?.host_on())
     }
 
@@ -182,7 +182,7 @@ impl Client {
     }
 
     fn plan_put_back(&mut self) {
-        while let Some(back) = self.owed.pop() {
+        while let Some(back) = self.planned_undo_blocks.pop() {
             self.plan_fence();
             let reason = Reason::about("restore the earlier setting");
             self.plan_depending(&back, reason.depending_on("the earlier setting"));
@@ -191,17 +191,17 @@ impl Client {
 
     pub(super) fn plan_end(&mut self) {
         self.plan_put_back();
-        if !self.is_dry() || !matches!(self.host, Host::Taken | Host::Perhaps) {
+        if !self.is_dry() || !matches!(self.host, HostState::SwitchedOn | HostState::Unclear) {
             return;
         }
-        self.host = Host::Unknown;
+        self.host = HostState::Unknown;
         self.plan_fence();
         self.note(&Request::bare(Command::Hsof), Reason::default().depending_on(HOST));
     }
 }
 
 /// Result of an undo request. The error is `None` if the controller refused.
-fn undone(answer: Result<Answer, Error>) -> Result<(), Option<Box<Error>>> {
+fn undo_result(answer: Result<Answer, Error>) -> Result<(), Option<Box<Error>>> {
     match answer {
         Ok(Answer::Refused) => Err(None),
         Ok(Answer::Done | Answer::Data(_)) => Ok(()),
@@ -210,6 +210,6 @@ fn undone(answer: Result<Answer, Error>) -> Result<(), Option<Box<Error>>> {
 }
 
 /// Whether the host must be ON. Only reads certainly work without it (ambiguity C14). A stop must not wait for it.
-pub(super) fn wants_host(request: &Request) -> bool {
+pub(super) fn needs_host(request: &Request) -> bool {
     request.risk() > Risk::Read && !matches!(request.command(), Command::Hson | Command::Hsof | Command::Stop)
 }

@@ -21,16 +21,16 @@ use crate::output::Screen;
 use crate::output::progress::Progress;
 
 /// Interval between two reads of the status.
-pub(super) const LOOK_EVERY: Duration = Duration::from_millis(100);
+pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Time limit for the controller to show that accepted work began. Work that was not visible by then ended before the
 /// first read.
-const BEGIN_WITHIN: Duration = Duration::from_secs(1);
+const START_TIMEOUT: Duration = Duration::from_secs(1);
 /// Number of status reads between two reads of the current step and of its wait condition.
-const STEP_EVERY: u32 = 5;
+const READS_PER_STEP_READ: u32 = 5;
 /// Limit of refused reads in a row: two seconds of a busy controller.
-const MOST_REFUSED: u32 = 20;
+const MAX_REFUSALS: u32 = 20;
 /// Number of reads for the axes to come to rest: two seconds.
-const LOOKS_TO_REST: u32 = 20;
+const MAX_READS_TO_REST: u32 = 20;
 
 /// Type of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +47,7 @@ pub(super) enum Work {
 
 /// Accepted work of the controller.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Accepted {
+pub(super) struct AcceptedWork {
     /// Type of work.
     pub work: Work,
     /// Command that started it.
@@ -69,7 +69,7 @@ pub(super) struct End {
     pub is_paused: bool,
 }
 
-impl Accepted {
+impl AcceptedWork {
     /// Waits for the end. Progress shows the letters of the axes. A dry run records the requests.
     ///
     /// # Errors
@@ -79,35 +79,35 @@ impl Accepted {
             self.plan(link);
             return Err(unknown());
         }
-        let mut teller = Teller::new(self.doing, screen);
+        let mut reporter = ProgressReporter::new(self.doing, screen);
         let began = Instant::now();
-        let mut watch = Watch::new(self.work);
-        let (mut looks, mut refused) = (0_u32, 0);
+        let mut work_state = WorkState::new(self.work);
+        let (mut reads, mut refusals) = (0_u32, 0);
         loop {
-            let next = Instant::now() + LOOK_EVERY;
-            looks = looks.wrapping_add(1);
-            match self.look(link, &mut teller, looks.is_multiple_of(STEP_EVERY)).await {
+            let next = Instant::now() + POLL_INTERVAL;
+            reads = reads.wrapping_add(1);
+            match self.read_state(link, &mut reporter, reads.is_multiple_of(READS_PER_STEP_READ)).await {
                 Ok((status, record)) => {
-                    refused = 0;
+                    refusals = 0;
                     let place = record.as_ref().map(|record| Coordinates::of(record, letters));
-                    match watch.look(began.elapsed(), status, record) {
+                    match work_state.evaluate(began.elapsed(), status, record) {
                         // Until then, the status can be that of the time before the start.
-                        Look::Running if !watch.seen => {}
-                        Look::Running => teller.tell(status, place),
-                        Look::Ended => {
-                            link.has_ended();
+                        WorkEvent::Running if !work_state.has_started => {}
+                        WorkEvent::Running => reporter.report(status, place),
+                        WorkEvent::Ended => {
+                            link.end_motion();
                             let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
-                            let elapsed_ms = watch.seen.then_some(elapsed_ms);
+                            let elapsed_ms = work_state.has_started.then_some(elapsed_ms);
                             return Ok(End { place, elapsed_ms, is_paused: status.paused() });
                         }
-                        Look::Failed(trouble) => {
-                            let place = resting_place(link, place, letters).await;
-                            link.has_ended();
-                            return Err(self.failed(link, trouble, place).await);
+                        WorkEvent::Failed(reason) => {
+                            let place = wait_for_rest(link, place, letters).await;
+                            link.end_motion();
+                            return Err(self.failed(link, reason, place).await);
                         }
                     }
                 }
-                Err(failure) if failure.kind == Kind::Refused && refused < MOST_REFUSED => refused += 1,
+                Err(failure) if failure.kind == Kind::Refused && refusals < MAX_REFUSALS => refusals += 1,
                 Err(failure) => return Err(self.lost(failure)),
             }
             tokio::time::sleep_until(next).await;
@@ -115,19 +115,19 @@ impl Accepted {
     }
 
     /// Reads status and position, and at intervals the step and its wait condition.
-    async fn look(
+    async fn read_state(
         self,
         link: &mut Link,
-        teller: &mut Teller,
+        reporter: &mut ProgressReporter,
         is_thorough: bool,
     ) -> Result<(Status, Option<Record>), Failure> {
         let status = link.status_of(self.pages()).await?;
         if status.paused() || (is_thorough && self.work == Work::Program) {
-            teller.inputs = link.status_of(&[4]).await?.inputs;
-            teller.step = step(link).await?.map_or(String::new(), |(number, text)| format!("step {number} {text}"));
+            reporter.inputs = link.status_of(&[4]).await?.inputs;
+            reporter.step = step(link).await?.map_or(String::new(), |(number, text)| format!("step {number} {text}"));
         }
-        let place = if self.work == Work::Card { None } else { Some(link.place().await?) };
-        Ok((Status { inputs: teller.inputs, ..status }, place))
+        let place = if self.work == Work::Card { None } else { Some(link.read_position().await?) };
+        Ok((Status { inputs: reporter.inputs, ..status }, place))
     }
 
     /// The page of errors is read last, so that an error that ends the work is not missed.
@@ -140,7 +140,7 @@ impl Accepted {
             link.plan(&status_page(*page), "every 100 ms until it has ended");
         }
         if self.work != Work::Card {
-            link.plan(&position(), "every 100 ms until it has ended: position of the axes");
+            link.plan(&position_request(), "every 100 ms until it has ended: position of the axes");
         }
         if self.work == Work::Program {
             let about =
@@ -153,16 +153,18 @@ impl Accepted {
     }
 
     /// Failure for work that did not complete.
-    async fn failed(self, link: &mut Link, trouble: WaitFailure, place: Option<Coordinates>) -> Failure {
-        let place = place.map(|place| format!("; it is at {}", place.in_a_line())).unwrap_or_default();
-        let tell = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{place}", self.done));
-        match trouble {
-            WaitFailure::Error => present_error(link, &tell).await,
-            WaitFailure::NoOrigin => tell("it ended without the origin")
+    async fn failed(self, link: &mut Link, reason: WaitFailure, place: Option<Coordinates>) -> Failure {
+        let place = place.map(|place| format!("; the axes are at {}", place.in_a_line())).unwrap_or_default();
+        let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{place}", self.done));
+        match reason {
+            WaitFailure::Error => explain_present_error(link, &fail).await,
+            WaitFailure::NoOrigin => fail("it ended without the origin")
                 .hint("check the machine: it was stopped without an error. Then repeat `toyo home`"),
-            WaitFailure::NotSeen => Failure { kind: Kind::OutcomeUnknown, ..tell("the status did not show it") }
-                .hint("check `toyo status` and the robot: it ended at once, or it did not begin"),
-            WaitFailure::NotBegun => tell("the status did not show its start")
+            WaitFailure::NeverStarted => {
+                Failure { kind: Kind::OutcomeUnknown, ..fail("the status never showed execution") }
+                    .hint("check `toyo status` and the robot: it ended at once, or it did not begin")
+            }
+            WaitFailure::NoStart => fail("the status did not show the start")
                 .hint("keep clear, because it can still begin; check `toyo status` and the teach pendant"),
         }
     }
@@ -176,31 +178,31 @@ impl Accepted {
 }
 
 /// Failure for the present error, in the words of `tell`.
-pub(super) async fn present_error(link: &mut Link, tell: &impl Fn(&str) -> Failure) -> Failure {
+pub(super) async fn explain_present_error(link: &mut Link, fail: &impl Fn(&str) -> Failure) -> Failure {
     match link.status_of(&[1]).await {
         Ok(Status { error: errors::NONE, .. }) => {
-            tell("an error occurred and was cancelled").hint("`toyo alarm history` can show the error")
+            fail("an error occurred and was cancelled").hint("`toyo alarm history` can show the error")
         }
         Ok(Status { error: code, .. }) => {
             let error = errors::explain(code);
-            tell(&format!("an error occurred ({})", error.in_a_line()))
+            fail(&format!("an error occurred ({})", error.in_a_line()))
                 .hint(refusal::cure(error.remedy))
                 .code(format!("{code:02X}"))
         }
-        Err(failure) => tell(&format!("an error occurred, but its code could not be read: {}", failure.message))
+        Err(failure) => fail(&format!("an error occurred, but its code could not be read: {}", failure.message))
             .hint("`toyo alarm list` shows the error"),
     }
 }
 
 /// Position of rest of axes that are being stopped; the last position if it cannot be read.
-async fn resting_place(link: &mut Link, seen: Option<Coordinates>, letters: Letters) -> Option<Coordinates> {
-    let mut last = seen?;
-    for _ in 0..LOOKS_TO_REST {
-        tokio::time::sleep(LOOK_EVERY).await;
-        let Ok(record) = link.place().await else { break };
-        let here = Coordinates::of(&record, letters);
-        let is_at_rest = here == last;
-        last = here;
+async fn wait_for_rest(link: &mut Link, last_position: Option<Coordinates>, letters: Letters) -> Option<Coordinates> {
+    let mut last = last_position?;
+    for _ in 0..MAX_READS_TO_REST {
+        tokio::time::sleep(POLL_INTERVAL).await;
+        let Ok(record) = link.read_position().await else { break };
+        let current = Coordinates::of(&record, letters);
+        let is_at_rest = current == last;
+        last = current;
         if is_at_rest {
             break;
         }
@@ -216,37 +218,37 @@ pub(super) async fn step(link: &mut Link) -> Result<Option<(i32, String)>, Failu
 }
 
 /// Whether the status reaches the commanded state within a second. A dry run records the request.
-pub(super) async fn becomes(
+pub(super) async fn wait_for_status(
     link: &mut Link,
     (page, about): (u8, &str),
-    is_so: impl Fn(Status) -> bool,
+    condition: impl Fn(Status) -> bool,
 ) -> Result<bool, Failure> {
     if link.is_dry() {
         link.plan(&status_page(page), &format!("every 100 ms, at most 1s: {about}"));
         return Err(unknown());
     }
-    let until = Instant::now() + BEGIN_WITHIN;
+    let until = Instant::now() + START_TIMEOUT;
     loop {
         let is_late = Instant::now() >= until;
         match link.status_of(&[page]).await {
-            Ok(status) if is_so(status) => return Ok(true),
+            Ok(status) if condition(status) => return Ok(true),
             Ok(_) if is_late => return Ok(false),
             Err(failure) if is_late || failure.kind != Kind::Refused => {
                 let message = format!("the command was accepted, but its result is unknown: {}", failure.message);
                 return Err(Failure { kind: Kind::OutcomeUnknown, message, ..failure }
                     .hint("`toyo status` shows the state of the controller"));
             }
-            _ => tokio::time::sleep(LOOK_EVERY).await,
+            _ => tokio::time::sleep(POLL_INTERVAL).await,
         }
     }
 }
 
-pub(super) fn position() -> Request {
+pub(super) fn position_request() -> Request {
     Request::bare(Command::Mpst)
 }
 
 /// Progress output: continuous on a terminal, otherwise only when the work halts.
-struct Teller {
+struct ProgressReporter {
     doing: &'static str,
     progress: Progress,
     screen: Screen,
@@ -256,13 +258,13 @@ struct Teller {
     halted: Option<&'static str>,
 }
 
-impl Teller {
+impl ProgressReporter {
     fn new(doing: &'static str, screen: &Screen) -> Self {
         let (progress, step) = (screen.spinner(doing), String::new());
         Self { doing, progress, screen: *screen, inputs: 0, step, halted: None }
     }
 
-    fn tell(&mut self, status: Status, place: Option<Coordinates>) {
+    fn report(&mut self, status: Status, place: Option<Coordinates>) {
         let halted = match (status.paused(), status.waits_for_input()) {
             (true, _) => Some("paused"),
             (_, true) => Some("waiting for an input"),
@@ -281,15 +283,16 @@ impl Teller {
 
 /// State of the watched work from its acceptance to its end.
 #[derive(Debug)]
-struct Watch {
+struct WorkState {
     work: Work,
-    seen: bool,
+    /// Whether the status has shown the work.
+    has_started: bool,
     last: Option<Record>,
 }
 
 /// Result of one read.
 #[derive(Debug, PartialEq, Eq)]
-enum Look {
+enum WorkEvent {
     /// The work continues.
     Running,
     /// The work has ended.
@@ -306,23 +309,23 @@ enum WaitFailure {
     /// The return to origin has ended, and the origin is unknown.
     NoOrigin,
     /// The status did not show a start.
-    NotBegun,
+    NoStart,
     /// The status did not show the work; it can have ended before the first read.
-    NotSeen,
+    NeverStarted,
 }
 
-impl Watch {
+impl WorkState {
     fn new(work: Work) -> Self {
-        Self { work, seen: false, last: None }
+        Self { work, has_started: false, last: None }
     }
 
     /// Evaluates one read. The position was read after the status, so it is final once the status shows no execution.
     /// The start can appear late, and short work may not appear at all.
-    fn look(&mut self, elapsed: Duration, status: Status, place: Option<Record>) -> Look {
+    fn evaluate(&mut self, elapsed: Duration, status: Status, place: Option<Record>) -> WorkEvent {
         let moves = self.last.is_some() && self.last != place;
         self.last = place;
         if status.has_error() {
-            return Look::Failed(WaitFailure::Error);
+            return WorkEvent::Failed(WaitFailure::Error);
         }
         let busy = match self.work {
             Work::Card => status.card_reading() || status.card_writing(),
@@ -330,17 +333,17 @@ impl Watch {
         };
         // A pause by an input ends by itself; a stop does not.
         if busy || (status.paused() && status.pause_input()) {
-            self.seen = true;
-            return Look::Running;
+            self.has_started = true;
+            return WorkEvent::Running;
         }
-        let is_over = self.seen || elapsed >= BEGIN_WITHIN;
-        match (self.work, self.seen) {
-            _ if !is_over => Look::Running,
-            (Work::Home, true) if !status.homed() => Look::Failed(WaitFailure::NoOrigin),
-            (Work::Home, false) if !status.homed() => Look::Failed(WaitFailure::NotBegun),
+        let is_over = self.has_started || elapsed >= START_TIMEOUT;
+        match (self.work, self.has_started) {
+            _ if !is_over => WorkEvent::Running,
+            (Work::Home, true) if !status.homed() => WorkEvent::Failed(WaitFailure::NoOrigin),
+            (Work::Home, false) if !status.homed() => WorkEvent::Failed(WaitFailure::NoStart),
             // A program that is paused at a stop has run.
-            (Work::Program, false) if !status.paused() => Look::Failed(WaitFailure::NotSeen),
-            _ => Look::Ended,
+            (Work::Program, false) if !status.paused() => WorkEvent::Failed(WaitFailure::NeverStarted),
+            _ => WorkEvent::Ended,
         }
     }
 }
@@ -362,74 +365,93 @@ mod tests {
         Status::default().with(0, state)
     }
 
-    fn looks<const N: usize>(work: Work, looks: [(u64, Status, i32); N]) -> Look {
-        let mut watch = Watch::new(work);
-        let looks = looks.map(|(ms, status, place)| watch.look(Duration::from_millis(ms), status, Some(at(place))));
-        let [before @ .., last] = &looks[..] else { panic!("one look at least") };
-        assert!(before.iter().all(|look| *look == Look::Running), "{looks:?}");
+    fn evaluate_reads<const N: usize>(work: Work, reads: [(u64, Status, i32); N]) -> WorkEvent {
+        let mut work_state = WorkState::new(work);
+        let events =
+            reads.map(|(ms, status, place)| work_state.evaluate(Duration::from_millis(ms), status, Some(at(place))));
+        let [earlier @ .., last] = &events[..] else { panic!("one read at least") };
+        assert!(earlier.iter().all(|event| *event == WorkEvent::Running), "{events:?}");
         match last {
-            Look::Running => Look::Running,
-            Look::Ended => Look::Ended,
-            Look::Failed(trouble) => Look::Failed(*trouble),
+            WorkEvent::Running => WorkEvent::Running,
+            WorkEvent::Ended => WorkEvent::Ended,
+            WorkEvent::Failed(reason) => WorkEvent::Failed(*reason),
         }
     }
 
     #[test]
-    fn a_start_may_show_late() {
+    fn a_late_start_is_awaited() {
         let (idle, runs) = (page0(IDLE), page0(RUNS));
         assert_eq!(
-            looks(Work::Program, [(0, idle, 0), (900, idle, 0), (950, runs, 0), (999_999, runs, 0)]),
-            Look::Running
+            evaluate_reads(Work::Program, [(0, idle, 0), (900, idle, 0), (950, runs, 0), (999_999, runs, 0)]),
+            WorkEvent::Running
         );
-        assert_eq!(looks(Work::Program, [(0, idle, 0), (100, runs, 0), (200, idle, 0)]), Look::Ended);
-        assert_eq!(looks(Work::Program, [(0, idle, 0), (999, idle, 0)]), Look::Running);
+        assert_eq!(evaluate_reads(Work::Program, [(0, idle, 0), (100, runs, 0), (200, idle, 0)]), WorkEvent::Ended);
+        assert_eq!(evaluate_reads(Work::Program, [(0, idle, 0), (999, idle, 0)]), WorkEvent::Running);
     }
 
     #[test]
-    fn what_was_never_seen_has_not_ended() {
+    fn work_that_never_appeared_is_not_an_end() {
         let idle = page0(IDLE);
-        assert_eq!(looks(Work::Program, [(0, idle, 0), (1000, idle, 0)]), Look::Failed(WaitFailure::NotSeen));
-        assert_eq!(looks(Work::Home, [(0, idle, 0), (1000, idle, 0)]), Look::Ended);
         assert_eq!(
-            looks(Work::Home, [(0, page0(0x20), 0), (1000, page0(0x20), 0)]),
-            Look::Failed(WaitFailure::NotBegun)
+            evaluate_reads(Work::Program, [(0, idle, 0), (1000, idle, 0)]),
+            WorkEvent::Failed(WaitFailure::NeverStarted)
+        );
+        assert_eq!(evaluate_reads(Work::Home, [(0, idle, 0), (1000, idle, 0)]), WorkEvent::Ended);
+        assert_eq!(
+            evaluate_reads(Work::Home, [(0, page0(0x20), 0), (1000, page0(0x20), 0)]),
+            WorkEvent::Failed(WaitFailure::NoStart)
         );
     }
 
     #[test]
-    fn axes_that_move_are_not_at_the_end_whatever_the_bits_say() {
+    fn moving_axes_count_as_running() {
         let idle = page0(IDLE);
-        assert_eq!(looks(Work::Search, [(0, idle, 0), (100, idle, 5), (5000, idle, 6)]), Look::Running);
-        assert_eq!(looks(Work::Search, [(0, idle, 0), (100, idle, 5), (200, idle, 5)]), Look::Ended);
+        assert_eq!(evaluate_reads(Work::Search, [(0, idle, 0), (100, idle, 5), (5000, idle, 6)]), WorkEvent::Running);
+        assert_eq!(evaluate_reads(Work::Search, [(0, idle, 0), (100, idle, 5), (200, idle, 5)]), WorkEvent::Ended);
     }
 
     #[test]
     fn a_return_to_origin_ends_with_the_origin() {
         let homing = page0(0x0A);
-        assert_eq!(looks(Work::Home, [(0, homing, 0), (100, page0(0x30), 1), (200, page0(0x30), 1)]), Look::Ended);
-        assert_eq!(looks(Work::Home, [(0, homing, 0), (100, page0(0x20), 0)]), Look::Failed(WaitFailure::NoOrigin));
-    }
-
-    #[test]
-    fn an_error_ends_the_waiting() {
         assert_eq!(
-            looks(Work::Program, [(0, page0(RUNS), 0), (100, page0(RUNS | 1), 0)]),
-            Look::Failed(WaitFailure::Error)
+            evaluate_reads(Work::Home, [(0, homing, 0), (100, page0(0x30), 1), (200, page0(0x30), 1)]),
+            WorkEvent::Ended
+        );
+        assert_eq!(
+            evaluate_reads(Work::Home, [(0, homing, 0), (100, page0(0x20), 0)]),
+            WorkEvent::Failed(WaitFailure::NoOrigin)
         );
     }
 
     #[test]
-    fn a_pause_input_holds_and_a_stop_ends() {
-        let paused = page0(IDLE | 4);
-        let held = paused.with(4, 0x08);
-        assert_eq!(looks(Work::Program, [(0, page0(RUNS), 0), (100, held, 0), (9_999, held, 0)]), Look::Running);
-        assert_eq!(looks(Work::Program, [(0, page0(RUNS), 0), (100, paused, 0)]), Look::Ended);
+    fn an_error_ends_the_wait() {
+        assert_eq!(
+            evaluate_reads(Work::Program, [(0, page0(RUNS), 0), (100, page0(RUNS | 1), 0)]),
+            WorkEvent::Failed(WaitFailure::Error)
+        );
     }
 
     #[test]
-    fn a_card_is_watched_by_its_own_bits() {
+    fn the_pause_input_continues_the_wait_and_a_stop_ends_it() {
+        let paused = page0(IDLE | 4);
+        let paused_by_input = paused.with(4, 0x08);
+        assert_eq!(
+            evaluate_reads(
+                Work::Program,
+                [(0, page0(RUNS), 0), (100, paused_by_input, 0), (9_999, paused_by_input, 0)]
+            ),
+            WorkEvent::Running
+        );
+        assert_eq!(evaluate_reads(Work::Program, [(0, page0(RUNS), 0), (100, paused, 0)]), WorkEvent::Ended);
+    }
+
+    #[test]
+    fn a_card_transfer_is_watched_by_the_card_bits() {
         let (idle, writes) = (page0(IDLE), page0(IDLE).with(3, 0x80));
-        assert_eq!(looks(Work::Card, [(0, idle, 0), (100, writes, 0), (9_999, writes, 3)]), Look::Running);
-        assert_eq!(looks(Work::Card, [(0, writes, 0), (100, idle, 0)]), Look::Ended);
+        assert_eq!(
+            evaluate_reads(Work::Card, [(0, idle, 0), (100, writes, 0), (9_999, writes, 3)]),
+            WorkEvent::Running
+        );
+        assert_eq!(evaluate_reads(Work::Card, [(0, writes, 0), (100, idle, 0)]), WorkEvent::Ended);
     }
 }

@@ -23,23 +23,23 @@ pub struct Choice {
 
 /// Choices of this user. One file has the choices for all robots.
 #[derive(Debug, Default)]
-pub struct Chosen {
+pub struct UserChoices {
     /// Path of the file; `None` for a simulator in this process.
     path: Option<PathBuf>,
     robot: String,
 }
 
 /// Size limit of the file.
-const MOST: u64 = 1 << 20;
+const MAX_SIZE: u64 = 1 << 20;
 
-impl Chosen {
+impl UserChoices {
     /// Choices for a robot.
     pub fn of(robot: &str) -> Self {
         Self { path: state_folder().map(|folder| folder.join("toyo-chosen.json")), robot: robot.to_owned() }
     }
 
     /// Choices without a file, for a simulator in this process.
-    pub fn without_notes() -> Self {
+    pub fn without_file() -> Self {
         Self::default()
     }
 
@@ -52,10 +52,10 @@ impl Chosen {
     pub fn change(&self, change: impl FnOnce(&mut Choice)) {
         let Some(path) = &self.path else { return };
         let mut all = self.all();
-        let before = all.get(&self.robot).copied().unwrap_or_default();
-        let mut choice = before;
+        let old = all.get(&self.robot).copied().unwrap_or_default();
+        let mut choice = old;
         change(&mut choice);
-        if choice == before {
+        if choice == old {
             return;
         }
         if choice == Choice::default() {
@@ -70,8 +70,8 @@ impl Chosen {
     }
 
     fn all(&self) -> BTreeMap<String, Choice> {
-        let read = self.path.as_ref().and_then(|path| files::read(path, MOST).ok());
-        read.and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
+        let text = self.path.as_ref().and_then(|path| files::read(path, MAX_SIZE).ok());
+        text.and_then(|text| serde_json::from_slice(&text).ok()).unwrap_or_default()
     }
 }
 
@@ -80,19 +80,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_choice_is_kept_for_its_robot_until_it_is_undone() {
+    fn a_choice_is_stored_for_its_robot_until_it_is_undone() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state").join("chosen.json");
-        let of = |robot: &str| Chosen { path: Some(path.clone()), robot: robot.to_owned() };
-        assert_eq!(of("tcp://a").get(), Some(Choice::default()));
-        of("tcp://a").change(|choice| choice.host = true);
-        of("tcp://b").change(|choice| choice.task = Some(2));
-        assert_eq!(of("tcp://a").get(), Some(Choice { host: true, task: None }));
-        assert_eq!(of("tcp://b").get(), Some(Choice { host: false, task: Some(2) }));
-        of("tcp://a").change(|choice| choice.host = false);
+        let choices_of = |robot: &str| UserChoices { path: Some(path.clone()), robot: robot.to_owned() };
+        assert_eq!(choices_of("tcp://a").get(), Some(Choice::default()));
+        choices_of("tcp://a").change(|choice| choice.host = true);
+        choices_of("tcp://b").change(|choice| choice.task = Some(2));
+        assert_eq!(choices_of("tcp://a").get(), Some(Choice { host: true, task: None }));
+        assert_eq!(choices_of("tcp://b").get(), Some(Choice { host: false, task: Some(2) }));
+        choices_of("tcp://a").change(|choice| choice.host = false);
         assert!(!std::fs::read_to_string(&path).unwrap().contains("tcp://a"));
         std::fs::write(&path, "{").unwrap();
-        assert_eq!(of("tcp://b").get(), Some(Choice::default()), "what makes no sense is nothing");
-        assert_eq!(Chosen::without_notes().get(), None);
+        assert_eq!(choices_of("tcp://b").get(), Some(Choice::default()), "an invalid file counts as empty");
+        assert_eq!(UserChoices::without_file().get(), None);
     }
 }

@@ -31,9 +31,10 @@ impl Letters {
 
     /// The axis with this letter, 0 to 3; `None` if no axis has it, or several.
     pub fn axis(&self, letter: &str) -> Option<usize> {
-        let mut found = (0..4).filter(|index| !letter.is_empty() && self.of(*index).eq_ignore_ascii_case(letter));
-        let index = found.next()?;
-        found.next().is_none().then_some(index)
+        let mut matching_axes =
+            (0..4).filter(|index| !letter.is_empty() && self.of(*index).eq_ignore_ascii_case(letter));
+        let index = matching_axes.next()?;
+        matching_axes.next().is_none().then_some(index)
     }
 
     /// Whether the letters are X, Y, Z, R in this order: the order of coordinates in the protocol.
@@ -56,8 +57,8 @@ impl Letters {
 
     /// Reads the letters from an answer. A letter that is not in the manual counts as unknown.
     fn from(record: &Record, names: [&str; 4]) -> Self {
-        let told = |name: &str| record.word(name).or(record.text(name)).map(str::trim);
-        Self(names.map(|name| LETTERS.into_iter().find(|letter| told(name) == Some(letter))))
+        let letter_of = |name: &str| record.word(name).or(record.text(name)).map(str::trim);
+        Self(names.map(|name| LETTERS.into_iter().find(|letter| letter_of(name) == Some(letter))))
     }
 }
 
