@@ -107,7 +107,7 @@ mod tests {
         "yrcx hand-data set 1 data-1=100 data-2=50 data-3=10",
         "yrcx io set servo-on=on",
         "yrcx pallet-data set 10 nx=3 ny=2 first-point=100",
-        "yrcx param set TOLE=1000 --axis 3",
+        "yrcx param set TOLE.3=1000",
         "yrcx point set 7 mm=1,2,3,4",
         "yrcx port set DO2=7",
         "yrcx shift-data set 4 mm=1,2,-3,4",

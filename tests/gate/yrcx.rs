@@ -66,7 +66,7 @@ fn taught_points_are_not_overwritten_unasked() {
         ),
         ("shift-data set 4 --mm 1,2,3,4", "shift 4: 10.000, 0.000, 0.000, 0.000 mm -> 1.000"),
         ("hand-data set 1 --data-1 1 --data-2 2 --data-3 3", "10000, -2.000 mm, 5.000 mm, robot 1 -> 1, 2.000 mm"),
-        ("param set TOLE 100 --axis 1", "TOLE of axis 1, robot 1: 80 pulses -> 100 pulses"),
+        ("param set TOLE.1 100", "TOLE.1: 80 pulses -> 100 pulses"),
         ("raw --wi 0x100,1,1", "point 1: 100.000, 100.000, 0.000, 0.000 mm -> 0.000"),
     ] {
         desk.fails(&format!("-r cell yrcx {order}"), 7, old_and_new);

@@ -190,6 +190,11 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// Whether `get` reports a row that is not defined as null beside rows that are, and fails only if none is defined.
     const UNDEFINED_IS_NULL: bool = false;
 
+    /// Help of `get` and `set` that is not a constant.
+    fn help() -> Option<&'static str> {
+        None
+    }
+
     /// Rows as typed: one, or a range.
     ///
     /// # Errors

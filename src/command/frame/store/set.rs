@@ -13,7 +13,7 @@ use crate::gate::Confirmation;
 
 /// A row, and what it shall hold.
 #[derive(Debug, Args)]
-#[command(after_help = S::WORDS.writing)]
+#[command(after_help = S::help().or(S::WORDS.writing))]
 pub struct Set<S: Writable> {
     #[command(flatten)]
     options: S::Options,

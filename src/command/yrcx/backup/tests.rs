@@ -109,7 +109,7 @@ const CHANGES: [&str; 9] = [
     "hand-data set 1 --data-1 1 --data-2 2 --data-3 3 --unit 2",
     "var set SGI5 5",
     "var set SGR5 0.1",
-    "param set TOLE 99 --axis 3 --unit 2",
+    "param set TOLE.3 99 --unit 2",
 ];
 
 #[test]
