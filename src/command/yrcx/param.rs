@@ -12,7 +12,6 @@ use super::numbers::single;
 use super::several::{ask_each, is_undefined};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::orders::IF_DIFFERENT;
 use crate::command::frame::store::{
     Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids, table_commands,
 };
@@ -50,7 +49,8 @@ pub struct Amount {
 }
 
 impl Amount {
-    fn new((parameter, _): Setting, value: i32) -> Self {
+    /// Content of this parameter.
+    pub fn new((parameter, _): Setting, value: i32) -> Self {
         Self { value, unit: unit(parameter) }
     }
 }
@@ -157,7 +157,8 @@ impl Store for Parameters {
     }
 
     fn difference(&self, old: &Amount, new: &Amount) -> [String; 2] {
-        [old, new].map(|Amount { value, unit }| unit.map_or_else(|| value.to_string(), |unit| format!("{value} {unit}")))
+        [old, new]
+            .map(|Amount { value, unit }| unit.map_or_else(|| value.to_string(), |unit| format!("{value} {unit}")))
     }
 
     fn value(&self, amount: &Amount) -> Option<i32> {
@@ -196,9 +197,10 @@ impl Writable for Parameters {
     }
 
     fn whole(&self, key: Setting, draft: &Option<i32>, old: Option<&Amount>) -> Result<Amount, Failure> {
-        draft.map(|value| Amount::new(key, value)).or(old.copied()).ok_or_else(|| {
-            Failure::usage(format!("{} has no value to keep", Self::name(key))).hint("give a value")
-        })
+        draft
+            .map(|value| Amount::new(key, value))
+            .or(old.copied())
+            .ok_or_else(|| Failure::usage(format!("{} has no value to keep", Self::name(key))).hint("give a value"))
     }
 
     async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
@@ -206,7 +208,11 @@ impl Writable for Parameters {
             let least = key.0.span.0;
             let [one, other] = draft.map_or([least, least + 1], |value| [value; 2]);
             let [one, other] = [one, other].map(|value| self.write_order(*key, &value.to_string()));
-            link.plan_depending(&one?, &other?, Reason::default().depending_on(IF_DIFFERENT));
+            link.plan_depending(
+                &one?,
+                &other?,
+                Reason::default().depending_on("the current value: written if different"),
+            );
         }
         Ok(())
     }
