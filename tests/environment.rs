@@ -118,7 +118,7 @@ fn a_long_text_goes_through_the_pager_on_a_terminal() {
 #[test]
 fn a_mistake_is_told_in_lines_that_end_between_words() {
     let folder = tempfile::tempdir().expect("a folder");
-    let shown = Terminal::new(80).run(armctl("--sim yrcx param get TOEL --axis 1 --color never", folder.path()));
+    let shown = Terminal::new(80).run(armctl("--sim yrcx param get TOEL.1 --color never", folder.path()));
     assert!(shown.lines().all(|line| line.chars().count() <= 80) && shown.contains("did you mean TOLE?"), "{shown}");
 }
 

@@ -104,13 +104,13 @@ mod tests {
         "yerc register set 5=1000",
         "yerc var set B0=255 R3=-2.5",
         "yrcx comment set 100='WAIT ORG'",
-        "yrcx hand-data set 1 data-1=100 data-2=50 data-3=10",
+        "yrcx hand-data set 1 data-1=100 data-2=50",
         "yrcx io set servo-on=on",
-        "yrcx pallet-data set 10 nx=3 ny=2 first-point=100",
-        "yrcx param set TOLE=1000 --axis 3",
+        "yrcx pallet-data set 10 nx=3 ny=2",
+        "yrcx param set TOLE.3=1000",
         "yrcx point set 7 mm=1,2,3,4",
         "yrcx port set DO2=7",
-        "yrcx shift-data set 4 mm=1,2,-3,4",
+        "yrcx shift-data set 4=1,2,-3,4",
         "yrcx var set SGR1=-0.5",
     ];
 

@@ -545,7 +545,6 @@ mod tests {
             ("armctl --timeout 1,5s yerc status", "use a decimal point: 1.5s"),
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
-            ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
             ("armctl yerc job start --name WELD", "type NAME without --name"),
             ("armctl yrcx move 19", "type the value after its flag: --point, --to, --to-pulse"),
             ("armctl robots discover --for 3s", "robots discover ends by itself: remove --for"),

@@ -59,14 +59,11 @@ fn taught_points_are_not_overwritten_unasked() {
         ("teach --point 1 --in mm", "point 1: 100.000, 100.000, 0.000, 0.000 mm -> "),
         ("point-calc copy 3 --to 1", "100.000, 100.000, 0.000, 0.000 mm -> 200.000, -100.000, 0.000, 0.000 mm"),
         ("point-calc element 1 --element 1 --mm 5", "0.000 mm -> 5.000, 100.000, 0.000, 0.000 mm"),
-        ("comment set 50 NEW", "comment of point 50: 'WAIT ORG' -> 'NEW'"),
-        (
-            "pallet-data set 10 --nx 2 --ny 2 --first-point 1",
-            "10 x 15 x 1, first point 110 -> 2 x 2 x 1, first point 1",
-        ),
-        ("shift-data set 4 --mm 1,2,3,4", "shift 4: 10.000, 0.000, 0.000, 0.000 mm -> 1.000"),
-        ("hand-data set 1 --data-1 1 --data-2 2 --data-3 3", "10000, -2.000 mm, 5.000 mm, robot 1 -> 1, 2.000 mm"),
-        ("param set TOLE 100 --axis 1", "TOLE of axis 1, robot 1: 80 pulses -> 100 pulses"),
+        ("comment set 50 NEW", "comment of point 50: WAIT ORG -> NEW"),
+        ("pallet-data set 10 2 2 1 1", "pallet 10: nx=10 ny=15 first_point=110 -> nx=2 ny=2 first_point=1"),
+        ("shift-data set 4 1 2 3 4", "shift 4: axis_1_mm=10.000 axis_2_mm=0.000 axis_3_mm=0.000 axis_4_mm=0.000 -> "),
+        ("hand-data set 1 1 1 2 3 0", "data_1=10000 data_2_mm=-2.000 data_3_mm=5.000 -> data_1=1 data_2_mm=2.000"),
+        ("param set TOLE.1 100", "TOLE.1: 80 pulses -> 100 pulses"),
         ("raw --wi 0x100,1,1", "point 1: 100.000, 100.000, 0.000, 0.000 mm -> 0.000"),
     ] {
         desk.fails(&format!("-r cell yrcx {order}"), 7, old_and_new);
@@ -77,8 +74,8 @@ fn taught_points_are_not_overwritten_unasked() {
     let stored = &stored["items"][0];
     assert_eq!((&stored["written"], &stored["old"]["text"]), (&true.into(), &old));
     // What is there already, and what is new, wants no yes.
-    let again = desk.run("-r cell yrcx point set 1 --mm 1,2,3,4");
-    assert!(again.exit == Some(0) && again.stdout.contains("already; nothing was written"), "{again:?}");
+    let again = desk.data("-r cell yrcx point set 1 --mm 1,2,3,4");
+    assert_eq!(again["items"][0]["written"], false, "{again}");
     assert_eq!(desk.data("-r cell yrcx point set 7 --mm 1,2,3,4")["old"], serde_json::Value::Null);
     assert_eq!(desk.run("session close cell").exit, Some(0));
 }
@@ -101,8 +98,8 @@ fn a_restore_asks_once_with_old_and_new() {
     let desk = held(&controller);
     desk.data("-r cell yrcx backup saved --only shifts,pallets");
     assert_eq!(desk.run("-r cell yrcx restore saved").exit, Some(0), "nothing differs");
-    desk.data("-r cell yrcx shift-data set 4 --mm 1,2,3,4 --yes");
-    desk.data("-r cell yrcx pallet-data set 10 --nx 2 --ny 2 --first-point 1 --yes");
+    desk.data("-r cell yrcx shift-data set 4 1 2 3 4 --yes");
+    desk.data("-r cell yrcx pallet-data set 10 2 2 1 1 --yes");
     for restore in ["yrcx restore saved", "restore saved"] {
         desk.fails(&format!("-r cell {restore}"), 7, "this would overwrite ");
     }

@@ -260,6 +260,11 @@ impl Link {
         }
     }
 
+    /// Robot of `--unit`; 0 if none is selected.
+    pub fn unit(&self) -> u8 {
+        self.unit
+    }
+
     /// Rejects `--unit` if the command does not use it.
     pub fn no_unit(&self, why: &str) -> Result<(), Failure> {
         if self.unit == 0 {

@@ -38,6 +38,8 @@ pub trait Kind: Debug + Send + Sync + 'static {
     const RISK: Risk = Risk::Destroy;
     /// Whether the table is small enough to read completely by default.
     const IS_SMALL: bool = true;
+    /// Whether a row is a text.
+    const IS_TEXT: bool = false;
     /// Type of the names that users assign to rows.
     const LABELS: Option<Label> = None;
     /// Completion of row numbers.
@@ -45,6 +47,11 @@ pub trait Kind: Debug + Send + Sync + 'static {
 
     /// Value of a row.
     fn value(values: &Values) -> Option<Self::Value>;
+
+    /// A row in questions, if its fields are not enough.
+    fn line(_values: &Values) -> Option<String> {
+        None
+    }
 
     /// Whether a row contains no user data.
     fn is_blank(_values: &Values) -> bool {
@@ -56,12 +63,20 @@ pub trait Kind: Debug + Send + Sync + 'static {
 #[derive(Debug)]
 pub struct Numbered<K>(PhantomData<K>);
 
+impl<K> Default for Numbered<K> {
+    fn default() -> Self {
+        Self(PhantomData)
+    }
+}
+
 /// Content of a row.
 #[derive(Debug, Clone)]
 pub struct Row {
     values: Values,
     /// Texts of the columns after the number.
     texts: Vec<String>,
+    /// Request that stores it; none if it was read.
+    order: Option<Order>,
 }
 
 /// Rows are equal if their texts are equal.
@@ -72,10 +87,11 @@ impl PartialEq for Row {
 }
 
 impl Row {
-    fn new<K: Kind>(number: i32, values: Values) -> Self {
+    /// Row with these values.
+    pub fn new<K: Kind>(number: i32, values: Values) -> Self {
         let mut texts = K::RECORDS.row(number, &values);
         texts.remove(0);
-        Self { values, texts }
+        Self { values, texts, order: None }
     }
 }
 
@@ -95,6 +111,7 @@ impl<K: Kind> Store for Numbered<K> {
     const IDS: Ids = K::IDS;
     const LABELS: Option<Label> = K::LABELS;
     const COMPLETE: ValueKind = K::COMPLETE;
+    const IS_TEXT: bool = K::IS_TEXT;
     const UNDEFINED_IS_NULL: bool = true;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
@@ -114,7 +131,7 @@ impl<K: Kind> Store for Numbered<K> {
     }
 
     async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
-        Ok(Self(PhantomData))
+        Ok(Self::default())
     }
 
     fn fields(&self) -> Vec<Field> {
@@ -127,6 +144,13 @@ impl<K: Kind> Store for Numbered<K> {
 
     fn texts(&self, row: &Row) -> Vec<String> {
         row.texts.clone()
+    }
+
+    fn difference(&self, old: &Row, new: &Row) -> [String; 2] {
+        match (K::line(&old.values), K::line(&new.values)) {
+            (Some(old), Some(new)) => [old, new],
+            _ => store::difference(self, old, new),
+        }
     }
 
     fn value(&self, row: &Row) -> Option<K::Value> {
@@ -187,8 +211,8 @@ impl<K: Kind> Writable for Numbered<K> {
             }
         };
         let texts = draft.iter().enumerate().map(kept).collect::<Result<Vec<String>, Failure>>()?;
-        let (_, values) = stored::<K>(number, texts)?;
-        Ok(Row::new::<K>(number, values))
+        let (order, values) = stored::<K>(number, texts)?;
+        Ok(Row { order: Some(order), ..Row::new::<K>(number, values) })
     }
 
     async fn plan(&self, link: &mut Link, rows: &[store::Row<Self>]) -> Result<(), Failure> {
@@ -210,9 +234,8 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 
     async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
-        for (number, _, new) in rows {
-            let (order, _) = stored::<K>(*number, new.texts.clone())?;
-            link.ask(&order).await?;
+        for order in rows.iter().filter_map(|(_, _, new)| new.order.as_ref()) {
+            link.ask(order).await?;
         }
         Ok(())
     }
@@ -239,8 +262,7 @@ fn samples(key: Key, number: i32) -> [&'static str; 2] {
 fn stored<K: Kind>(number: i32, texts: Vec<String>) -> Result<(Order, Values), Failure> {
     let name = named(K::RECORDS.read, key::<K>(), number);
     let store = K::RECORDS.store(&std::iter::once(name).chain(texts).collect())?;
-    let values = store.wanted_values();
-    Ok((store.write, values))
+    Ok((store.write, store.wanted))
 }
 
 /// Whole number in an answer.

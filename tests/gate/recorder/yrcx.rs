@@ -156,7 +156,7 @@ pub fn hold_all(mut controller: Controller) {
     bench.prepare("session open --background --yes");
     bench.prepare("yrcx backup press");
     // So the backup differs from the controller.
-    for line in ["point set 7 --mm 9,9,9,9", "comment set 100 OTHER", "shift-data set 1 --mm 9,9,9,9"] {
+    for line in ["point set 7 --mm 9,9,9,9", "comment set 100 OTHER", "shift-data set 1 9 9 9 9"] {
         bench.prepare(&format!("yrcx {line} --yes"));
     }
     bench.prepare("session close cell");

@@ -171,7 +171,11 @@ pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[Strin
 
 /// What is overwritten that a person wrote, for a question.
 pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
-    let lost = replaced(table, rows);
+    table.consequences(rows).into_iter().fold(overwriting(table, &replaced(table, rows)), Change::note)
+}
+
+/// Question about rows that are overwritten: the name of each, old and new.
+pub fn overwriting<S: Writable>(table: &S, lost: &[[String; 3]]) -> Change {
     let [one, many] = S::WORDS.nouns;
     let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.place());
     let change = match lost.len() {
@@ -179,7 +183,6 @@ pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change 
         1 => Change::new(format!("overwrite {article} {one}{place}")),
         count => Change::new(format!("overwrite {count} {many}{place}")),
     };
-    let change = table.consequences(rows).into_iter().fold(change, Change::note);
     lost.iter().fold(change, |change, [name, old, new]| change.replaces(name, old, new))
 }
 

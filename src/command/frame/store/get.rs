@@ -38,7 +38,7 @@ impl<S: Store> Rows<S> {
 
 /// Reads rows.
 #[derive(Debug, Args)]
-#[command(after_help = S::WORDS.reading)]
+#[command(after_help = S::help().or(S::WORDS.reading))]
 pub struct Get<S: Store> {
     #[command(flatten)]
     options: S::Options,

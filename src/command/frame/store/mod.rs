@@ -16,7 +16,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use self::change::{Row, Work, overwritten, write};
+pub use self::change::{Row, Work, overwriting, overwritten, write};
 pub use self::copy::Copy;
 pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
 pub use self::get::{Get, List};
@@ -189,8 +189,15 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
     /// Whether `dump` saves blank rows as well.
     const SAVES_BLANK: bool = false;
+    /// Whether a row is a text, which `set` takes as one word, with whatever signs.
+    const IS_TEXT: bool = false;
     /// Whether `get` reports a row that is not defined as null beside rows that are, and fails only if none is defined.
     const UNDEFINED_IS_NULL: bool = false;
+
+    /// Help of `get` and `set` that is not a constant.
+    fn help() -> Option<&'static str> {
+        None
+    }
 
     /// Rows as typed: one, or a range.
     ///
@@ -463,7 +470,7 @@ fn line<S: Store>(table: &S, wire: &S::Wire) -> String {
 }
 
 /// What differs between two rows, in a line each.
-fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String; 2] {
+pub fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String; 2] {
     let (fields, old_texts, new_texts) = (table.fields(), table.texts(old), table.texts(new));
     if fields.len() < 2 || old_texts.len() != fields.len() {
         return [line(table, old), line(table, new)];

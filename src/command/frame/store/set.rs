@@ -1,6 +1,7 @@
 //! `set`: one row.
 
 use clap::Args;
+use clap::builder::ValueRange;
 
 use super::change::{Work, confirmation, intent, write};
 use super::{Store, Writable, WrittenOf, read_keys};
@@ -13,14 +14,15 @@ use crate::gate::Confirmation;
 
 /// A row, and what it shall hold.
 #[derive(Debug, Args)]
-#[command(after_help = S::WORDS.writing)]
+#[command(after_help = S::help().or(S::WORDS.writing))]
 pub struct Set<S: Writable> {
     #[command(flatten)]
     options: S::Options,
     #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = S::WORDS.range, add = S::COMPLETE)]
     row: One<S>,
     /// All values in their order, or some as NAME=VALUE, which keeps the others
-    #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true)]
+    #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true, allow_hyphen_values = S::IS_TEXT,
+        num_args = if S::IS_TEXT { ValueRange::SINGLE } else { ValueRange::from(1..) })]
     values: Vec<String>,
 }
 
@@ -73,7 +75,7 @@ pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S:
     let wrong = |message: String| Failure::usage(format!("{row}: {message}")).hint(usage.as_str());
     let mut texts: Vec<Option<&str>> = vec![None; fields.len()];
     let has_name = |word: &String| word.split_once('=').is_some_and(|(name, _)| name.starts_with(char::is_alphabetic));
-    if words.iter().any(has_name) {
+    if !S::IS_TEXT && words.iter().any(has_name) {
         for word in words {
             let (name, value) = word.split_once('=').ok_or_else(|| wrong(format!("'{word}' has no name")))?;
             let wanted = name.to_ascii_lowercase().replace('-', "_");

@@ -225,12 +225,17 @@ impl Records {
         });
         let write = draft.build()?;
         let (key, number) = (row[0].clone(), write.values().int(self.columns[0].1).unwrap_or_default());
-        let wanted = |key: Key| {
-            let own = if key == Key::Owner { Key::Robot } else { key };
-            (key, write.values().value(own).cloned().unwrap_or(Value::Int(0)))
+        Ok(Store { key, read: self.read(number)?, wanted: self.stored(write.values()), write })
+    }
+
+    /// Values that are read after a request with `values` stored them.
+    pub fn stored(&self, values: &Values) -> Values {
+        let stored = |key: Key| match key {
+            // Robot 0 is the first.
+            Key::Owner => (key, Value::Int(values.int(Key::Robot).unwrap_or_default().max(1))),
+            key => (key, values.value(key).cloned().unwrap_or(Value::Int(0))),
         };
-        let wanted = self.columns[1..].iter().map(|(_, key)| wanted(*key)).collect();
-        Ok(Store { key, read: self.read(number)?, write, wanted })
+        self.columns[1..].iter().map(|(_, key)| stored(*key)).collect()
     }
 }
 
@@ -489,32 +494,27 @@ pub struct Store {
     /// Request that writes it.
     pub write: Order,
     /// Fields that an equal answer must contain.
-    wanted: Vec<(Key, Value)>,
+    pub wanted: Values,
 }
 
 impl Store {
-    /// Answer that is expected if the value is equal.
-    pub fn wanted_values(&self) -> Values {
-        self.wanted.iter().cloned().collect()
-    }
-
     /// Whether the value read equals the value to be written.
     pub fn is_there(&self, values: &Values) -> bool {
-        self.wanted.iter().all(|(key, wanted)| values.value(*key).unwrap_or(&Value::Int(0)) == wanted)
+        self.wanted.iter().all(|(key, wanted)| values.value(key).unwrap_or(&Value::Int(0)) == wanted)
     }
 
     /// Text of the value read.
     pub fn describe(&self, values: &Values) -> String {
         let fields = self.wanted.iter().filter_map(|(key, _)| {
-            let value = values.value(*key)?;
-            field(self.read.row().answer(), *key, values).map(|field| field.show(value))
+            let value = values.value(key)?;
+            field(self.read.row().answer(), key, values).map(|field| field.show(value))
         });
         fields.collect::<Vec<_>>().join(" ")
     }
 
     /// Text of the value to be written.
     pub fn wanted(&self) -> String {
-        self.describe(&self.wanted_values())
+        self.describe(&self.wanted)
     }
 }
 
@@ -552,7 +552,7 @@ fn setting_store(row: &Row) -> Result<Store, Failure> {
     let (_, read, told, write, key) =
         setting.ok_or_else(|| Failure::usage(format!("setting '{name}' does not exist")))?;
     let write = write.order().with(Key::Robot, robot.as_str()).with(*key, value.as_str()).build()?;
-    let wanted = vec![(*told, write.values().value(*key).cloned().unwrap_or(Value::Int(0)))];
+    let wanted = Values::from_iter([(*told, write.values().value(*key).cloned().unwrap_or(Value::Int(0)))]);
     let read = read.order().with(Key::Robot, robot.as_str()).build()?;
     Ok(Store { key: format!("{name} of robot {robot}"), read, write, wanted })
 }
@@ -564,7 +564,7 @@ fn parameter_store(row: &Row) -> Result<Store, Failure> {
         draft.with_some(Key::Axes, Some(axis.as_str()).filter(|axis| !axis.is_empty()))
     };
     let write = draft(Command::ParamSet).with(Key::Value, value.as_str()).build()?;
-    let wanted = vec![(Key::Value, write.values().value(Key::Value).cloned().unwrap_or(Value::Int(0)))];
+    let wanted = Values::from_iter([(Key::Value, write.values().value(Key::Value).cloned().unwrap_or(Value::Int(0)))]);
     Ok(Store { key: parameter_key(robot, name, axis), read: draft(Command::ParamGet).build()?, write, wanted })
 }
 

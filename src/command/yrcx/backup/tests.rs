@@ -104,12 +104,12 @@ const CHANGES: [&str; 9] = [
     "point set 19 --pulse 1,2,3,4",
     "point set 50 --mm 1,2,3,4 --hand left",
     "comment set 50 OTHER",
-    "pallet-data set 2 --nx 2 --ny 2 --first-point 110",
-    "shift-data set 4 --mm 1,2,3,4",
-    "hand-data set 1 --data-1 1 --data-2 2 --data-3 3 --unit 2",
+    "pallet-data set 2 2 2 1 110",
+    "shift-data set 4 1 2 3 4",
+    "hand-data set 1 2 1 2 3 0",
     "var set SGI5 5",
     "var set SGR5 0.1",
-    "param set TOLE 99 --axis 3 --unit 2",
+    "param set TOLE.3 99 --unit 2",
 ];
 
 #[test]

@@ -1,31 +1,13 @@
 //! `yrcx comment` (4.3.2).
 
-use crate::command::commands;
-use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::store::{Ids, Words, ids, table_commands};
 use crate::command::yrcx::backup::{COMMENTS, Records};
-use crate::command::yrcx::numbers::single;
-use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::single::one_row;
 use crate::command::yrcx::stores::{Kind, Numbered};
-use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 
-commands! {
+table_commands! {
     /// Commands for point comments.
-    pub enum Comment {
-        /// Read the comments of points: 100, 0..29
-        Get(Get<Numbered<Comments>>),
-        /// List the points that have a comment
-        List(List<Numbered<Comments>>),
-        /// Write the comment of a point: 100 'WAIT ORG'
-        Set(Set),
-        /// Copy a comment to other points
-        Copy(Copy<Numbered<Comments>>),
-        /// Save comments to a CSV file
-        Dump(Dump<Numbered<Comments>>),
-        /// Write comments from a CSV file
-        Restore(Restore<Numbered<Comments>>),
-    }
+    Comment of Numbered<Comments> {}
 }
 
 /// Comments of points.
@@ -45,6 +27,7 @@ impl Kind for Comments {
     const RECORDS: &'static Records = &COMMENTS;
     const HEADINGS: &'static [&'static str] = &["comment"];
     const IS_SMALL: bool = false;
+    const IS_TEXT: bool = true;
 
     fn value(values: &Values) -> Option<String> {
         Some(values.text(Key::Comment).unwrap_or_default().to_owned())
@@ -53,24 +36,6 @@ impl Kind for Comments {
     fn is_blank(values: &Values) -> bool {
         values.text(Key::Comment).is_none_or(str::is_empty)
     }
-}
-
-one_row! {
-    /// Writes the comment of a point.
-    Set(self) "yrcx.comment.set" -> Stored {
-        /// Point, 0 to 29999
-        #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::CommentSet, Key::Point, text))]
-        point: i32,
-        /// Up to 16 ASCII characters; '' for none
-        #[arg(value_name = "TEXT", allow_hyphen_values = true)]
-        comment: String,
-    }
-    gives table::Command::CommentSet,
-    with draft => draft.with(Key::Point, self.point).with(Key::Comment, self.comment.as_str()),
-    done match &self.comment[..] {
-        "" => format!("removed the comment of point {}", self.point),
-        comment => format!("comment of point {}: {comment}", self.point),
-    };
 }
 
 #[cfg(test)]

@@ -3,32 +3,14 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::commands;
-use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::store::{Ids, Words, ids, table_commands};
 use crate::command::yrcx::backup::{HANDS, Records};
-use crate::command::yrcx::numbers::single;
-use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::single::one_row;
 use crate::command::yrcx::stores::{Kind, Numbered, int, mm};
-use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 
-commands! {
+table_commands! {
     /// Commands for hands.
-    pub enum HandData {
-        /// Read hands: 1, 0..31
-        Get(Get<Numbered<Hands>>),
-        /// List the defined hands
-        List(List<Numbered<Hands>>),
-        /// Define a hand: 1 --data-1 10000 --data-2 -2 --data-3 5
-        Set(Set),
-        /// Copy a hand to other hands
-        Copy(Copy<Numbered<Hands>>),
-        /// Save to a CSV file
-        Dump(Dump<Numbered<Hands>>),
-        /// Write from a CSV file
-        Restore(Restore<Numbered<Hands>>),
-    }
+    HandData of Numbered<Hands> {}
 }
 
 /// Note on data 1, the only number without a unit.
@@ -80,39 +62,6 @@ pub struct Data {
     data_4: i32,
 }
 
-one_row! {
-    /// Defines a hand of the robot of --unit.
-    #[command(after_help = DATA_1)]
-    Set(self) "yrcx.hand-data.set" -> Stored {
-        /// Hand, 0 to 31
-        #[arg(value_name = "HAND", value_parser = |text: &str| single(table::Command::HandSet, Key::Hand, text))]
-        hand: i32,
-        /// Data 1, a whole number (raw protocol value)
-        #[arg(long = "data-1", value_name = "NUMBER", allow_negative_numbers = true)]
-        first: String,
-        /// Data 2 in mm
-        #[arg(long = "data-2", value_name = "MM", allow_negative_numbers = true)]
-        second: String,
-        /// Data 3 in mm
-        #[arg(long = "data-3", value_name = "MM", allow_negative_numbers = true)]
-        third: String,
-        /// The hand is mounted on the R axis (data 4 is 1)
-        #[arg(long)]
-        on_r_axis: bool,
-    }
-    gives table::Command::HandSet,
-    with draft => {
-        let data = [(Key::Data1, &self.first), (Key::Data2, &self.second), (Key::Data3, &self.third)];
-        let draft = draft.with(Key::Hand, self.hand).with(Key::Data4, self.on_r_axis);
-        data.into_iter().fold(draft, |draft, (key, text)| draft.with(key, text.as_str()))
-    },
-    done {
-        let Self { hand, first, second, third, on_r_axis } = self;
-        let place = if *on_r_axis { ", on the R axis" } else { "" };
-        format!("defined hand {hand}: {first}, {second} mm, {third} mm{place}")
-    };
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
@@ -120,7 +69,7 @@ mod tests {
     use crate::command::yrcx::testing::{example, read_example, words, written};
     use crate::failure::Kind;
 
-    const SET: [&str; 9] = ["hand-data", "set", "1", "--data-1", "10000", "--data-2", "-2", "--data-3", "5"];
+    const SET: [&str; 8] = ["hand-data", "set", "1", "0", "10000", "-2", "5", "0"];
 
     #[test]
     fn the_examples_of_the_manual() {
@@ -133,10 +82,10 @@ mod tests {
 
     #[test]
     fn a_hand_belongs_to_a_robot_and_is_read_without() {
-        let sent = written(&[&SET[..], &["--on-r-axis", "--unit", "3"]].concat()).unwrap();
+        let sent = written(&["hand-data", "set", "1", "3", "10000", "-2", "5", "1"]).unwrap();
         assert_eq!((sent[0][0].as_str(), sent[0][10].as_str()), ("0x3110", "0x0001"));
         assert_eq!(words(&["hand-data", "get", "1", "--unit", "3"]).unwrap_err().kind, Kind::Usage);
-        let first = |data| words(&["hand-data", "set", "1", "--data-1", data, "--data-2", "0", "--data-3", "0"]);
+        let first = |data| words(&["hand-data", "set", "1", "1", data, "0", "0", "0"]);
         assert!(first("10.5").unwrap_err().message.contains("data_1"));
         assert!(first("10.000").is_err(), "ambiguous: 10 or 10000");
     }

@@ -2,16 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Four, four};
-use crate::command::frame::store::{Copy, Get, Ids, List, Words, ids};
+use crate::command::frame::store::{Copy, Get, Ids, List, Words, Work, Writable as _, WrittenOf, ids, write};
 use crate::command::frame::teach::printed_position;
 use crate::command::robot::position::Position;
 use crate::command::yrcx::backup::{Dump, POINTS, Records, Restore};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
-use crate::command::yrcx::overwrite;
-use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::position::position;
+use crate::command::yrcx::position::{Unit, mm, position};
 use crate::command::yrcx::stores::{Kind, Numbered};
 use crate::command::yrcx::teach::unit_of;
 use crate::command::{Command, Context, commands};
@@ -61,6 +58,20 @@ impl Kind for Points {
     const HEADINGS: &'static [&'static str] = &["unit", "axis 1", "axis 2", "axis 3", "axis 4", "hand"];
     const IS_SMALL: bool = false;
 
+    fn line(values: &Values) -> Option<String> {
+        let unit = unit_of(values);
+        let axes = match unit {
+            Unit::Mm => mm(values)?.map(|axis| format!("{axis:.3}")),
+            Unit::Pulse => values.axes()?.map(|axis| axis.to_string()),
+        };
+        let hand = match values.int(Key::HandSystem) {
+            Some(1) => ", right-handed",
+            Some(2) => ", left-handed",
+            _ => "",
+        };
+        Some(format!("{} {}{hand}", axes.join(", "), unit.symbol()))
+    }
+
     fn value(values: &Values) -> Option<Position> {
         position(values, unit_of(values))
     }
@@ -92,27 +103,21 @@ pub struct Set {
 
 impl Command for Set {
     type Family = Yrcx;
-    type Report = Stored;
+    type Report = WrittenOf<Numbered<Points>>;
     const ID: &'static str = "yrcx.point.set";
+    const RISK: Risk = Risk::Destroy;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    fn risk(&self) -> Risk {
-        table::Command::PointSet.row().risk
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        overwrite::confirmation(table::Command::PointSet)
-    }
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Stored, Failure> {
-        let Context { link, authority, .. } = context;
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenOf<Numbered<Points>>, Failure> {
+        let Context { robot, link, screen, authority, .. } = context;
         let Given { unit, four, hand } = self.given()?;
-        let draft = link.draft(table::Command::PointSet)?.with(Key::Point, self.point).with(Key::Unit, unit);
-        let order = four.put(draft).with_some(Key::HandSystem, hand.clone()).build()?;
-        let done = overwrite::give(link, &authority, &order, Command::intent(self)).await?;
-        let unit = if unit == "mm" { "mm" } else { "pulses" };
-        let hand = hand.map(|hand| format!(", {hand}-handed")).unwrap_or_default();
-        let words = format!("defined point {}: {} {unit}{hand}", self.point, four.describe());
-        Ok(overwrite::stored(words, &done))
+        let table = Numbered::<Points>::default();
+        let [one, two, three, four] = four.each_ref().map(String::as_str);
+        let texts = [unit, one, two, three, four, hand.as_deref().unwrap_or_default()].map(Some);
+        let draft = table
+            .draft(self.point, &texts)
+            .map_err(|why| Failure::usage(format!("point {}: {why}", self.point)).hint("see `yrcx point set -h`"))?;
+        write(Work { table, robot, link, screen, authority }, vec![(self.point, draft)]).await?.or_only_failure()
     }
 }
 
@@ -131,6 +136,15 @@ impl Set {
             (None, None, file) => printed_point(file.as_deref().unwrap_or_else(|| Path::new("-"))),
         }
     }
+}
+
+/// A number for each of the four axes, as typed.
+type Four = [String; 4];
+
+fn four(text: &str) -> Result<Four, String> {
+    let numbers: Vec<String> = text.split(',').map(|number| number.trim().to_owned()).collect();
+    let count = numbers.len();
+    numbers.try_into().map_err(|_| format!("expected four numbers, one per axis, as in 10,-20,5,-18; {count} given"))
 }
 
 /// Point in the output of `position --json` or `point get --json`.
@@ -214,15 +228,8 @@ mod tests {
         let (read, failure, _) = report_on(Scripted::new([refusal(2, 904), answer(4), refusal(2, 904)]), &line);
         let points = read["items"].as_array().unwrap();
         let numbers = points.iter().map(|point| (point["name"].as_str().unwrap(), point["ok"].as_bool().unwrap()));
-        assert_eq!(numbers.collect::<Vec<_>>(), [("3", false), ("4", true), ("5", false)]);
-        let error = &points[0]["error"];
-        assert_eq!(
-            (&error["asked"], &error["code"], &error["kind"]),
-            (&json!("point 3"), &json!("2.904"), &json!("refused"))
-        );
-        let failure = failure.unwrap();
-        assert_eq!((failure.kind.exit(), failure.code.as_deref()), (9, Some("2.904")));
-        assert!(failure.message.starts_with("2 of 3 failed: point 3: the controller refused point-get"), "{failure}");
+        assert_eq!(numbers.collect::<Vec<_>>(), [("3", true), ("4", true), ("5", true)]);
+        assert_eq!((&points[0]["value"], points[1]["value"].is_object(), failure), (&json!(null), true, None));
         let (_, failure, peer) = report_on(Scripted::new([refusal(2, 904), refusal(2, 904), refusal(2, 904)]), &line);
         assert_eq!((failure.unwrap().kind.exit(), peer.taken.len()), (3, 3));
         let (only, _) = run_on(Scripted::new([refusal(2, 904)]), &["point", "get", "3"]);

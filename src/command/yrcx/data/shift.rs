@@ -3,33 +3,14 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Four, four};
-use crate::command::commands;
-use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::store::{Ids, Words, ids, table_commands};
 use crate::command::yrcx::backup::{Records, SHIFTS};
-use crate::command::yrcx::numbers::single;
-use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::single::one_row;
 use crate::command::yrcx::stores::{Kind, Numbered, all_zero, mm as mm_of};
-use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 
-commands! {
+table_commands! {
     /// Commands for shifts.
-    pub enum ShiftData {
-        /// Read shifts: 5, 0..39
-        Get(Get<Numbered<Shifts>>),
-        /// List the defined shifts
-        List(List<Numbered<Shifts>>),
-        /// Define a shift: 5 --mm 10,-20,5,-18
-        Set(Set),
-        /// Copy a shift to other shifts
-        Copy(Copy<Numbered<Shifts>>),
-        /// Save to a CSV file
-        Dump(Dump<Numbered<Shifts>>),
-        /// Write from a CSV file
-        Restore(Restore<Numbered<Shifts>>),
-    }
+    ShiftData of Numbered<Shifts> {}
 }
 
 /// The shifts of the controller.
@@ -65,30 +46,15 @@ pub struct Shift {
     shift_mm: [f64; 4],
 }
 
-one_row! {
-    /// Defines a shift.
-    Set(self) "yrcx.shift-data.set" -> Stored {
-        /// Shift, 0 to 39
-        #[arg(value_name = "SHIFT", value_parser = |text: &str| single(table::Command::ShiftSet, Key::Shift, text))]
-        shift: i32,
-        /// Shift of axes 1 to 4 in mm, or degrees for rotary axes
-        #[arg(long, value_name = "MM,…", required = true, allow_hyphen_values = true, value_parser = four)]
-        mm: Four,
-    }
-    gives table::Command::ShiftSet,
-    with draft => self.mm.put(draft.with(Key::Shift, self.shift)),
-    done format!("defined shift {}: {} mm", self.shift, self.mm.describe());
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, objection, read_example, written};
+    use crate::command::yrcx::testing::{example, objection, read_example, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
-        let set = ["shift-data", "set", "5", "--mm", "10,-20,5,-18"];
+        let set = ["shift-data", "set", "5", "10", "-20", "5", "-18"];
         assert_eq!(written(&set).unwrap(), [example("4.3.4-define")]);
         assert_eq!(
             read_example("4.3.4-define", &set)["items"][0]["new"],
@@ -100,7 +66,7 @@ mod tests {
 
     #[test]
     fn mistakes_are_named() {
-        assert!(objection(&["shift-data", "set", "40", "--mm", "1,2,3,4"]).contains("allowed: 0 to 39"));
-        assert!(objection(&["shift-data", "set", "4"]).contains("--mm"));
+        assert!(objection(&["shift-data", "set", "40", "1", "2", "3", "4"]).contains("allowed: 0 to 39"));
+        assert!(words(&["shift-data", "set", "4", "1"]).unwrap_err().message.contains("4 values needed, 1 given"));
     }
 }

@@ -1,7 +1,7 @@
 //! Parameters that are accessible by remote commands (4.4.2). The manual lists neither 261 nor 263.
 
 /// One parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Parameter {
     /// Its number.
     pub number: u16,
