@@ -100,12 +100,11 @@ async fn write_selected<S: Writable>(
     authority: Authority<'_>,
     rows: Vec<Row<S>>,
 ) -> Result<Vec<Compared<S>>, Failure> {
-    let keys: Vec<S::Key> = rows.iter().map(|(key, _)| *key).collect();
-    let read = match table.read_old(link, screen, &keys).await {
+    let read = match table.read_old(link, screen, &rows).await {
         // All are refused alike: each is judged below.
         Err(failure) if failure.kind == Kind::Refused => {
-            let refused = keys.iter().map(|_| Err(failure.clone()));
-            Ok(Answers { rows: refused.collect(), asked: keys.len() })
+            let refused = rows.iter().map(|_| Err(failure.clone()));
+            Ok(Answers { rows: refused.collect(), asked: rows.len() })
         }
         read => read,
     };

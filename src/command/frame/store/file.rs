@@ -21,7 +21,7 @@ use crate::controller::findings::Findings;
 use crate::controller::sheet::{Column, Sheet};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
-use crate::output::view::View;
+use crate::output::view::{Section, View};
 
 /// Saves rows to a CSV file.
 #[derive(Debug, Args)]
@@ -62,17 +62,19 @@ impl<S: Store> Command for Dump<S> {
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
-        let (mut rows, mut errors) = (Vec::new(), Vec::new());
+        let (mut rows, mut errors, mut undefined) = (Vec::new(), Vec::new(), Vec::new());
         for (key, outcome) in keys.iter().zip(answers.rows) {
             let name = S::name(*key);
             match defined::<S>(outcome) {
                 Ok(Some(wire)) if S::SAVES_BLANK || old.is_some() || !table.is_blank(&wire) => {
                     rows.push([vec![name], table.texts(&wire)].concat());
                 }
-                Ok(None) if old.is_some() => {
+                // A row without values can be restored.
+                Ok(None) if old.is_some() && table.fields().iter().all(|field| field.is_optional) => {
                     rows.push([vec![name], vec![String::new(); table.fields().len()]].concat());
                 }
-                Ok(_) => {}
+                Ok(Some(_)) => {}
+                Ok(None) => undefined.push(*key),
                 Err(failure) => errors.push(ItemError::new(asked(S::WORDS.nouns[0], &name), failure)),
             }
         }
@@ -81,7 +83,7 @@ impl<S: Store> Command for Dump<S> {
             leave_out_unused(&table, &mut columns, &mut rows);
         }
         let file = target.write(&columns, &rows, canonical::<S>)?;
-        Ok(Dumped { file, saved: rows.len(), failed: errors })
+        Ok(Dumped { file, saved: rows.len(), not_defined: S::names(&undefined), failed: errors })
     }
 }
 
@@ -135,13 +137,19 @@ pub struct Dumped {
     file: String,
     /// How many rows it holds.
     saved: usize,
+    /// Rows that are not defined: `3, 7..9`.
+    not_defined: String,
     /// Rows that were not read.
     failed: Vec<ItemError>,
 }
 
 impl Report for Dumped {
     fn view(&self) -> View {
-        View::fields([("file", self.file.as_str().into()), ("rows", self.saved.into())])
+        let mut fields = vec![("file", self.file.as_str().into()), ("rows", self.saved.into())];
+        if !self.not_defined.is_empty() {
+            fields.push(("not defined", self.not_defined.as_str().into()));
+        }
+        View { sections: vec![Section::Fields(fields)] }
     }
 
     fn failure(&self) -> Option<Failure> {
