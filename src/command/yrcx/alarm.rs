@@ -137,9 +137,9 @@ impl Command for History {
         let robot = context.robot;
         let field = (table::Command::AlarmHistory, Key::History);
         let of = |values: &Values| entry(values, Kind::Alarm);
-        let (numbers, read) = read_numbers(context, ["alarm", "alarms"], field, &self.numbers, of).await?;
+        let read = read_numbers(context, ["alarm", "alarms"], field, &self.numbers, of).await?;
         let mut alarms = Vec::new();
-        for (number, outcome) in numbers.into_iter().zip(read.outcomes) {
+        for (number, outcome) in read {
             let Some(mut outcome) = outcome.filled() else { continue };
             if let Some(entry) = outcome.data_mut() {
                 *entry = explained(entry.clone(), robot)?;

@@ -97,6 +97,6 @@ async fn programs(robot: &dyn Ask, candidate: fn(&str, &str, &str) -> Candidate)
 /// Numbers and states of the tasks with a program.
 async fn tasks(robot: &dyn Ask) -> Vec<(String, String)> {
     let data = robot.data(&["yrcx", "info", "tasks", "1..8"]).await;
-    let tasks = rows(data.as_ref(), "tasks").map(|task| (text(task, "task"), text(task, "state")));
-    tasks.filter(|(_, state)| state != "no task").collect()
+    let tasks = rows(data.as_ref(), "items").map(|task| (text(task, "name"), text(task, "value")));
+    tasks.filter(|(_, state)| !state.is_empty()).collect()
 }

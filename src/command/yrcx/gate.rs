@@ -203,7 +203,7 @@ impl Desk {
         let mut bench = Bench::new();
         bench.run(&desk.line("backup @/saved --only pallets,shifts"), true).unwrap();
         for (name, text) in [
-            ("points.csv", "point;unit;axis_2;comment\n7;mm;-2,5;SEVEN\n"),
+            ("points.csv", "name;unit;axis_2;comment\n7;mm;-2,5;SEVEN\n"),
             ("comments-7.csv", "name,comment\n7,NEW\n"),
             ("pallets-7.csv", "name,nx\n7,3\n"),
             ("shifts-7.csv", "name,axis_4_mm\n7,5\n"),

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::backup::Records;
 use super::link::{Link, Yrcx};
-use super::numbers::{Numbers, named};
+use super::numbers::{Numbers, named, runs};
 use super::several::{ask_each, is_undefined};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
@@ -87,6 +87,11 @@ impl PartialEq for Row {
 }
 
 impl Row {
+    /// The values of its fields.
+    pub fn values(&self) -> &Values {
+        &self.values
+    }
+
     /// Row with these values.
     pub fn new<K: Kind>(number: i32, values: Values) -> Self {
         let mut texts = K::RECORDS.row(number, &values);
@@ -128,6 +133,10 @@ impl<K: Kind> Store for Numbered<K> {
 
     fn name(number: i32) -> String {
         named(K::RECORDS.read, key::<K>(), number)
+    }
+
+    fn names(numbers: &[i32]) -> String {
+        runs(numbers)
     }
 
     async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
@@ -185,7 +194,7 @@ fn is_number(key: Key) -> bool {
 }
 
 /// New content of a row: the text of each field, if given.
-type Draft = Vec<Option<String>>;
+pub type Draft = Vec<Option<String>>;
 
 impl<K: Kind> Writable for Numbered<K> {
     type Draft = Draft;
@@ -201,12 +210,19 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 
     fn whole(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
+        // Axes in another unit are not kept.
+        let unit = K::RECORDS.columns[1..].iter().position(|(_, key)| *key == Key::Unit);
+        let has_unit = |old: &&Row| unit.is_none_or(|at| draft[at].as_ref().is_none_or(|unit| *unit == old.texts[at]));
+        let old = old.filter(has_unit);
         let kept = |(at, text): (usize, &Option<String>)| match (text, old) {
             (Some(text), _) => Ok(text.clone()),
             (None, Some(old)) => Ok(old.texts[at].clone()),
+            (None, None) if K::RECORDS.columns[at + 1].1 == Key::HandSystem => Ok(String::new()),
             (None, None) => {
                 let (one, field) = (Self::WORDS.nouns[0], K::RECORDS.columns[at + 1].0);
-                let message = format!("{one} {number} is not defined, so it has no {field} to keep");
+                let unit =
+                    unit.and_then(|at| draft[at].as_ref()).map_or_else(String::new, |unit| format!(" in {unit}"));
+                let message = format!("{one} {number} is not defined{unit}, so it has no {field} to keep");
                 Err(Failure::usage(message).hint("nothing was written; give all values"))
             }
         };
@@ -218,12 +234,15 @@ impl<K: Kind> Writable for Numbered<K> {
     async fn plan(&self, link: &mut Link, rows: &[store::Row<Self>]) -> Result<(), Failure> {
         for (number, draft) in rows {
             let reason = Reason::default().depending_on("the current data: written if different");
+            let is_pulse = draft.iter().flatten().any(|text| text == "pulse");
+            let sample = |key: Key, which: usize| match key {
+                Key::HandSystem if is_pulse => "",
+                key => samples(key, *number)[which],
+            };
             // Two rows that agree only in the given fields.
             let filled = |which: usize| {
                 let columns = draft.iter().zip(&K::RECORDS.columns[1..]);
-                columns
-                    .map(|(text, (_, key))| text.clone().unwrap_or_else(|| samples(*key, *number)[which].into()))
-                    .collect()
+                columns.map(|(text, (_, key))| text.clone().unwrap_or_else(|| sample(*key, which).into())).collect()
             };
             match (stored::<K>(*number, filled(0)), stored::<K>(*number, filled(1))) {
                 (Ok((one, _)), Ok((other, _))) => link.plan_depending(&one, &other, reason),

@@ -129,12 +129,11 @@ pub async fn compare<S: Writable>(
     screen: &Screen,
     rows: &[Row<S>],
 ) -> Result<Option<Vec<Compared<S>>>, Failure> {
-    let keys: Vec<S::Key> = rows.iter().map(|(key, _)| *key).collect();
-    let read = match table.read_old(link, screen, &keys).await {
+    let read = match table.read_old(link, screen, rows).await {
         // All are refused alike: each is judged below.
         Err(failure) if failure.kind == Kind::Refused => {
-            let refused = keys.iter().map(|_| Err(failure.clone()));
-            Ok(Answers { rows: refused.collect(), asked: keys.len() })
+            let refused = rows.iter().map(|_| Err(failure.clone()));
+            Ok(Answers { rows: refused.collect(), asked: rows.len() })
         }
         read => read,
     };

@@ -21,7 +21,7 @@ use crate::controller::findings::Findings;
 use crate::controller::sheet::{Column, Sheet};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
-use crate::output::view::View;
+use crate::output::view::{Section, View};
 
 /// Saves rows to a CSV file.
 #[derive(Debug, Args)]
@@ -62,13 +62,17 @@ impl<S: Store> Command for Dump<S> {
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
-        let mut kept = Kept::default();
+        let (mut kept, mut undefined) = (Kept::default(), Vec::new());
         for (key, outcome) in keys.iter().zip(answers.rows) {
             let is_wanted = |wire: &S::Wire| S::SAVES_BLANK || old.is_some() || !table.is_blank(wire);
             match kept.add(&table, *key, outcome) {
                 Some(Some(wire)) if is_wanted(&wire) => kept.save(&table, *key, Some(&wire)),
-                Some(None) if old.is_some() => kept.save(&table, *key, None),
-                _ => {}
+                // A row without values can be restored.
+                Some(None) if old.is_some() && table.fields().iter().all(|field| field.is_optional) => {
+                    kept.save(&table, *key, None);
+                }
+                Some(None) => undefined.push(*key),
+                Some(Some(_)) | None => {}
             }
         }
         let Kept { mut rows, left_out, failed } = kept;
@@ -77,7 +81,7 @@ impl<S: Store> Command for Dump<S> {
             leave_out_unused(&table, &mut columns, &mut rows);
         }
         let file = target.write(&columns, &rows, canonical::<S>)?;
-        Ok(Dumped { file, saved: rows.len(), left_out, failed })
+        Ok(Dumped { file, saved: rows.len(), not_defined: S::names(&undefined), left_out, failed })
     }
 }
 
@@ -202,6 +206,8 @@ pub struct Dumped {
     file: String,
     /// How many rows it holds.
     saved: usize,
+    /// Rows that are not defined: `3, 7..9`.
+    not_defined: String,
     /// Rows that cannot be written back, or that the controller does not have.
     left_out: Vec<LeftOut>,
     /// Rows that were not read.
@@ -210,12 +216,15 @@ pub struct Dumped {
 
 impl Report for Dumped {
     fn view(&self) -> View {
-        let (file, saved) = (("file", self.file.as_str().into()), ("rows", self.saved.into()));
-        let left_out: Vec<&str> = self.left_out.iter().map(|row| row.name.as_str()).collect();
-        match &left_out[..] {
-            [] => View::fields([file, saved]),
-            names => View::fields([file, saved, ("left out", names.join(", ").into())]),
+        let mut fields = vec![("file", self.file.as_str().into()), ("rows", self.saved.into())];
+        if !self.not_defined.is_empty() {
+            fields.push(("not defined", self.not_defined.as_str().into()));
         }
+        let left_out: Vec<&str> = self.left_out.iter().map(|row| row.name.as_str()).collect();
+        if !left_out.is_empty() {
+            fields.push(("left out", left_out.join(", ").into()));
+        }
+        View { sections: vec![Section::Fields(fields)] }
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -223,6 +223,11 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// A row as it is typed.
     fn name(key: Self::Key) -> String;
 
+    /// Several rows as they are typed.
+    fn names(keys: &[Self::Key]) -> String {
+        keys.iter().map(|key| Self::name(*key)).collect::<Vec<_>>().join(", ")
+    }
+
     /// A row in questions.
     fn asked(key: Self::Key) -> String {
         asked(Self::WORDS.nouns[0], &Self::name(key))
@@ -399,9 +404,10 @@ pub trait Writable: Store {
         &self,
         link: &mut <Self::Family as Family>::Link,
         screen: &Screen,
-        keys: &[Self::Key],
+        rows: &[Row<Self>],
     ) -> Result<Answers<Self::Wire>, Failure> {
-        self.read(link, screen, keys).await
+        let keys: Vec<Self::Key> = rows.iter().map(|(key, _)| *key).collect();
+        self.read(link, screen, &keys).await
     }
 
     /// Rows that one request writes, by their index; otherwise each row has a request of its own.

@@ -1,7 +1,7 @@
 //! `set`: one row.
 
-use clap::Args;
 use clap::builder::ValueRange;
+use clap::{ArgAction, Args};
 
 use super::change::{Work, confirmation, intent, write};
 use super::{Store, Writable, WrittenOf, read_keys};
@@ -22,6 +22,7 @@ pub struct Set<S: Writable> {
     row: One<S>,
     /// All values in their order, or some as NAME=VALUE, which keeps the others
     #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true, allow_hyphen_values = S::IS_TEXT,
+        action = if S::IS_TEXT { ArgAction::Set } else { ArgAction::Append },
         num_args = if S::IS_TEXT { ValueRange::SINGLE } else { ValueRange::from(1..) })]
     values: Vec<String>,
 }

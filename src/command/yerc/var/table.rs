@@ -334,8 +334,9 @@ impl Writable for Variables {
         }
     }
 
-    async fn read_old(&self, link: &mut Link, screen: &Screen, keys: &[Reference]) -> Result<Answers<Value>, Failure> {
-        self.read(link.for_purpose(BEFORE), screen, keys).await
+    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<Value>, Failure> {
+        let keys: Vec<Reference> = rows.iter().map(|(key, _)| *key).collect();
+        self.read(link.for_purpose(BEFORE), screen, &keys).await
     }
 
     /// Consecutive variables of a kind are one request; so is a single axis of a BP or an EX.

@@ -7,11 +7,9 @@ mod parts;
 mod restore;
 mod rows;
 mod save;
-mod sheet;
 #[cfg(test)]
 mod tests;
 
 pub use parts::{COMMENTS, HANDS, PALLETS, POINTS, Records, SHIFTS, VARIABLES};
 pub use restore::restore;
 pub use save::{Backup, back_up, points};
-pub use sheet::{Dump, Restore};

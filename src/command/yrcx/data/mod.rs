@@ -4,6 +4,7 @@ mod comment;
 mod hand;
 mod pallet;
 mod point;
+mod sheet;
 mod shift;
 
 pub use comment::{Comment, Comments};

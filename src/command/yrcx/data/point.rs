@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::command::frame::store::{Copy, Get, Ids, List, Words, Work, Writable as _, WrittenOf, ids, write};
+use super::sheet::PointSheet;
+use crate::command::frame::store::{
+    Copy, Dump, Get, Ids, List, Restore, Words, Work, Writable as _, WrittenOf, ids, write,
+};
 use crate::command::frame::teach::printed_position;
 use crate::command::robot::position::Position;
-use crate::command::yrcx::backup::{Dump, POINTS, Records, Restore};
+use crate::command::yrcx::backup::{POINTS, Records};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::position::{Unit, mm, position};
@@ -31,9 +34,9 @@ commands! {
         /// Copy a point to others: 5 6..8
         Copy(Copy<Numbered<Points>>),
         /// Save points and their comments to a CSV file
-        Dump(Dump),
+        Dump(Dump<PointSheet>),
         /// Write points and their comments from a CSV file
-        Restore(Restore),
+        Restore(Restore<PointSheet>),
     }
 }
 

@@ -4,18 +4,19 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::robot::item::{Columns, Item, Items};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::program;
-use crate::command::yrcx::several::{Answers, Rows, Several, ask_each};
+use crate::command::yrcx::several::ask_each;
 use crate::command::yrcx::single::shown;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::typed;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
-use crate::output::view::{Cell, Tone, View};
+use crate::output::view::{Cell, Tone};
 
 /// Tasks of one command.
 const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
@@ -47,12 +48,13 @@ impl Chosen {
     }
 
     /// Reads the halves with a selected task, and returns the tasks with their values.
-    async fn read<V>(
+    async fn read<V: Clone>(
         &self,
         context: Context<'_, Yrcx>,
         command: table::Command,
-        of: impl Fn(&Values, Key) -> V,
-    ) -> Result<Rows<Which, V>, Failure> {
+        of: impl Fn(&Values, Key) -> Option<(V, Cell)>,
+        heading: &'static str,
+    ) -> Result<Items<V>, Failure> {
         let Context { link, screen, .. } = context;
         let halves: Vec<usize> =
             (0..2).filter(|half| (1..=HALF.len()).any(|place| self.has(half * HALF.len() + place))).collect();
@@ -65,20 +67,23 @@ impl Chosen {
             return Err(Failure { message: format!("{}: {}", told(half), failure.message), ..failure.clone() });
         }
         // The outcome of a half applies to each of its tasks.
-        let asked = &halves[..answers.asked];
-        let places: Vec<(usize, usize)> =
-            halves.iter().flat_map(|half| (0..HALF.len()).map(|at| (*half, at))).collect();
-        let places: Vec<(usize, usize)> = places.into_iter().filter(|(half, at)| self.has(task(*half, *at))).collect();
-        let outcome = |half: usize| {
-            let at = halves.iter().position(|other| *other == half).unwrap_or_default();
-            answers.outcomes[at].clone()
-        };
-        let outcomes = places.iter().map(|(half, _)| outcome(*half)).collect();
-        let count = places.iter().filter(|(half, _)| asked.contains(half)).count();
-        let names = places.iter().map(|(half, at)| format!("task {}", task(*half, *at)));
-        let of_task = |place: usize, values: &Values| of(values, HALF[places[place].1]);
-        let several = Several::of(names, Answers { outcomes, asked: count }, of_task)?;
-        Ok(several.rows(places.iter().map(|(half, at)| Which { task: task(*half, *at) })))
+        let (mut items, mut asked) = (Vec::new(), 0);
+        for (at, (half, outcome)) in halves.iter().zip(&answers.outcomes).enumerate() {
+            for (place, key) in HALF.into_iter().enumerate().filter(|(place, _)| self.has(task(*half, *place))) {
+                let read = outcome.clone().map(|values| of(&values, key));
+                // Of all tasks, those that exist are reported.
+                if self.tasks.is_empty() && matches!(read, Ok(None)) {
+                    continue;
+                }
+                let cell = read.as_ref().ok().cloned().flatten().map(|(_, cell)| cell);
+                let value = read.map(|read| read.map(|(value, _)| value));
+                let item = Item::new("task", task(*half, place).to_string(), value);
+                items.push(Item { cells: cell.into_iter().collect(), ..item });
+                asked += usize::from(at < answers.asked);
+            }
+        }
+        let columns = Columns { name: "task", values: vec![heading], empty: "no tasks" };
+        Items::new(columns, items).asked(asked).or_only_failure()
     }
 }
 
@@ -91,53 +96,21 @@ pub struct Tasks {
 
 impl Command for Tasks {
     type Family = Yrcx;
-    type Report = States;
+    type Report = Items<String>;
     const ID: &'static str = "yrcx.info.tasks";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<String>, Failure> {
         let command = table::Command::TaskStatus;
-        let of = |values: &Values, key| State { state: shown(command, values, key).unwrap_or_default() };
-        let mut tasks = self.chosen.read(context, command, of).await?;
-        tasks.retain(|_, state| !self.chosen.tasks.is_empty() || state.state != NO_TASK);
-        Ok(States { tasks })
+        let of = |values: &Values, key| {
+            let state = shown(command, values, key).filter(|state| state != NO_TASK)?;
+            let tone = if state == "execution" { Tone::Good } else { Tone::Plain };
+            Some((state.clone(), Cell::from(state).tone(tone)))
+        };
+        self.chosen.read(context, command, of, "state").await
     }
 }
 
 const NO_TASK: &str = "no task";
-
-/// States of tasks.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct States {
-    tasks: Rows<Which, State>,
-}
-
-/// Task number.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    /// 1 to 16.
-    task: usize,
-}
-
-/// State of a task.
-#[derive(Debug, Serialize, JsonSchema)]
-struct State {
-    /// `execution`, `stop`, `suspend`, `standby`, or `no task`.
-    state: String,
-}
-
-impl Report for States {
-    fn view(&self) -> View {
-        let cells = |State { state }: &State| {
-            let tone = if state == "execution" { Tone::Good } else { Tone::Plain };
-            [Cell::from(state.as_str()).tone(tone)]
-        };
-        View::table(self.tasks.table(["task"], ["state"], "no tasks", |which| [which.task.into()], cells))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.tasks.failure()
-    }
-}
 
 /// Reads the current line of each task.
 #[derive(Debug, Args)]
@@ -148,47 +121,26 @@ pub struct Line {
 
 impl Command for Line {
     type Family = Yrcx;
-    type Report = Lines;
+    type Report = Items<TaskLine>;
     const ID: &'static str = "yrcx.info.line";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Lines, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<TaskLine>, Failure> {
         let of = |values: &Values, key| {
-            let line = values.int(key).filter(|line| *line != 0).map(program::ProgramLine::of);
-            TaskLine { line: line.map(|line| line.line), in_common: line.is_some_and(|line| line.in_common) }
+            let line = values.int(key).filter(|line| *line != 0).map(program::ProgramLine::of)?;
+            let cell = Cell::number(line.describe());
+            Some((TaskLine { line: line.line, in_common: line.in_common }, cell))
         };
-        let mut tasks = self.chosen.read(context, table::Command::TaskLines, of).await?;
-        tasks.retain(|_, line| !self.chosen.tasks.is_empty() || line.line.is_some());
-        Ok(Lines { tasks })
+        self.chosen.read(context, table::Command::TaskLines, of, "line").await
     }
-}
-
-/// Current lines of tasks.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Lines {
-    tasks: Rows<Which, TaskLine>,
 }
 
 /// Current line of a task.
-#[derive(Debug, Serialize, JsonSchema)]
-struct TaskLine {
-    /// From 1; null if there is no such task.
-    line: Option<i32>,
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct TaskLine {
+    /// From 1.
+    line: i32,
     /// Whether it is a line of the COMMON program.
     in_common: bool,
-}
-
-impl Report for Lines {
-    fn view(&self) -> View {
-        let cells = |TaskLine { line, in_common }: &TaskLine| {
-            let told = line.map(|line| program::ProgramLine { line, in_common: *in_common }.describe());
-            [Cell::number(told.unwrap_or_else(|| "-".to_owned()))]
-        };
-        View::table(self.tasks.table(["task"], ["line"], "no tasks", |which| [which.task.into()], cells))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.tasks.failure()
-    }
 }
 
 #[cfg(test)]
@@ -201,14 +153,17 @@ mod tests {
     fn the_examples_of_the_manual() {
         assert_eq!(words(&["info", "tasks", "1..8"]).unwrap(), [example("4.7.5-reference")]);
         let read = read_example("4.7.5-reference", &["info", "tasks", "1..8"]);
-        let states: Vec<&str> =
-            read["tasks"].as_array().unwrap().iter().map(|task| task["state"].as_str().unwrap()).collect();
-        let none = "no task";
-        assert_eq!(states, ["execution", "execution", none, none, "suspend", none, none, none]);
+        let states: Vec<Option<&str>> =
+            read["items"].as_array().unwrap().iter().map(|task| task["value"].as_str()).collect();
+        let (runs, waits) = (Some("execution"), Some("suspend"));
+        assert_eq!(states, [runs, runs, None, None, waits, None, None, None]);
         assert_eq!(words(&["info", "line", "1..8"]).unwrap(), [example("4.7.6-reference")]);
         let read = read_example("4.7.6-reference", &["info", "line", "2-3,5"]);
-        let task = |task, line: Option<i32>| json!({"task": task, "ok": true, "line": line, "in_common": false});
-        assert_eq!(read["tasks"], json!([task(2, Some(19)), task(3, None), task(5, Some(99))]));
+        let task = |task, line: Option<i32>| {
+            let value = line.map(|line| json!({"line": line, "in_common": false}));
+            json!({"name": task, "label": null, "kind": "task", "ok": true, "value": value})
+        };
+        assert_eq!(read["items"], json!([task("2", Some(19)), task("3", None), task("5", Some(99))]));
     }
 
     #[test]
