@@ -127,6 +127,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yerc var watch B0", Read),
     ("yerc var watch B0..B9 R3 --for 1m", Read),
     ("yerc var copy P5 P6..P8", Destroy),
+    ("yerc var copy P5 P6,P8 --dry-run", Destroy),
     ("yerc var dump vars.csv", Read),
     ("yerc var dump positions.csv P,BP", Read),
     ("yerc var dump points.csv P0..P9 --update", Read),

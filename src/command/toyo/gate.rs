@@ -23,7 +23,7 @@ const LINES: &[(&str, Risk)] = &[
     ("alarm list", Read), ("alarm watch", Read), ("alarm history", Read), ("alarm reset", Write), ("alarm point", Read),
     ("run sequential 1", Motion), ("run palletizing --program 1", Motion), ("run easy --program 1", Motion),
     ("run point 1", Motion), ("jog X + inch", Motion), ("jog 2 - low --for 500ms", Motion),
-    ("param list", Read), ("param get P01", Read), ("param dump p.csv", Read),
+    ("param list", Read), ("param get P01", Read), ("param watch P01", Read), ("param dump FOLDER/p.csv", Read),
     ("param set P01 ax2=150", Destroy), ("param set P01 1 2 3 4", Destroy), ("param set E22 1000 0 0 0", Destroy),
     ("param restore FOLDER/parameters.csv", Destroy),
     ("point get 1", Read), ("point list", Read), ("point watch 1", Read), ("teach 1", Destroy), ("point set 1 z=5", Destroy), ("point set 1 1 2 3 4", Destroy),

@@ -278,8 +278,10 @@ mod tests {
                 assert!(failure.message.contains("'ax2=+0000.5' is not in the manual"), "{failure}");
                 assert_eq!(failure.hint.unwrap(), "nothing was written; type all values");
             }
-            let dumped = bench.data(&["param", "dump"]);
-            assert_eq!((&dumped["unfit"][0]["key"], &dumped["unfit"][0]["in_manual"]), (&id.into(), &false.into()));
+            let folder = tempfile::tempdir().unwrap();
+            let dumped = bench.data(&["param", "dump", folder.path().join("p.csv").to_str().unwrap(), id]);
+            assert_eq!((&dumped["saved"], &dumped["left_out"][0]["name"]), (&0.into(), &entry["name"]));
+            assert!(dumped["left_out"][0]["why"].as_str().unwrap().ends_with("is not in the manual"), "{dumped}");
         }
         let mut bench = with_faults("@RPAR T2 V02", Fault::Answered("@RPAR T2 V02=250"));
         let rows = bench.data(&["speed-table", "get", "1-2"]);

@@ -269,10 +269,10 @@ b.txt: 2 steps, 1 label
             let check = Check { files: vec![path.clone()], room: 5000, points: None, name: Vec::new(), strict: false };
             let screen = Screen::new(crate::output::Format::Json, crate::output::ColorChoice::Never, true, 0);
             let verdict = check.run(&screen).unwrap();
-            let told = verdict.files[0].findings.iter().filter(|remark| remark.message.starts_with("at the desk"));
+            let told = verdict.files[0].findings.iter().filter(|remark| remark.message.starts_with("in an offline run"));
             told.map(|remark| (remark.severity, remark.line, remark.message.clone())).collect::<Vec<_>>()
         };
-        let error = |code: &str| format!("at the desk a controller stops here after 0.001 s: error {code}");
+        let error = |code: &str| format!("in an offline run a controller stops here after 0.001 s: error {code}");
         assert_eq!(
             findings("CNT+ CN1=9999\nCNT+ CN1=1\nEND\n"),
             [("warning", 2, error("A7: calculation error"))],
@@ -281,7 +281,7 @@ b.txt: 2 steps, 1 label
         assert_eq!(findings("NOP\nTSTR TASK=2\nEND\n"), [("note", 2, error("63: task cannot be started"))]);
         assert_eq!(
             findings("NOP\nIN STN=0 PN1=.......1 AND\nEND\n"),
-            [("note", 2, "at the desk everything waits here after 0.001 s".to_owned())]
+            [("note", 2, "in an offline run everything waits here after 0.001 s".to_owned())]
         );
         for text in ["RET\n", "a: SPD V=1\nJMP TAG=a\n", "SPD V=1\nEND\n"] {
             assert_eq!(findings(text), [], "{text}: it is said already, or nothing stops");

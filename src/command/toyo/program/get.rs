@@ -345,7 +345,7 @@ mod tests {
         let (got, failure) = with_step_2(Fault::Answered("@NG")).run(&words).unwrap();
         assert!(got["files"][0]["ok"] == false && got["text"].as_str().unwrap().contains("\n?  # step 2"), "{got}");
         let failure = failure.unwrap();
-        assert!(failure.message.ends_with("was not written, as the program is not whole"), "{failure}");
+        assert!(failure.message.ends_with("was not written, because the program is incomplete"), "{failure}");
         assert_eq!(std::fs::read_to_string(path).unwrap(), "whole");
         let (got, _) = with_step_2(Fault::Lost).run(&["program", "get", "--to", "9"]).unwrap();
         assert_eq!(

@@ -111,10 +111,10 @@ fn a_program_must_fit_its_task() {
     let failure = desk.put(SAMPLE, &["--task", "2"]).unwrap_err();
     assert_eq!(
         (failure.kind, failure.message.as_str()),
-        (Kind::Usage, "task 2 has no steps, and the command is about step 4")
+        (Kind::Usage, "task 2 has no steps, but the command needs step 4")
     );
     let failure = desk.put(SAMPLE, &["--at", "1998"]).unwrap_err();
-    assert_eq!(failure.message, "task 1 has 2000 steps, and the command is about step 2001");
+    assert_eq!(failure.message, "task 1 has 2000 steps, but the command needs step 2001");
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn nothing_falls_out_at_the_end() {
     let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"END\"] }");
     let failure = desk.failure(&["insert", "1", "--task", "2"]);
     assert_eq!(failure.kind, Kind::Rejected);
-    assert_eq!(failure.message, "step 2, the last of task 2, would fall out: END");
+    assert_eq!(failure.message, "step 2, the last of task 2, would be lost: END");
     assert_eq!(desk.text(&["--task", "2"]), "NOP\nEND\n");
 }
 
@@ -165,7 +165,7 @@ fn steps_are_copied_and_tags_found() {
     let found = desk.bench.data(&["program", "search", "7", "--task", "2"]);
     assert_eq!((&found["task"], &found["step"]), (&2.into(), &3.into()));
     let failure = desk.failure(&["search", "8"]);
-    assert_eq!((failure.kind, failure.message.as_str()), (Kind::Refused, "there is no tag 008 in task 1 (@NG)"));
+    assert_eq!((failure.kind, failure.message.as_str()), (Kind::Refused, "task 1 has no tag 008 (@NG)"));
     assert_eq!(desk.failure(&["copy", "2", "4", "--at", "4"]).kind, Kind::Usage);
 }
 
@@ -187,9 +187,9 @@ fn what_was_written_before_a_failure_is_told() {
     desk.put("SPD V=1\nEND\n", &[]).unwrap();
     let failure = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &[]).unwrap_err();
     assert_eq!(failure.kind, Kind::Malformed);
-    assert!(failure.message.contains("; step 1 is as in"), "{}", failure.message);
+    assert!(failure.message.contains("; step 1 equals "), "{}", failure.message);
     assert!(failure.message.ends_with("3 steps are still to be written"), "{}", failure.message);
-    assert!(failure.hint.unwrap().contains("--resume=2 goes on there"));
+    assert!(failure.hint.unwrap().contains("use --resume=2 to continue there"));
     assert_eq!(desk.bench.data(&["status"])["mode"], "automatic", "the mode is put back after a failure, too");
     let stored = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &["--resume=3"]).unwrap();
     assert_eq!(stored["cells_written"], 2);
