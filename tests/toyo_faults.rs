@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use armctl::controller::toyo::field::Value;
 use armctl::controller::toyo::request::{Answer, Request};
-use armctl::controller::toyo::session::{Ended, Framed, Framer, LineSession, Policy};
+use armctl::controller::toyo::session::{ExchangeResult, Framed, Framer, LineSession, Policy};
 use armctl::controller::toyo::table::Command;
 use armctl::controller::{Session as _, Step};
 use armctl::transport::line::{InProcessLine, Pace};
@@ -101,7 +101,7 @@ struct Tally {
     executions: u32,
 }
 
-async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, began: Instant) -> Ended {
+async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, began: Instant) -> ExchangeResult {
     let mut buffer = [0; 256];
     loop {
         let now = began.elapsed();
@@ -136,7 +136,7 @@ async fn talk(faults: &str, seed: u64) -> Tally {
         let executed = wire.peer().executed.get(&order).copied().unwrap_or(0);
         tally.doubled += executed.saturating_sub(1);
         match ended {
-            Ended::Answered(block) => match set.answer(&block).unwrap() {
+            ExchangeResult::Answered(block) => match set.answer(&block).unwrap() {
                 Answer::Done => {
                     tally.answered += 1;
                     tally.lost += u32::from(executed == 0);
@@ -144,7 +144,7 @@ async fn talk(faults: &str, seed: u64) -> Tally {
                 Answer::Refused => tally.refused += 1,
                 Answer::Data(_) => panic!("an order has no data"),
             },
-            Ended::NoAnswer | Ended::Unfitting { .. } => tally.open += 1,
+            ExchangeResult::NoAnswer | ExchangeResult::InvalidAnswer { .. } => tally.open += 1,
         }
         let read = Request::new(Command::Mcnt, vec![Value::Number(counter)]).unwrap();
         line.begin(&read, true);
@@ -152,7 +152,7 @@ async fn talk(faults: &str, seed: u64) -> Tally {
         let ended = exchange(&mut line, &mut wire, began).await;
         assert!(before.elapsed() <= 12 * TIMEOUT, "a read ends in time: {:?}", before.elapsed());
         let truth = wire.peer().counters.get(&counter).copied().unwrap_or(0);
-        if let Ended::Answered(block) = ended
+        if let ExchangeResult::Answered(block) = ended
             && let Answer::Data(record) = read.answer(&block).unwrap()
         {
             tally.wrong += u32::from(record.number("count") != Some(truth));

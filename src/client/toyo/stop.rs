@@ -5,7 +5,7 @@ use std::time::Duration;
 use armctl_controller::Risk;
 use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::request::{Answer, Request};
-use armctl_controller::toyo::session::{Ended, Policy};
+use armctl_controller::toyo::session::{ExchangeResult, Policy};
 use armctl_controller::toyo::table::commands::Command;
 use tokio::time::{Instant, timeout_at};
 
@@ -73,7 +73,7 @@ impl Client {
         let until = Instant::now() + STOP_WITHIN;
         let stopped = timeout_at(until, self.stop_until_at_rest(moving, &mut why)).await;
         let stopped = stopped.unwrap_or_else(|_| {
-            let silent = || self.unanswered(Ended::NoAnswer, Risk::Read, Some(&moving.stop()));
+            let silent = || self.unanswered(ExchangeResult::NoAnswer, Risk::Read, Some(&moving.stop()));
             Err(stop_error(why.unwrap_or_else(silent)))
         });
         self.set_policy(self.configured_policy);
@@ -87,7 +87,7 @@ impl Client {
 
     /// Sends a stop at once while an answer is pending. [`Client::stop`] would wait for that answer first.
     pub async fn send_urgent(&mut self, moving: Moving) {
-        if let Some(bytes) = self.session.urgent(self.started.elapsed(), &moving.stop()) {
+        if let Some(bytes) = self.session.begin_urgent(self.started.elapsed(), &moving.stop()) {
             // If the line is broken, the stop that follows reports it.
             self.send(&bytes).await.unwrap_or_default();
         }

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::link::Toyo;
-use super::orders::not_so;
+use super::orders::no_effect;
 use super::wait::wait_for_status;
 use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::{Command, Context};
@@ -48,7 +48,7 @@ impl Command for Host {
         {
             return Ok(New::of("host_on", is_on, done).replaces(old));
         }
-        Err(not_so("the host").hint("`toyo status` shows whether the host is ON"))
+        Err(no_effect("the host").hint("`toyo status` shows whether the host is ON"))
     }
 }
 

@@ -58,7 +58,7 @@ impl Command for Servo {
         if done {
             return Ok(new.replaces(old));
         }
-        Err(not_so("servo power").hint("`toyo alarm list` and `toyo status` show the reason"))
+        Err(no_effect("servo power").hint("`toyo alarm list` and `toyo status` show the reason"))
     }
 }
 
@@ -152,13 +152,13 @@ impl Command for Mode {
             let (set, new) = mode.data();
             return Ok(New::of(set, new, mode.in_force()).replaces(old));
         }
-        Err(not_so("the mode")
+        Err(no_effect("the mode")
             .hint("check parameter M10, which selects easy or external point mode: `toyo param get M10`"))
     }
 }
 
 /// Failure for a command that was accepted without effect.
-pub(super) fn not_so(what: &str) -> Failure {
+pub(super) fn no_effect(what: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("the command was accepted, but {what} did not change within 1s"))
 }
 
@@ -198,7 +198,7 @@ impl Stop {
 
 impl Command for Stop {
     type Family = Toyo;
-    type Report = Stopped;
+    type Report = StopReport;
     const ID: &'static str = "toyo.stop";
     const RISK: Risk = Risk::Write;
 
@@ -206,7 +206,7 @@ impl Command for Stop {
         true
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stopped, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<StopReport, Failure> {
         let moving = if self.jog { Moving::Jog } else { Moving::Program };
         let place = context.link.stop(moving).await;
         if context.link.is_dry() {
@@ -215,20 +215,20 @@ impl Command for Stop {
         let position = context.link.coordinates(&place?).await;
         let words = format!("the axes have stopped at {}", position.in_a_line());
         let position = position.position().of_group(UNIT);
-        Ok(Stopped { done: New::of("running", false, words).replaces(Old::UNREAD), position })
+        Ok(StopReport { done: New::of("running", false, words).replaces(Old::UNREAD), position })
     }
 }
 
 /// Report of a stop.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Stopped {
+pub struct StopReport {
     #[serde(flatten)]
     done: Done,
     /// Final position of the axes.
     position: Position,
 }
 
-impl Alike for Stopped {
+impl Alike for StopReport {
     type Core = Done;
 
     fn core(&self) -> Done {
@@ -236,7 +236,7 @@ impl Alike for Stopped {
     }
 }
 
-impl Report for Stopped {
+impl Report for StopReport {
     fn view(&self) -> View {
         self.done.view()
     }

@@ -65,7 +65,7 @@ pub struct Sequential {
 
 impl Command for Sequential {
     type Family = Toyo;
-    type Report = Ran;
+    type Report = RunReport;
     const ID: &'static str = "toyo.run.sequential";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -77,7 +77,7 @@ impl Command for Sequential {
         }
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         if self.repeat.repeat.is_some() && self.step.is_none() {
             return Err(Failure::usage("--repeat needs the first step of each run")
                 .hint("type the step, as in `toyo run sequential 1 --repeat 20`; nothing was started"));
@@ -105,7 +105,7 @@ pub struct Palletizing {
 
 impl Command for Palletizing {
     type Family = Toyo;
-    type Report = Ran;
+    type Report = RunReport;
     const ID: &'static str = "toyo.run.palletizing";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -114,12 +114,13 @@ impl Command for Palletizing {
         format!("run {}{}", program_text("palletizing", self.number.or(self.program)), self.repeat.in_words())
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         let program = self.number.or(self.program);
         confirm_start(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
         select_program(context.link, table::Command::Spln, program).await?;
-        let ran = start_and_wait(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
-        Ok(ran.of("palletizing", program))
+        let report =
+            start_and_wait(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
+        Ok(report.of("palletizing", program))
     }
 }
 
@@ -141,7 +142,7 @@ pub struct Easy {
 
 impl Command for Easy {
     type Family = Toyo;
-    type Report = Ran;
+    type Report = RunReport;
     const ID: &'static str = "toyo.run.easy";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -150,12 +151,13 @@ impl Command for Easy {
         format!("run {}{}", program_text("easy", self.number.or(self.program)), self.repeat.in_words())
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         let program = self.number.or(self.program);
         confirm_start(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
         select_program(context.link, table::Command::Sesn, program).await?;
-        let ran = start_and_wait(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
-        Ok(ran.of("easy", program))
+        let report =
+            start_and_wait(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
+        Ok(report.of("easy", program))
     }
 }
 
@@ -172,7 +174,7 @@ pub struct Point {
 
 impl Command for Point {
     type Family = Toyo;
-    type Report = Moved;
+    type Report = PointMoveReport;
     const ID: &'static str = "toyo.run.point";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -181,7 +183,7 @@ impl Command for Point {
         format!("move the axes to point {} of the coordinate table", self.point)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Moved, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointMoveReport, Failure> {
         let Context { link, authority, .. } = context;
         let (mut from, mut to) = (None, None);
         if authority.asks() {
@@ -201,19 +203,28 @@ impl Command for Point {
         let context = Context { link, authority, ..context };
         let start = Request::of(table::Command::Extp, [Value::Number(self.point)]);
         let result = start_and_wait(context, &start, (!self.end.no_wait()).then_some(None), Repeat::once()).await?;
-        let robot::Program { state, elapsed_ms, more: Place { position, .. }, .. } = result.program;
+        let robot::Program { state, elapsed_ms, more: StepReport { position, .. }, .. } = result.program;
         let reached = (state != Some(ProgramState::Running)).then_some(state == Some(ProgramState::Ended));
         let group = Some(UNIT.to_owned());
-        Ok(Moved(Motion { accepted: true, group, from, to, reached, position, elapsed_ms, ..Motion::default() }))
+        Ok(PointMoveReport(Motion {
+            accepted: true,
+            group,
+            from,
+            to,
+            reached,
+            position,
+            elapsed_ms,
+            ..Motion::default()
+        }))
     }
 }
 
 /// Result of a move to a point. From and to are null if no confirmation was necessary.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(transparent)]
-pub struct Moved(Motion);
+pub struct PointMoveReport(Motion);
 
-impl Report for Moved {
+impl Report for PointMoveReport {
     fn view(&self) -> View {
         let Self(Motion { reached, position, elapsed_ms, .. }) = self;
         let state = match reached {
@@ -347,7 +358,7 @@ async fn start_and_wait(
     start: &Request,
     limit: Option<Option<Duration>>,
     repeat: Repeat,
-) -> Result<Ran, Failure> {
+) -> Result<RunReport, Failure> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
     // The wait begins with the start.
@@ -356,27 +367,33 @@ async fn start_and_wait(
     loop {
         link.ask(start).await.map_err(|failure| runs.early(failure))?;
         let Some(limit) = limit else {
-            return Ok(Ran::new(robot::Program { state: Some(ProgramState::Running), ..robot::Program::default() }));
+            return Ok(RunReport::new(robot::Program {
+                state: Some(ProgramState::Running),
+                ..robot::Program::default()
+            }));
         };
-        let ran = within(limit, wait(link, screen, start.command(), letters)).await;
-        let ran = ran.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
+        let report = within(limit, wait(link, screen, start.command(), letters)).await;
+        let report = report.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
         if repeat.repeat.is_none() {
-            return Ok(ran);
+            return Ok(report);
         }
-        if ran.program.state == Some(ProgramState::Held) {
+        if report.program.state == Some(ProgramState::Held) {
             let failure = Failure::new(Kind::ConditionNotMet, "the program is paused at a stop or after a step")
                 .hint("to continue, start it without a step or program");
             return Err(runs.early(failure));
         }
-        runs.ended(ran.program.elapsed_ms.unwrap_or(0));
+        runs.ended(report.program.elapsed_ms.unwrap_or(0));
         if runs.are_over() {
-            return Ok(Ran::new(robot::Program { cycle: runs.cycle(), ..ran.program }));
+            return Ok(RunReport::new(robot::Program { cycle: runs.cycle(), ..report.program }));
         }
     }
 }
 
 /// Waits for the end up to a time limit. The program continues afterwards.
-async fn within(limit: Option<Duration>, end: impl Future<Output = Result<Ran, Failure>>) -> Result<Ran, Failure> {
+async fn within(
+    limit: Option<Duration>,
+    end: impl Future<Output = Result<RunReport, Failure>>,
+) -> Result<RunReport, Failure> {
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
         let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
@@ -384,7 +401,7 @@ async fn within(limit: Option<Duration>, end: impl Future<Output = Result<Ran, F
     })
 }
 
-async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<Ran, Failure> {
+async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<RunReport, Failure> {
     let work = AcceptedWork { work: Work::Program, order, done: DONE, doing: "running" };
     let ended = work.wait(link, screen, letters).await.known()?;
     let Some(End { place, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
@@ -399,9 +416,9 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: 
     let (step, instruction) = last.unzip();
     let position = place.map(|place| place.position().of_group(UNIT));
     let state = Some(if is_paused { ProgramState::Held } else { ProgramState::Ended });
-    let more = Place { instruction, position };
+    let more = StepReport { instruction, position };
     let step = step.map(i64::from);
-    Ok(Ran::new(robot::Program { step, state, elapsed_ms, more, ..robot::Program::default() }))
+    Ok(RunReport::new(robot::Program { step, state, elapsed_ms, more, ..robot::Program::default() }))
 }
 
 /// Records in a dry run the requests at the end.
@@ -444,24 +461,24 @@ fn after(failure: &Failure) -> Failure {
 
 /// Result of a start. A program at a STOP, or after a step in step mode, is held.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Ran {
+pub struct RunReport {
     /// Whether the controller accepted the command.
     accepted: bool,
     #[serde(flatten)]
-    program: robot::Program<Place>,
+    program: robot::Program<StepReport>,
 }
 
 /// Step of the program; null without a wait.
 #[derive(Debug, Default, Serialize, JsonSchema)]
-struct Place {
+struct StepReport {
     /// Instruction of the step.
     instruction: Option<String>,
     /// Position of the axes.
     position: Option<Position>,
 }
 
-impl Ran {
-    fn new(program: robot::Program<Place>) -> Self {
+impl RunReport {
+    fn new(program: robot::Program<StepReport>) -> Self {
         Self { accepted: true, program }
     }
 
@@ -473,9 +490,9 @@ impl Ran {
     }
 }
 
-impl Report for Ran {
+impl Report for RunReport {
     fn view(&self) -> View {
-        let Place { instruction, position } = &self.program.more;
+        let StepReport { instruction, position } = &self.program.more;
         let step = self.program.step.zip(instruction.as_ref()).map(|(step, text)| format!("{step}: {text}"));
         let step = step.map(|step| ("step", step.into()));
         let at = position.as_ref().map(|place| ("at", place.line().into()));

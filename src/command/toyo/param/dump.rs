@@ -42,10 +42,10 @@ const POINTS: &str = "T1";
 
 impl Command for Dump {
     type Family = Toyo;
-    type Report = Dumped;
+    type Report = DumpFileReport;
     const ID: &'static str = "toyo.param.dump";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Dumped, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<DumpFileReport, Failure> {
         let Context { robot, link, screen, several, .. } = context;
         let target = files::target(self.file.as_deref(), self.force, several)?;
         let dump = DumpReport::read(link, screen).await?;
@@ -59,7 +59,7 @@ impl Command for Dump {
         let file = target.map(|target| files::write(&target, &text)).transpose()?;
         let DumpReport { settings, refused, unfit, failed } = dump;
         let text = file.is_none().then_some(text);
-        Ok(Dumped { saved: settings.len(), refused, unfit, failed, taken_at, file, text })
+        Ok(DumpFileReport { saved: settings.len(), refused, unfit, failed, taken_at, file, text })
     }
 }
 
@@ -172,7 +172,7 @@ pub fn key_text(Key { parameter, row }: Key) -> String {
 
 /// Result of a dump.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Dumped {
+pub struct DumpFileReport {
     /// Path; null if the text went to stdout.
     file: Option<String>,
     /// Number of parameters and rows.
@@ -188,7 +188,7 @@ pub struct Dumped {
     text: Option<String>,
 }
 
-impl Report for Dumped {
+impl Report for DumpFileReport {
     fn view(&self) -> View {
         let Self { file, saved, refused, unfit, text, .. } = self;
         if let Some(text) = text {

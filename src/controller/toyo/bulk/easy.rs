@@ -33,7 +33,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Filled>, Vec<Finding>> {
 fn programs(reading: &mut Reading<'_>, document: &toml_edit::Table) -> Vec<Filled> {
     let number = &Command::Wesy.row().requests[0].fields[0];
     let mut programs: Vec<Filled> = Vec::new();
-    let mut seen: HashMap<i32, usize> = HashMap::new();
+    let mut line_of_program: HashMap<i32, usize> = HashMap::new();
     for (name, item) in document {
         let at = reading.key(document, name);
         let program = match number.read(name) {
@@ -44,7 +44,7 @@ fn programs(reading: &mut Reading<'_>, document: &toml_edit::Table) -> Vec<Fille
                 continue;
             }
         };
-        if let Some(other) = seen.insert(program, at.line) {
+        if let Some(other) = line_of_program.insert(program, at.line) {
             reading.findings.error(at, format!("program {program} already exists in line {other}"), None);
         }
         programs.push((program, reading.values(name, fields(), item, at)));

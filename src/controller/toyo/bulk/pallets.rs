@@ -41,14 +41,14 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Filled>, Vec<Finding>> {
 
 fn records(reading: &mut Reading<'_>, document: &toml_edit::Table) -> Vec<Filled> {
     let mut records: Vec<Filled> = Vec::new();
-    let mut seen: HashMap<u8, usize> = HashMap::new();
+    let mut line_of_record: HashMap<u8, usize> = HashMap::new();
     for (name, item) in document {
         let at = reading.key(document, name);
         let Some(pallet) = Pallet::named(name) else {
             reading.unknown(at, "record", name, RECORDS.iter().map(|pallet| pallet.name));
             continue;
         };
-        if let Some(other) = seen.insert(pallet.number, at.line) {
+        if let Some(other) = line_of_record.insert(pallet.number, at.line) {
             reading.findings.error(at, format!("{} already exists in line {other}", pallet.name), None);
         }
         records.push((pallet, reading.values(pallet.name, pallet.layout.fields, item, at)));

@@ -57,7 +57,7 @@ pub fn write(settings: &[Setting]) -> String {
 /// Parses settings from TOML. Each must be known, unique, complete and in range.
 pub fn read(bytes: &[u8]) -> Result<Vec<Placed>, Vec<Finding>> {
     reading::read(bytes, |reading, document| {
-        let mut reader = Reader { reading, settings: Vec::new(), seen: HashMap::new() };
+        let mut reader = Reader { reading, settings: Vec::new(), line_of_setting: HashMap::new() };
         reader.document(document);
         reader.settings
     })
@@ -76,7 +76,7 @@ struct Reader<'r, 't> {
     reading: &'r mut Reading<'t>,
     settings: Vec<Placed>,
     /// Line of each parameter and row.
-    seen: HashMap<(&'static str, Option<i32>), usize>,
+    line_of_setting: HashMap<(&'static str, Option<i32>), usize>,
 }
 
 impl Reader<'_, '_> {
@@ -156,7 +156,7 @@ impl Reader<'_, '_> {
         let mut values: Vec<Value> = row.into_iter().collect();
         values.extend(self.reading.values(parameter.name, parameter.fields(), item, at));
         let setting = Setting { parameter, values };
-        if let Some(other) = self.seen.insert((parameter.id, setting.row()), at.line) {
+        if let Some(other) = self.line_of_setting.insert((parameter.id, setting.row()), at.line) {
             let what = setting.row().map_or_else(|| parameter.name.to_owned(), |row| format!("row {row}"));
             self.reading.findings.error(at, format!("{what} already exists in line {other}"), None);
         }

@@ -70,7 +70,7 @@ impl Partial {
 
 /// Parses points from CSV for a controller with 1 to 4 axes. Each must be unique and have all coordinates in range.
 pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
-    let points = read_wanted(bytes, COLUMNS, axes, &COLUMNS[..=axes.clamp(1, 4)])?;
+    let points = read_columns(bytes, COLUMNS, axes, &COLUMNS[..=axes.clamp(1, 4)])?;
     let whole = |Partial { values, line }: Partial| {
         let values = values.into_iter().map(|value| value.unwrap_or(Value::Number(0))).collect();
         (Setting { parameter: table(), values }, line)
@@ -106,7 +106,7 @@ fn has_numbers(bytes: &[u8]) -> bool {
     String::from_utf8_lossy(head).to_ascii_lowercase().contains(NUMBERED_COLUMNS[1].trim_end_matches("1_mm"))
 }
 
-fn read_wanted(bytes: &[u8], names: [&str; 5], axes: usize, wanted: &[&str]) -> Result<Vec<Partial>, Vec<Finding>> {
+fn read_columns(bytes: &[u8], names: [&str; 5], axes: usize, required: &[&str]) -> Result<Vec<Partial>, Vec<Finding>> {
     let mut findings = Findings::default();
     let names = if has_numbers(bytes) { NUMBERED_COLUMNS } else { names };
     let expected = format!("the first line must be {}", names[..=axes.clamp(1, 4)].join(","));
@@ -115,7 +115,7 @@ fn read_wanted(bytes: &[u8], names: [&str; 5], axes: usize, wanted: &[&str]) -> 
         // An error in one row does not hide errors in others.
         let before = findings.errors();
         let places = sheet.columns(&names, &expected, &mut findings);
-        for (name, _) in names.iter().zip(&places).filter(|(name, place)| place.is_none() && wanted.contains(name)) {
+        for (name, _) in names.iter().zip(&places).filter(|(name, place)| place.is_none() && required.contains(name)) {
             findings.error(sheet.end_of_head(), format!("column {name} is missing"), Some(expected.clone()));
         }
         if findings.errors() == before && places[1..].iter().all(Option::is_none) {
@@ -130,7 +130,7 @@ fn read_wanted(bytes: &[u8], names: [&str; 5], axes: usize, wanted: &[&str]) -> 
 
 fn read_rows(sheet: &Sheet, names: [&str; 5], places: &[Option<usize>], findings: &mut Findings) -> Vec<Partial> {
     let mut points: Vec<Partial> = Vec::new();
-    let mut seen = HashMap::new();
+    let mut line_of_row = HashMap::new();
     for row in sheet.rows() {
         if findings.is_full() {
             break;
@@ -152,7 +152,7 @@ fn read_rows(sheet: &Sheet, names: [&str; 5], places: &[Option<usize>], findings
             continue;
         }
         let point = Partial { values, line: row.line };
-        if let Some(other) = seen.insert(point.row(), row.line) {
+        if let Some(other) = line_of_row.insert(point.row(), row.line) {
             let message = format!("point {} already exists in line {other}", point.row());
             findings.error(row.place(usize::MAX), message, None);
         }

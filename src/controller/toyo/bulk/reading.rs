@@ -14,7 +14,7 @@ use crate::toyo::field::{Field, Form, Value};
 /// Comment that describes fields: `, mm` or `; J Japanese, E English`.
 pub(super) fn comment(fields: &[Field]) -> String {
     let mut comment = String::new();
-    let mut told: Vec<String> = Vec::new();
+    let mut reported: Vec<String> = Vec::new();
     for field in fields {
         let about = match field.form {
             Form::Word(words) if words.iter().any(|word| word.text != word.about) => {
@@ -24,9 +24,9 @@ pub(super) fn comment(fields: &[Field]) -> String {
             _ if !field.unit.is_empty() => format!(", {}", field.unit),
             _ => continue,
         };
-        if !told.contains(&about) {
+        if !reported.contains(&about) {
             comment.push_str(&about);
-            told.push(about);
+            reported.push(about);
         }
     }
     comment
@@ -58,7 +58,7 @@ pub(super) fn read<T>(bytes: &[u8], walk: impl FnOnce(&mut Reading<'_>, &Table) 
         return Err(findings.into_errors());
     }
     let mut reading = Reading { places: Places::new(&text), findings };
-    let found = match Document::parse(&text[..]) {
+    let result = match Document::parse(&text[..]) {
         Ok(document) => Some(walk(&mut reading, document.as_table())),
         Err(error) => {
             let at = reading.places.place(&error.span().unwrap_or_default());
@@ -66,7 +66,7 @@ pub(super) fn read<T>(bytes: &[u8], walk: impl FnOnce(&mut Reading<'_>, &Table) 
             None
         }
     };
-    found.filter(|_| reading.findings.errors() == 0).ok_or_else(|| reading.findings.into_errors())
+    result.filter(|_| reading.findings.errors() == 0).ok_or_else(|| reading.findings.into_errors())
 }
 
 /// State of a TOML reader.

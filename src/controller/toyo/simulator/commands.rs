@@ -31,9 +31,9 @@ fn parse(block: &str) -> Result<Request, String> {
     let text = |error: BlockError| error.to_string();
     let request = Request::parse(block).map_err(text)?;
     request.check().map_err(text)?;
-    let given = block.trim_end_matches(' ').replacen("@HTSK", "@CTSK", 1);
+    let received = block.trim_end_matches(' ').replacen("@HTSK", "@CTSK", 1);
     let content = request.content().map_err(text)?.map(|content| content.written());
-    if request.text() != given || content.is_some_and(|content| !given.ends_with(&content)) {
+    if request.text() != received || content.is_some_and(|content| !received.ends_with(&content)) {
         return Err(format!("wrong format: the correct format is {}", request.text()));
     }
     Ok(request)

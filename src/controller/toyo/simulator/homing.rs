@@ -81,7 +81,7 @@ impl World {
     /// Aborts a return to origin, which cannot be continued. A task that continues repeats it.
     pub(super) fn leave_homing(&mut self, owner: usize) {
         if self.arm.homing.take_if(|homing| homing.owner == owner).is_some() {
-            self.arm.drop_held(owner);
+            self.arm.discard_interrupted(owner);
             if let Some(task) = self.tasks.get_mut(owner) {
                 task.wait = Wait::Ready(self.now);
             }
@@ -122,7 +122,7 @@ impl World {
     pub(super) fn end_jog(&mut self) {
         if self.jog.take().is_some() {
             self.arm.brake_one(HOST, self.now);
-            self.arm.drop_held(HOST);
+            self.arm.discard_interrupted(HOST);
         }
     }
 

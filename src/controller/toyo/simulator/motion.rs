@@ -200,12 +200,12 @@ impl Arc {
         let (aa, bb) = (dot(&a, &a), dot(&b, &b));
         let center_offset = cross(&std::array::from_fn(|axis| aa * b[axis] - bb * a[axis]), &normal);
         let center: Coordinates = std::array::from_fn(|axis| p2[axis] + center_offset[axis] / (2.0 * area));
-        let spoke = minus(&p0, &center);
-        let radius = dot(&spoke, &spoke).sqrt();
+        let start_vector = minus(&p0, &center);
+        let radius = dot(&start_vector, &start_vector).sqrt();
         // The plane is oriented so that the way through the middle point turns in the positive sense.
         let axis = cross(&minus(&p1, &p0), &minus(&p2, &p1));
         let size = dot(&axis, &axis).sqrt();
-        let first = spoke.map(|part| part / radius);
+        let first = start_vector.map(|part| part / radius);
         let second = cross(&axis.map(|part| part / size), &first);
         let last = minus(&p2, &center);
         let angle = dot(&last, &second).atan2(dot(&last, &first)).rem_euclid(TAU);
@@ -299,7 +299,7 @@ impl Segment {
     }
 
     /// Times at which the acceleration changes.
-    pub(super) fn bends(&self) -> [Now; 4] {
+    pub(super) fn phase_times(&self) -> [Now; 4] {
         let [up, run, down] = self.profile.phases.map(|phase| phase.seconds);
         [0.0, up, up + run, up + run + down].map(|seconds| self.began.saturating_add(duration(seconds)))
     }
@@ -414,6 +414,6 @@ mod tests {
         assert_eq!(braked.ends(), Duration::from_millis(2100));
         assert!(near(braked.rest(now)[0], -20.0));
         assert!(near(segment.rest(now)[0], -140.0));
-        assert_eq!(segment.hands_over(1.0), segment.bends()[2]);
+        assert_eq!(segment.hands_over(1.0), segment.phase_times()[2]);
     }
 }

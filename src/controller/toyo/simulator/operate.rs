@@ -62,7 +62,7 @@ impl World {
         } else {
             let step = self.tasks[0].step;
             // An interrupted move is completed first.
-            if self.arm.is_held(0) {
+            if self.arm.has_interrupted_moves(0) {
                 self.tasks[0].running = true;
                 self.resume_task(0);
             } else {
@@ -113,11 +113,11 @@ impl World {
     }
 
     fn goes_on(&mut self) -> bool {
-        let stood = std::mem::take(&mut self.stopped);
-        if stood {
+        let was_stopped = std::mem::take(&mut self.stopped);
+        if was_stopped {
             self.go_on();
         }
-        stood
+        was_stopped
     }
 
     fn start_routine(&mut self, task: usize, routine: Routine) {
@@ -281,12 +281,12 @@ impl World {
         self.idle()?;
         let task = self.current;
         let step = self.memory.search(task, tag).ok_or("no such tag")?;
-        self.arm.drop_held(task);
+        self.arm.discard_interrupted(task);
         let now = self.now;
-        let found = &mut self.tasks[task];
-        found.step = step;
-        found.stack.clear();
-        found.wait = super::task::Wait::Ready(now);
+        let task_state = &mut self.tasks[task];
+        task_state.step = step;
+        task_state.stack.clear();
+        task_state.wait = super::task::Wait::Ready(now);
         Ok(())
     }
 
@@ -296,7 +296,7 @@ impl World {
         for index in 0..TASKS {
             debug_assert!(self.memory.size(index) <= MOST_STEPS);
             if self.tasks[index].step > self.memory.size(index).max(1) {
-                self.arm.drop_held(index);
+                self.arm.discard_interrupted(index);
                 self.tasks[index].reset();
             }
         }

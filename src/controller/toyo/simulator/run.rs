@@ -54,7 +54,7 @@ impl World {
                 Wait::Motion if task.escape && self.ports.is_on(self.settings.escape) => {
                     self.tasks[index].escape = false;
                     self.arm.brake_one(index, self.now);
-                    self.arm.drop_held(index);
+                    self.arm.discard_interrupted(index);
                 }
                 _ => {}
             }
@@ -323,7 +323,7 @@ impl World {
 
     fn switch_servo(&mut self, index: usize, axis: Option<usize>, on: bool) -> Result<(), u8> {
         let own = &self.machine.tasks[index].axes;
-        let chosen = match axis {
+        let selected_axes = match axis {
             Some(axis) if own.contains(&axis) => vec![axis],
             None if !own.is_empty() => own.clone(),
             _ => return Err(code::COMMAND),
@@ -333,9 +333,9 @@ impl World {
         }
         if !on {
             self.arm.freeze_one(index, self.now);
-            self.arm.drop_held(index);
+            self.arm.discard_interrupted(index);
         }
-        for axis in chosen {
+        for axis in selected_axes {
             self.switches.servo[axis] = on;
         }
         Ok(())
@@ -364,7 +364,7 @@ impl World {
             }
             TaskOrder::Cancel => {
                 self.arm.brake_one(other, self.now);
-                self.arm.drop_held(other);
+                self.arm.discard_interrupted(other);
                 self.leave_homing(other);
                 if self.tasks[other].running && other != index {
                     self.note(What::Ended(other + 1));

@@ -119,7 +119,7 @@ impl World {
         self.presses[axis] = Some(Press { due: None, locked: true });
         if torque.torque_end || torque.lock_end {
             self.arm.freeze_one(owner, self.now);
-            self.arm.drop_held(owner);
+            self.arm.discard_interrupted(owner);
             self.end_wait(owner);
         }
     }

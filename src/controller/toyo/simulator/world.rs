@@ -247,7 +247,7 @@ impl World {
                 task.running = false;
             } else {
                 task.reset();
-                self.arm.drop_held(index);
+                self.arm.discard_interrupted(index);
             }
         }
         self.stopped = false;
@@ -285,7 +285,7 @@ impl World {
 
     /// Ends motion without a program: JOG and return to origin.
     pub(super) fn end_host_motion(&mut self) {
-        self.arm.drop_held(HOST);
+        self.arm.discard_interrupted(HOST);
         self.jog = None;
         if let Some(homing) = self.arm.homing {
             self.leave_homing(homing.owner);
@@ -295,7 +295,7 @@ impl World {
     /// Discards all programs; the next start is at the first step.
     pub(super) fn reset_program(&mut self) {
         self.tasks.iter_mut().for_each(Task::reset);
-        (0..TASKS).for_each(|task| self.arm.drop_held(task));
+        (0..TASKS).for_each(|task| self.arm.discard_interrupted(task));
         self.stopped = false;
         self.pausing = false;
         self.allowance = None;
