@@ -300,7 +300,7 @@ mod tests {
     #[test]
     fn the_history_ends_at_its_first_empty_entry() {
         let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
-        let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
+        let (mut bench, received) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["alarm", "history"]);
         let entries = data["alarms"].as_array().unwrap();
         assert_eq!(entries.len(), 3, "{data}");
@@ -309,7 +309,7 @@ mod tests {
             (&"13".into(), &"1:02:03".into(), &1.into())
         );
         assert_eq!((&entries[1]["power_off"], &entries[1]["code"]), (&true.into(), &serde_json::Value::Null));
-        assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@EHTR")).count(), 4);
+        assert_eq!(received.borrow().iter().filter(|block| block.starts_with("@EHTR")).count(), 4);
         assert_eq!(bench.data(&["alarm", "history", "--limit", "1"])["alarms"].as_array().unwrap().len(), 1);
     }
 

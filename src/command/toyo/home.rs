@@ -142,13 +142,13 @@ mod tests {
 
     #[test]
     fn home_ends_with_all_axes_at_their_origin() {
-        let (mut bench, heard) = Bench::with_faults("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fault::None);
+        let (mut bench, received) = Bench::with_faults("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fault::None);
         let data = bench.data(&["home"]);
         assert!(data["elapsed_ms"].as_u64().unwrap() > 1000, "{data}");
         assert_eq!(data["position"]["x_mm"], 0.0);
         let status = bench.data(&["status"]);
         assert_eq!((&status["homed"], &status["running"]), (&true.into(), &false.into()));
-        assert_eq!(heard.borrow().iter().filter(|block| *block == "@HOME").count(), 1);
+        assert_eq!(received.borrow().iter().filter(|block| *block == "@HOME").count(), 1);
     }
 
     #[test]

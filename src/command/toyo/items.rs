@@ -200,8 +200,8 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault};
     use crate::failure::Kind;
 
-    fn with_faults(spoil: &'static str, fate: Fault) -> Bench {
-        Bench::with_faults("", move |block, _| if block == spoil { fate } else { Fault::None }).0
+    fn with_faults(faulty_block: &'static str, fault: Fault) -> Bench {
+        Bench::with_faults("", move |block, _| if block == faulty_block { fault } else { Fault::None }).0
     }
 
     #[test]
