@@ -76,7 +76,7 @@ struct RemainingMove {
 impl Arm {
     /// Commanded position.
     pub(super) fn commanded(&self, now: Now) -> Coordinates {
-        self.segments.iter().fold(self.goal, |place, segment| plus(&place, &segment.rest(now)))
+        self.segments.iter().fold(self.goal, |place, segment| plus(&place, &segment.remaining_displacement(now)))
     }
 
     /// Actual position.
@@ -94,7 +94,7 @@ impl Arm {
     }
 
     /// Sets the position of the axes at rest.
-    pub(super) fn put(&mut self, place: Coordinates) {
+    pub(super) fn set_position(&mut self, place: Coordinates) {
         self.touch();
         self.segments.clear();
         self.interrupted.clear();
@@ -102,7 +102,7 @@ impl Arm {
     }
 
     /// Assigns another coordinate to the current position of an axis.
-    pub(super) fn rename(&mut self, axis: usize, coordinate: f64) {
+    pub(super) fn set_coordinate(&mut self, axis: usize, coordinate: f64) {
         self.touch();
         if let Some(wall) = &mut self.walls[axis] {
             wall.at += coordinate - self.goal[axis];
@@ -153,7 +153,7 @@ impl Arm {
     /// Adds a move. It begins where the last move of the owner ends.
     pub(super) fn begin(&mut self, segment: &Segment) {
         self.touch();
-        self.goal = plus(&self.goal, &segment.way());
+        self.goal = plus(&self.goal, &segment.displacement());
         self.segments.push(*segment);
     }
 
@@ -167,22 +167,22 @@ impl Arm {
 
     /// Decelerates all moves; an axis at an obstacle stops at once. [`Arm::resume`] continues the rest.
     pub(super) fn brake(&mut self, now: Now) {
-        (0..=HOST).for_each(|owner| self.brake_one(owner, now));
+        (0..=HOST).for_each(|owner| self.brake_owner(owner, now));
     }
 
     /// Decelerates the moves of one owner.
-    pub(super) fn brake_one(&mut self, owner: usize, now: Now) {
-        let pushes = (0..AXES).any(|axis| self.belongs(axis, owner) && self.push(axis, now) > 0.0);
+    pub(super) fn brake_owner(&mut self, owner: usize, now: Now) {
+        let pushes = (0..AXES).any(|axis| self.belongs_to(axis, owner) && self.push(axis, now) > 0.0);
         self.halt(owner, now, !pushes);
     }
 
     /// Stops all moves at once. [`Arm::resume`] continues the rest.
     pub(super) fn freeze(&mut self, now: Now) {
-        (0..=HOST).for_each(|owner| self.freeze_one(owner, now));
+        (0..=HOST).for_each(|owner| self.freeze_owner(owner, now));
     }
 
     /// Stops the moves of one owner at once.
-    pub(super) fn freeze_one(&mut self, owner: usize, now: Now) {
+    pub(super) fn freeze_owner(&mut self, owner: usize, now: Now) {
         self.halt(owner, now, false);
     }
 
@@ -210,7 +210,7 @@ impl Arm {
                 .sum::<f64>()
         };
         let fits = |axis: usize| (self.goal[axis] + remaining_distance(axis) - interrupted.target[axis]).abs() < SAME;
-        if (0..AXES).all(|axis| !self.belongs(axis, owner) || fits(axis)) {
+        if (0..AXES).all(|axis| !self.belongs_to(axis, owner) || fits(axis)) {
             for remaining_move in interrupted.remaining {
                 self.begin(&Segment::new(owner, remaining_move.path, remaining_move.done, remaining_move.drive, now));
             }
@@ -218,7 +218,7 @@ impl Arm {
         }
         let Some(last) = interrupted.remaining.last() else { return };
         let mut to = self.goal;
-        for axis in (0..AXES).filter(|&axis| self.belongs(axis, owner)) {
+        for axis in (0..AXES).filter(|&axis| self.belongs_to(axis, owner)) {
             to[axis] = interrupted.target[axis];
         }
         let length = minus(&to, &self.goal).into_iter().map(f64::abs).fold(0.0, f64::max);
@@ -246,7 +246,7 @@ impl Arm {
         None
     }
 
-    fn belongs(&self, axis: usize, owner: usize) -> bool {
+    fn belongs_to(&self, axis: usize, owner: usize) -> bool {
         owner == HOST || self.owners[axis] == owner
     }
 
@@ -261,12 +261,12 @@ impl Arm {
                 continue;
             }
             let braked = segment.braked(now);
-            let done = if ramp && !segment.is_to_come(now) {
+            let done = if ramp && !segment.is_in_future(now) {
                 self.goal = plus(&self.goal, &minus(&braked.end(), &segment.end()));
                 self.segments.push(braked);
                 braked.done(braked.ends())
             } else {
-                self.goal = plus(&self.goal, &segment.rest(now));
+                self.goal = plus(&self.goal, &segment.remaining_displacement(now));
                 segment.done(now)
             };
             remaining.push(RemainingMove { path: segment.path, done, drive: segment.drive });
@@ -275,7 +275,7 @@ impl Arm {
             // An axis at an obstacle stays there.
             let commanded = self.commanded(now);
             for axis in 0..AXES {
-                if self.belongs(axis, owner) {
+                if self.belongs_to(axis, owner) {
                     self.goal[axis] += position[axis] - commanded[axis];
                 }
             }
@@ -294,14 +294,14 @@ impl Wall {
     }
 }
 
-/// Finds the time between two at which `so` becomes true.
-fn narrow(mut before: Now, mut after: Now, so: impl Fn(Now) -> bool) -> Now {
+/// Finds the time between two at which `condition` becomes true.
+fn narrow(mut before: Now, mut after: Now, condition: impl Fn(Now) -> bool) -> Now {
     for _ in 0..HALVINGS {
         let middle = before + after.saturating_sub(before) / 2;
         if middle == before {
             break;
         }
-        if so(middle) { after = middle } else { before = middle }
+        if condition(middle) { after = middle } else { before = middle }
     }
     after
 }

@@ -100,7 +100,7 @@ impl ConsoleLine {
     }
 
     /// Executes the line and returns the output.
-    pub(super) fn carry_out(self, world: &mut World) -> Result<String, String> {
+    pub(super) fn execute(self, world: &mut World) -> Result<String, String> {
         match self {
             Self::Help => return Ok(console::help(HELP)),
             Self::State => return Ok(console::table(&state(world))),
@@ -132,7 +132,7 @@ impl ConsoleLine {
 }
 
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
-    ConsoleLine::parse(line)?.carry_out(world)
+    ConsoleLine::parse(line)?.execute(world)
 }
 
 /// Parses `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
