@@ -111,8 +111,8 @@ impl MachineAxis {
         }
     }
 
-    fn of(&self, place: &Coordinates) -> f64 {
-        place.mm()[self.index]
+    fn of(&self, coordinates: &Coordinates) -> f64 {
+        coordinates.mm()[self.index]
     }
 }
 
@@ -271,12 +271,12 @@ impl Jog {
                 // No request must be pending when the stop is sent.
                 return std::future::pending().await;
             }
-            let (is_busy, place) = read_state(link, axis).await?;
-            if detector.has_come_to_rest(is_busy, place) {
+            let (is_busy, coordinates) = read_state(link, axis).await?;
+            if detector.has_come_to_rest(is_busy, coordinates) {
                 let message = "the axis stopped early: another client stopped it";
                 return Err(JogError::Failed(Failure::new(Kind::ConditionNotMet, message)));
             }
-            display.say(format!("jogging {}", place.in_a_line()));
+            display.say(format!("jogging {}", coordinates.in_a_line()));
             longest = longest.max(began.elapsed());
             sleep_until(began + POLL_INTERVAL.max(longest)).await;
         }
@@ -339,14 +339,14 @@ struct RestDetector {
 
 impl RestDetector {
     /// Whether the axis has come to rest: no execution, or the same position in several reads after some motion.
-    fn has_come_to_rest(&mut self, is_busy: bool, place: Coordinates) -> bool {
-        if place != self.last {
+    fn has_come_to_rest(&mut self, is_busy: bool, coordinates: Coordinates) -> bool {
+        if coordinates != self.last {
             self.since = Instant::now();
         }
-        let is_at_rest = place == self.last && place != self.start;
+        let is_at_rest = coordinates == self.last && coordinates != self.start;
         let is_at_rest = is_at_rest && ((self.was_busy && !is_busy) || self.since.elapsed() >= REST_TIME);
         self.was_busy |= is_busy;
-        self.last = place;
+        self.last = coordinates;
         is_at_rest
     }
 }
@@ -429,8 +429,8 @@ impl Command for Jog {
 }
 
 /// Reason of the early end, after the axis has stopped.
-async fn stopped_early(link: &mut Link, error: JogError, place: &Coordinates) -> Failure {
-    let stopped = format!("the axis was stopped at {}", place.in_a_line());
+async fn stopped_early(link: &mut Link, error: JogError, coordinates: &Coordinates) -> Failure {
+    let stopped = format!("the axis was stopped at {}", coordinates.in_a_line());
     match error {
         JogError::Refused => refusal::explained(link, &jog("RS", None)).await,
         JogError::Error => {
@@ -508,12 +508,12 @@ impl JogReport {
         steps: u8,
     ) -> Self {
         let moved = axis.of(&end) - axis.of(&start);
-        let place = |place: Coordinates| Some(place.position().of_group(UNIT));
+        let report_position = |coordinates: Coordinates| Some(coordinates.position().of_group(UNIT));
         let motion = Motion {
             accepted: true,
             group: Some(UNIT.to_owned()),
-            from: place(start),
-            position: place(end),
+            from: report_position(start),
+            position: report_position(end),
             elapsed_ms: u64::try_from(elapsed.as_millis()).ok(),
             ..Motion::default()
         };
@@ -531,7 +531,7 @@ impl JogReport {
 impl Report for JogReport {
     fn view(&self) -> View {
         let steps = self.steps.map_or_else(|| "-".into(), Cell::from);
-        let line = |place: &Option<Position>| Cell::maybe(place.as_ref().map(Position::line));
+        let line = |position: &Option<Position>| Cell::maybe(position.as_ref().map(Position::line));
         View::fields([
             ("axis", titled(self.axis_number - 1, self.axis).into()),
             ("moved (mm)", Cell::number(format!("{:.2}", self.moved_mm))),

@@ -72,9 +72,9 @@ impl Family for Toyo {
         link.send_urgent(moving).await;
         let stop = moving.stop().text();
         link.screen.note(&format!("stopping the robot: {stop}"));
-        let place = link.stop(moving).await?;
-        let place = link.coordinates(&place).await;
-        Ok(format!("the robot was stopped ({stop}); the axes are at {}", place.in_a_line()))
+        let coordinates = link.stop(moving).await?;
+        let coordinates = link.coordinates(&coordinates).await;
+        Ok(format!("the robot was stopped ({stop}); the axes are at {}", coordinates.in_a_line()))
     }
 
     fn must_halt(link: &Link) -> bool {

@@ -208,11 +208,11 @@ impl Command for Stop {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<StopReport, Failure> {
         let moving = if self.jog { Moving::Jog } else { Moving::Program };
-        let place = context.link.stop(moving).await;
+        let record = context.link.stop(moving).await;
         if context.link.is_dry() {
             context.link.letters().await?;
         }
-        let position = context.link.coordinates(&place?).await;
+        let position = context.link.coordinates(&record?).await;
         let words = format!("the axes have stopped at {}", position.in_a_line());
         let position = position.position().of_group(UNIT);
         Ok(StopReport { done: New::of("running", false, words).replaces(Old::UNREAD), position })

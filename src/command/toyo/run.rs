@@ -233,7 +233,7 @@ impl Report for PointMoveReport {
             Some(false) => ProgramState::Held,
         };
         let mut fields = vec![("run", state.cell())];
-        fields.extend(position.as_ref().map(|place| ("at", place.line().into())));
+        fields.extend(position.as_ref().map(|position| ("at", position.line().into())));
         fields.extend(elapsed_ms.map(|elapsed| ("elapsed (ms)", elapsed.into())));
         View { sections: vec![Section::Fields(fields)] }
     }
@@ -329,9 +329,9 @@ async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program:
     if authority.asks() {
         let letters = link.letters().await?;
         change = change.note(program.note(link).await?);
-        let place = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
+        let coordinates = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
         let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
-        change = change.note(format!("The axes are at {} (mm).", place.in_a_line()));
+        change = change.note(format!("The axes are at {} (mm).", coordinates.in_a_line()));
         change = change.note(format!("The speed override is {percent} %."));
     }
     authority.confirm(&change).await
@@ -404,17 +404,17 @@ async fn within(
 async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<RunReport, Failure> {
     let work = AcceptedWork { work: Work::Program, order, done: DONE, doing: "running" };
     let ended = work.wait(link, screen, letters).await.known()?;
-    let Some(End { place, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
+    let Some(End { coordinates, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
     // A move to a point runs no steps.
     let last = match order {
         table::Command::Extp => None,
         _ => step(link).await.map_err(|failure| after(&failure))?,
     };
     if is_paused && !is_at_a_stop(link, last.as_ref()).await.map_err(|failure| after(&failure))? {
-        return Err(stopped(last.as_ref(), place));
+        return Err(stopped(last.as_ref(), coordinates));
     }
     let (step, instruction) = last.unzip();
-    let position = place.map(|place| place.position().of_group(UNIT));
+    let position = coordinates.map(|coordinates| coordinates.position().of_group(UNIT));
     let state = Some(if is_paused { ProgramState::Held } else { ProgramState::Ended });
     let more = StepReport { instruction, position };
     let step = step.map(i64::from);
@@ -446,10 +446,11 @@ async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<b
     Ok(record.text("text") == Some("STOP"))
 }
 
-fn stopped(last: Option<&(i32, String)>, place: Option<Coordinates>) -> Failure {
+fn stopped(last: Option<&(i32, String)>, coordinates: Option<Coordinates>) -> Failure {
     let step = last.map(|(step, text)| format!(" at step {step} ({text})")).unwrap_or_default();
-    let place = place.map(|place| format!("; the axes are at {}", place.in_a_line())).unwrap_or_default();
-    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{place}"))
+    let coordinates =
+        coordinates.map(|coordinates| format!("; the axes are at {}", coordinates.in_a_line())).unwrap_or_default();
+    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{coordinates}"))
         .hint("find the reason; then start it without a step or program to continue, or use `toyo reset`")
 }
 
@@ -495,7 +496,7 @@ impl Report for RunReport {
         let StepReport { instruction, position } = &self.program.more;
         let step = self.program.step.zip(instruction.as_ref()).map(|(step, text)| format!("{step}: {text}"));
         let step = step.map(|step| ("step", step.into()));
-        let at = position.as_ref().map(|place| ("at", place.line().into()));
+        let at = position.as_ref().map(|position| ("at", position.line().into()));
         View { sections: vec![Section::Fields(self.program.fields(step.into_iter().chain(at).collect()))] }
     }
 }
