@@ -59,9 +59,9 @@ impl Command for List {
             link.plan(&status_page(1), "which");
             return Err(unknown());
         }
-        let read_error_code =
-            read_error_code(link).await?.map(|code| Row::new(1, "alarm", explained(entry(code), context.robot)));
-        Ok(Alarms { alarms: read_error_code.into_iter().collect(), standing: Nothing {}, asked: 1 })
+        let row =
+            read_error_code(link).await?.map(|code| Row::new(1, "alarm", with_site_texts(entry(code), context.robot)));
+        Ok(Alarms { alarms: row.into_iter().collect(), standing: Nothing {}, asked: 1 })
     }
 }
 
@@ -108,7 +108,7 @@ fn entry(code: u8) -> AlarmEntry<Axis> {
 }
 
 /// The entry with additions from `alarms.toml`.
-fn explained(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
+fn with_site_texts(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
 }
@@ -150,7 +150,7 @@ impl Command for History {
                 Err(_) => link.ask(&entry_request(number)).await?,
             };
             let Some(entry) = history_entry(&record) else { break };
-            alarms.push(Row::new(number.into(), format!("alarm {number}"), explained(entry, context.robot)));
+            alarms.push(Row::new(number.into(), format!("alarm {number}"), with_site_texts(entry, context.robot)));
         }
         Ok(Alarms { asked: alarms.len(), alarms, standing: Nothing {} })
     }

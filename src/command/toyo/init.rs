@@ -91,16 +91,16 @@ impl Command for Init {
         let clear = Request::of(table::Command::Mint, [Value::Word(number)]);
         let task = task::current(link).await.known()?;
         link.ask(&clear).await?;
-        let status = settled(link, screen).await.map_err(accepted)?;
+        let status = wait_until_cleared(link, screen).await.map_err(unknown_result)?;
         Ok(ClearReport { cleared: name, about: words, task, needs_power_cycle: status.needs_power_cycle() })
     }
 }
 
 /// Interval between two reads of the status.
-const LOOK_EVERY: Duration = Duration::from_millis(200);
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Waits until the controller has completed the accepted work (ambiguity A3).
-async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
+async fn wait_until_cleared(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
     if link.is_dry() {
         link.plan(&status_page(0), "every 200 ms until the memory is cleared");
         return Err(unknown());
@@ -111,12 +111,12 @@ async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
         if !status.executing() {
             return Ok(status);
         }
-        tokio::time::sleep(LOOK_EVERY).await;
+        tokio::time::sleep(POLL_INTERVAL).await;
     }
 }
 
 /// Failure while waiting for the end.
-fn accepted(failure: Failure) -> Failure {
+fn unknown_result(failure: Failure) -> Failure {
     if failure.kind == Kind::DryRun {
         return failure;
     }
@@ -140,8 +140,8 @@ pub struct ClearReport {
 impl Report for ClearReport {
     fn view(&self) -> View {
         let task = self.task.map(|task| format!(" (task {task})")).unwrap_or_default();
-        let then = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
-        View::text(format!("cleared: {}{task}{then}", self.about))
+        let restart_hint = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
+        View::text(format!("cleared: {}{task}{restart_hint}", self.about))
     }
 }
 

@@ -303,21 +303,21 @@ impl Program {
     }
 }
 
-/// Program and step that will start: `wanted`, or those of the controller.
+/// Program and step that will start: `selected`, or those of the controller.
 async fn progress(
     link: &mut Link,
     question: table::Command,
-    (kind, wanted): (&str, Option<i32>),
+    (kind, selected): (&str, Option<i32>),
 ) -> Result<String, Failure> {
     let Ok(progress) = link.try_ask(&Request::bare(question)).await? else {
-        let number = wanted.map(|number| format!(" {number}")).unwrap_or_default();
+        let number = selected.map(|number| format!(" {number}")).unwrap_or_default();
         return Ok(format!("It is {kind} program{number}; the controller did not report the step."));
     };
     let (number, step) = (progress.number("program").unwrap_or(0), progress.number("step").unwrap_or(0));
-    Ok(match wanted.filter(|wanted| *wanted != number) {
+    Ok(match selected.filter(|selected| *selected != number) {
         None => format!("It is {kind} program {number}, at step {step}."),
-        Some(wanted) => {
-            format!("It is {kind} program {wanted}; now the controller is at program {number}, step {step}.")
+        Some(selected) => {
+            format!("It is {kind} program {selected}; now the controller is at program {number}, step {step}.")
         }
     })
 }
