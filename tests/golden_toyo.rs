@@ -1,6 +1,6 @@
-//! Every request and answer that the Toyo manual prints, both ways, character for character.
+//! Every request and answer that the Toyo manual prints, parsed and formatted, character for character.
 //!
-//! Where the print is wrong (`flags` has `typo`), the file says why and what is right. If this fails, do not change the
+//! For a misprint (`flags` has `typo`), the file has the reason and the corrected text. If a test fails, do not change the
 //! test.
 
 use armctl::controller::toyo::request::{Answer, Request};
@@ -40,7 +40,7 @@ fn transcripts() -> Transcripts {
     serde_json::from_str(include_str!("data/toyo-transcripts.json")).expect("the transcripts are well-formed")
 }
 
-/// Demands that a request and its answer are understood whole, and made again as they were.
+/// Asserts that a request and its answer are parsed completely and formatted unchanged.
 fn holds(about: &str, tx: &str, rx: &str) {
     let request = Request::parse(tx).unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
     request.check().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
@@ -78,7 +78,7 @@ fn every_printed_pair_is_parsed_and_made_again() {
     }
 }
 
-/// What is printed wrong is not sent; where it only has other blanks or digits, it is still understood.
+/// A misprint is never sent. A misprint in blanks or digits is still parsed.
 #[test]
 fn misprints_are_never_sent() {
     for pair in transcripts().pairs {

@@ -1,8 +1,8 @@
-//! The session of toyo behind lines that lose, double, damage and delay characters, or send them back.
+//! The session of toyo on lines that lose, double, damage, delay or echo characters.
 //!
-//! In virtual time, against a controller of its own that counts what it carries out. Blocks have a fixed width and no
-//! checksum: one lost or doubled character is noticed, a lost and a doubled one in the same block are not, nor is noise
-//! that turns a digit into another. Under such faults only the number of executions counts.
+//! The tests run in virtual time against a controller that counts its executions. Blocks have a fixed width and no
+//! checksum. One lost or doubled character is detected. A lost and a doubled character in the same block are not
+//! detected, and neither is noise that changes a digit. Under such faults only the number of executions is checked.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use armctl::controller::toyo::field::Value;
 use armctl::controller::toyo::request::{Answer, Request};
-use armctl::controller::toyo::session::{Ended, Framed, Framer, LineSession, Policy};
+use armctl::controller::toyo::session::{ExchangeResult, Framed, Framer, LineSession, Policy};
 use armctl::controller::toyo::table::Command;
 use armctl::controller::{Session as _, Step};
 use armctl::transport::line::{InProcessLine, Pace};
@@ -23,15 +23,15 @@ const BITS: u32 = 11;
 const BAUD: u32 = 9600;
 const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// A controller with counters. Each order to it sets a counter to a value that no other order has.
+/// A controller with counters. Each order sets a counter to a unique value.
 #[derive(Debug, Default)]
 struct Counters {
     framer: Framer,
     is_damaged: bool,
     counters: HashMap<i32, i32>,
-    /// How often each value was set.
+    /// Number of times that each value was set.
     executed: HashMap<i32, u32>,
-    /// How often any was.
+    /// Number of all executions.
     executions: u32,
     answers: Vec<Vec<u8>>,
 }
@@ -63,7 +63,7 @@ impl Peer for Counters {
     fn receive(&mut self, _now: Duration, _channel: usize, bytes: &[u8]) {
         for byte in bytes {
             let Some(framed) = self.framer.push(*byte).0 else { continue };
-            // A block in which a parity error was seen is not answered (TO 1-3).
+            // A block with a parity error is not answered (TO 1-3).
             if !std::mem::take(&mut self.is_damaged)
                 && let Framed::Block(block) = framed
             {
@@ -86,22 +86,22 @@ impl Peer for Counters {
     }
 }
 
-/// What happened on one line.
+/// Results on one line.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Tally {
     answered: u32,
     refused: u32,
     open: u32,
-    /// Reads that told something else than what was there.
+    /// Reads with another value than the stored one.
     wrong: u32,
-    /// Orders that were carried out more often than once, or not although they were confirmed.
+    /// Orders that were executed several times; `lost`: confirmed orders that were not executed.
     doubled: u32,
     lost: u32,
-    /// Orders that were carried out, whatever they had become.
+    /// Executed orders, whatever their result.
     executions: u32,
 }
 
-async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, began: Instant) -> Ended {
+async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, began: Instant) -> ExchangeResult {
     let mut buffer = [0; 256];
     loop {
         let now = began.elapsed();
@@ -117,8 +117,8 @@ async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, be
     }
 }
 
-/// A hundred orders, and a read after each.
-async fn talk(faults: &str, seed: u64) -> Tally {
+/// Runs a hundred orders, with a read after each.
+async fn run_exchanges(faults: &str, seed: u64) -> Tally {
     const EXCHANGES: i32 = 100;
     let pace = Pace::new(BAUD, BITS);
     let spec = format!("{faults},seed={seed}").parse().expect("faults");
@@ -130,13 +130,13 @@ async fn talk(faults: &str, seed: u64) -> Tally {
         let counter = order % 7 + 1;
         let set = Request::new(Command::Mcst, vec![Value::Number(counter), Value::Number(order)]).unwrap();
         line.begin(&set, false);
-        let before = Instant::now();
+        let started = Instant::now();
         let ended = exchange(&mut line, &mut wire, began).await;
-        assert!(before.elapsed() <= 4 * TIMEOUT, "an order ends in time: {:?}", before.elapsed());
+        assert!(started.elapsed() <= 4 * TIMEOUT, "an order ends in time: {:?}", started.elapsed());
         let executed = wire.peer().executed.get(&order).copied().unwrap_or(0);
         tally.doubled += executed.saturating_sub(1);
         match ended {
-            Ended::Answered(block) => match set.answer(&block).unwrap() {
+            ExchangeResult::Answered(block) => match set.answer(&block).unwrap() {
                 Answer::Done => {
                     tally.answered += 1;
                     tally.lost += u32::from(executed == 0);
@@ -144,18 +144,18 @@ async fn talk(faults: &str, seed: u64) -> Tally {
                 Answer::Refused => tally.refused += 1,
                 Answer::Data(_) => panic!("an order has no data"),
             },
-            Ended::NoAnswer | Ended::Unfitting { .. } => tally.open += 1,
+            ExchangeResult::NoAnswer | ExchangeResult::InvalidAnswer { .. } => tally.open += 1,
         }
         let read = Request::new(Command::Mcnt, vec![Value::Number(counter)]).unwrap();
         line.begin(&read, true);
-        let before = Instant::now();
+        let started = Instant::now();
         let ended = exchange(&mut line, &mut wire, began).await;
-        assert!(before.elapsed() <= 12 * TIMEOUT, "a read ends in time: {:?}", before.elapsed());
-        let truth = wire.peer().counters.get(&counter).copied().unwrap_or(0);
-        if let Ended::Answered(block) = ended
+        assert!(started.elapsed() <= 12 * TIMEOUT, "a read ends in time: {:?}", started.elapsed());
+        let stored = wire.peer().counters.get(&counter).copied().unwrap_or(0);
+        if let ExchangeResult::Answered(block) = ended
             && let Answer::Data(record) = read.answer(&block).unwrap()
         {
-            tally.wrong += u32::from(record.number("count") != Some(truth));
+            tally.wrong += u32::from(record.number("count") != Some(stored));
         }
     }
     tally.executions = wire.peer().executions;
@@ -166,7 +166,7 @@ fn virtual_time() -> tokio::runtime::Runtime {
     tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime")
 }
 
-/// Every kind of fault alone and together, with many seeds each.
+/// Each fault alone, and combinations, with many seeds.
 #[test]
 fn faults_never_double_lose_or_confuse_orders() {
     let grid = [
@@ -177,7 +177,7 @@ fn faults_never_double_lose_or_confuse_orders() {
         "parity=1%",
         "parity=10%",
         "delay=0..50ms",
-        // Later than the answer is waited for, and not later than it is let pass.
+        // Later than the timeout, but within the time in which a late answer is discarded.
         "delay=0..900ms",
         "echo",
         "echo,drop=1%",
@@ -188,15 +188,15 @@ fn faults_never_double_lose_or_confuse_orders() {
     for faults in grid {
         let mut all = Tally::default();
         for seed in 0..25 {
-            let tally = virtual_time().block_on(talk(faults, seed));
+            let tally = virtual_time().block_on(run_exchanges(faults, seed));
             assert_eq!((tally.doubled, tally.lost, tally.wrong), (0, 0, 0), "{faults}, seed {seed}: {tally:?}");
             all.answered += tally.answered;
             all.open += tally.open;
             all.refused += tally.refused;
         }
-        // The grid is no grid if the faults do not bite, or nothing gets through.
-        let bites = faults == "delay=0..50ms" || faults == "echo" || all.open + all.refused > 0;
-        assert!(bites && all.answered > 0, "{faults}: {all:?}");
+        // The faults must have an effect, and some orders must succeed.
+        let has_effect = faults == "delay=0..50ms" || faults == "echo" || all.open + all.refused > 0;
+        assert!(has_effect && all.answered > 0, "{faults}: {all:?}");
     }
 }
 
@@ -205,7 +205,7 @@ fn no_damage_executes_an_order_twice() {
     for faults in ["noise=0.5%", "noise=5%", "drop=5%,dup=5%", "noise=1%,drop=1%,dup=1%,parity=1%,delay=0..200ms,echo"]
     {
         for seed in 0..25 {
-            let tally = virtual_time().block_on(talk(faults, seed));
+            let tally = virtual_time().block_on(run_exchanges(faults, seed));
             assert!(tally.executions <= 100, "{faults}, seed {seed}: {tally:?}");
         }
     }
@@ -215,7 +215,7 @@ fn no_damage_executes_an_order_twice() {
 fn a_line_without_faults_is_as_fast_as_its_characters() {
     let time = virtual_time().block_on(async {
         let began = Instant::now();
-        let tally = talk("drop=0%", 0).await;
+        let tally = run_exchanges("drop=0%", 0).await;
         assert_eq!(tally, Tally { answered: 100, executions: 100, ..Tally::default() });
         began.elapsed()
     });

@@ -1,7 +1,7 @@
-//! Programs that others wrote between `armctl` and the simulated Toyo controller: `socat` makes a serial port of a TCP
-//! connection, `ser2net` a TCP port of a serial one. Both carry bytes the way that adapters and device servers do.
+//! External programs between `armctl` and the simulated Toyo controller. `socat` makes a serial port from a TCP connection,
+//! and `ser2net` makes a TCP port from a serial port. Both pass bytes as adapters and device servers do.
 //!
-//! Where they are absent the tests say so and pass; under `CI=true` they must be there.
+//! If a program is absent, its test prints that and passes; with `CI=true` it must be present.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
@@ -21,44 +21,44 @@ struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The process can have ended already.
         self.0.kill().unwrap_or_default();
         self.0.wait().unwrap();
     }
 }
 
-/// What a simulated controller is reached by.
-enum Reach {
+/// Type of the connection to a simulated controller.
+enum ConnectionType {
     Tcp,
     PseudoTerminal,
 }
 
 /// Serves a simulated controller until the process ends; returns its address, or the path of its port.
-fn serve(reach: Reach) -> String {
-    let (tell, told) = mpsc::channel();
+fn serve(connection: ConnectionType) -> String {
+    let (sender, target) = mpsc::channel();
     std::thread::spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         runtime.block_on(async {
-            let (mut server, name) = match reach {
-                Reach::Tcp => {
+            let (mut server, name) = match connection {
+                ConnectionType::Tcp => {
                     let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
                     let (server, address) = StreamServer::tcp(any, None, None).await.unwrap();
                     (server, address.to_string())
                 }
-                Reach::PseudoTerminal => StreamServer::pseudo_terminal(None, None).unwrap(),
+                ConnectionType::PseudoTerminal => StreamServer::pseudo_terminal(None, None).unwrap(),
             };
             let mut controller = Simulated::new(simulated::start(None, None, None).unwrap());
-            tell.send(name).unwrap();
+            sender.send(name).unwrap();
             loop {
                 server.turn(&mut controller).await.unwrap();
             }
         });
     });
-    told.recv().unwrap()
+    target.recv().unwrap()
 }
 
-/// Whether a program is there; in CI it must be.
-fn is_there(program: &str, ask: &str) -> bool {
+/// Whether a program is installed; in CI it must be.
+fn is_installed(program: &str, ask: &str) -> bool {
     let asked = Command::new(program).arg(ask).stdout(Stdio::null()).stderr(Stdio::null()).status();
     let is_there = asked.is_ok();
     assert!(is_there || std::env::var_os("CI").is_none(), "{program} must be there in CI");
@@ -87,8 +87,8 @@ fn data(target: &str, words: &[&str]) -> Value {
     envelope["data"].clone()
 }
 
-/// What a technician does first, over whatever lies between.
-fn works(target: &str) {
+/// Runs the first commands of a technician over the connection.
+fn assert_commands_work(target: &str) {
     assert_eq!(data(target, &["status"])["homed"], false);
     data(target, &["home"]);
     let status = data(target, &["status"]);
@@ -103,11 +103,11 @@ fn works(target: &str) {
 }
 
 #[test]
-fn through_socat() {
-    if !is_there("socat", "-V") {
+fn commands_work_through_socat() {
+    if !is_installed("socat", "-V") {
         return;
     }
-    let address = serve(Reach::Tcp);
+    let address = serve(ConnectionType::Tcp);
     let folder = tempfile::tempdir().unwrap();
     let port = folder.path().join("port");
     let terminal = format!("pty,raw,echo=0,link={}", port.display());
@@ -117,20 +117,20 @@ fn through_socat() {
         .spawn()
         .map(Running)
         .unwrap();
-    // It says when both ends are open.
+    // socat prints when both ends are open.
     let stderr = BufReader::new(socat.0.stderr.take().unwrap());
     let mut lines = stderr.lines();
     assert!(lines.by_ref().any(|line| line.unwrap().contains("starting data transfer")), "socat ended");
     std::thread::spawn(move || lines.for_each(drop));
-    works(&format!("serial://{}", port.display()));
+    assert_commands_work(&format!("serial://{}", port.display()));
 }
 
 #[test]
-fn through_ser2net() {
-    if !is_there("ser2net", "-v") {
+fn commands_work_through_ser2net() {
+    if !is_installed("ser2net", "-v") {
         return;
     }
-    let terminal = serve(Reach::PseudoTerminal);
+    let terminal = serve(ConnectionType::PseudoTerminal);
     let port = free_port();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("ser2net.yaml");
@@ -141,11 +141,11 @@ fn through_ser2net() {
     ];
     std::fs::write(&file, lines.join("\n") + "\n").unwrap();
     let _running = start_ser2net(&file);
-    // It says nothing when it listens.
+    // ser2net prints nothing when it listens.
     while TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_err() {
         std::thread::yield_now();
     }
-    works(&format!("tcp://127.0.0.1:{port}"));
+    assert_commands_work(&format!("tcp://127.0.0.1:{port}"));
 }
 
 fn start_ser2net(file: &Path) -> Running {
@@ -159,7 +159,7 @@ fn start_ser2net(file: &Path) -> Running {
     Running(child)
 }
 
-/// A port that nobody has now; `ser2net` cannot choose one itself.
+/// A free port; `ser2net` cannot select one itself.
 fn free_port() -> u16 {
     TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap().port()
 }

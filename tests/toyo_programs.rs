@@ -1,5 +1,5 @@
-//! Programs of a Toyo controller through the binary, against a served simulator: names in their text, sources that are
-//! kept, and how little a put reads.
+//! Programs of a Toyo controller through the binary, on a served simulator: names in their text, stored source texts, and
+//! the number of steps that a put reads.
 
 #![cfg(unix)]
 
@@ -14,7 +14,7 @@ use crate::support::simulator::Simulator;
 const NAMED: &str = "# pick and place\nSPD V=5            # slow\nnext: MOVP pick\nTIMP dwell=1.5\n\
                      JMPC TAG=next parts>=5\nEND\n";
 
-/// A controller, and a user who knows it as `cell`, with names.
+/// A controller with the inventory name `cell`, and names for points, timers and counters.
 struct Desk {
     folder: TempDir,
     _controller: Simulator,
@@ -62,7 +62,7 @@ impl Desk {
         Put { data: envelope["data"].clone(), blocks }
     }
 
-    /// Somebody at the pendant writes steps, of which this user's files know nothing.
+    /// Writes steps without a record in the files of this user, as a person at the pendant does.
     #[track_caller]
     fn at_pendant(&self, step: &str, text: &str) {
         let state = tempfile::tempdir().expect("a folder");
@@ -74,14 +74,14 @@ impl Desk {
     }
 }
 
-/// What came of a put.
+/// Result of a put.
 struct Put {
     data: Value,
     blocks: String,
 }
 
 impl Put {
-    /// The blocks of a kind, each with how often it was sent.
+    /// Sent blocks that begin with a word, with their counts.
     fn sent(&self, word: &str) -> BTreeMap<&str, usize> {
         let mut sent = BTreeMap::new();
         for (_, block) in self.blocks.lines().filter_map(|line| line.split_once("-> ")) {
@@ -93,7 +93,7 @@ impl Put {
         sent
     }
 
-    /// The steps that were read.
+    /// Number of steps that were read.
     fn read(&self) -> usize {
         self.sent("@RSTX").len()
     }
@@ -148,15 +148,15 @@ fn get_returns_the_source_text_while_the_steps_are_unchanged() {
 #[test]
 fn put_reads_only_the_steps_that_it_needs() {
     let desk = Desk::new();
-    assert_eq!(desk.put(NAMED, &[]).read(), 2000, "nothing is known of them");
+    assert_eq!(desk.put(NAMED, &[]).read(), 2000, "no step is known");
     let changed = NAMED.replace("1.5", "2.5");
     let put = desk.put(&changed, &[]);
-    assert_eq!((put.read(), put.sent("@WSTX").len()), (7, 1), "those of the program, and the one behind it");
+    assert_eq!((put.read(), put.sent("@WSTX").len()), (7, 1), "the steps of the program, and the next one");
     assert_eq!((&put.data["unread_steps"], &put.data["cells_unchanged"]), (&1993.into(), &6.into()));
     assert_eq!(desk.put(&changed, &["--read-all"]).read(), 2000);
     // A part is compared alone.
     assert_eq!(desk.put("SPD V=3\n", &["--at", "1"]).read(), 1);
-    assert_eq!(desk.put(&changed, &[]).read(), 2000, "a command has changed steps since");
+    assert_eq!(desk.put(&changed, &[]).read(), 2000, "a command changed steps after that");
 }
 
 #[test]
@@ -164,16 +164,16 @@ fn put_finds_steps_from_the_pendant_that_affect_the_program() {
     let desk = Desk::new();
     let base = "next: SPD V=5\nJMP TAG=next\n";
     desk.put(base, &[]);
-    // A routine that nothing calls yet.
+    // A routine that is not called yet.
     desk.at_pendant("5", "TAG TAG=7\nEND\n");
     let put = desk.put(&base.replace('5', "6"), &[]);
-    assert_eq!(put.read(), 4, "its tags are those of before, and nothing runs on to what is behind");
+    assert_eq!(put.read(), 4, "its tags are unchanged, and its end does not run into the next steps");
     // The program was made longer.
     desk.at_pendant("4", "SPD V=1\n");
     let put = desk.put(base, &[]);
     assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &3.into()));
     for program in [
-        // A tag that may be there twice, a last step that runs on, a jump that is computed.
+        // A tag that can exist twice, a last step that continues, a computed jump.
         "next: SPD V=5\nJMP TAG=next\nTAG TAG=7\nEND\n",
         "next: SPD V=5\nJMPC TAG=next CN1<3\n",
         "next: SPD V=5\nBRAC CN=1 OFS=1\nJMP TAG=next\n",

@@ -1,5 +1,5 @@
-//! Properties of the Toyo codec: what is written reads back in full width, nothing out of range is written, and no text
-//! at all makes anything panic.
+//! Properties of the Toyo codec: written values have full width and read back, values out of range are never written, and
+//! no text causes a panic.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -17,7 +17,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// Every form there is, of both directions, with what stands before it in its block.
+/// All layouts of both directions, each with the text before it in its block.
 fn layouts() -> Vec<(&'static str, Layout)> {
     let requests = ROWS.iter().flat_map(|row| row.requests).map(|layout| ("@", *layout));
     let answers = ROWS.iter().flat_map(|row| row.answers).map(|layout| ("@", *layout));
@@ -27,7 +27,7 @@ fn layouts() -> Vec<(&'static str, Layout)> {
     requests.chain(answers).chain(parameters).chain(instructions).chain(records).collect()
 }
 
-/// A value that a field may have, by a number.
+/// A valid value of a field, selected by a number.
 fn value(field: &Field, pick: u32) -> Value {
     let [low, high, ..] = pick.to_le_bytes();
     if field.starred && pick.is_multiple_of(8) {
@@ -48,7 +48,6 @@ fn value(field: &Field, pick: u32) -> Value {
     }
 }
 
-/// Values for the fields of a form.
 /// Values for the fields of a layout; RSMV always passes (ambiguity R4).
 fn values(layout: &Layout, picks: &[u32]) -> Vec<Value> {
     let passes = layout.text.starts_with(Op::Rsmv.row().word);
@@ -63,7 +62,7 @@ fn picks() -> impl Strategy<Value = Vec<u32>> {
     vec(any::<u32>(), 12)
 }
 
-/// Bytes that a value takes, told by its form alone.
+/// Width of a value in bytes, from its format alone.
 fn width(field: &Field, value: &Value) -> usize {
     match (field.form, value) {
         (Form::Number(number), _) => {
@@ -78,7 +77,7 @@ fn width(field: &Field, value: &Value) -> usize {
     }
 }
 
-/// Lines that often look like a block.
+/// Lines that are often similar to a block.
 fn line() -> impl Strategy<Value = String> {
     let block = (any::<Index>(), picks(), vec((any::<Index>(), any::<char>()), 0..4), any::<Index>()).prop_map(
         |(row, picks, changes, cut)| {
@@ -99,7 +98,7 @@ fn line() -> impl Strategy<Value = String> {
     prop_oneof![4 => block, 1 => any::<String>(), 1 => "@[A-Z]{4}( [A-Z0-9=+.<>/*-]{0,16}){0,6}"]
 }
 
-/// The records of a program without errors: every tag that is named is there, once; RSMV passes.
+/// Records of a valid program: each used tag exists exactly once; RSMV passes.
 fn steps() -> impl Strategy<Value = Vec<Record>> {
     vec((select(&INSTRUCTIONS[..]), picks()), 0..60).prop_map(|rows| {
         let mut tags = std::collections::BTreeSet::new();
@@ -125,7 +124,7 @@ fn steps() -> impl Strategy<Value = Vec<Record>> {
 
 proptest! {
     #[test]
-    fn what_is_written_reads_back_in_full_width(row: Index, picks in picks()) {
+    fn written_values_read_back_in_full_width(row: Index, picks in picks()) {
         let (front, layout) = layouts()[row.index(layouts().len())];
         let values = values(&layout, &picks);
         let text = layout.emit(&values).unwrap();
@@ -143,7 +142,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_out_of_range_is_never_written(row: Index, picks in picks(), at: Index, wrong: i32) {
+    fn values_out_of_range_are_never_written(row: Index, picks in picks(), at: Index, wrong: i32) {
         let with_fields: Vec<Layout> = layouts().into_iter().map(|(_, layout)| layout).filter(|layout| !layout.fields.is_empty()).collect();
         let layout = row.get(&with_fields);
         let mut values = values(layout, &picks);
@@ -163,7 +162,7 @@ proptest! {
     }
 
     #[test]
-    fn the_edges_of_every_range_are_kept(row: Index, picks in picks()) {
+    fn the_limits_of_each_range_can_be_written(row: Index, picks in picks()) {
         let (_, layout) = layouts()[row.index(layouts().len())];
         let values = values(&layout, &picks);
         for (at, field) in layout.fields.iter().enumerate() {
@@ -210,7 +209,7 @@ proptest! {
     }
 
     #[test]
-    fn any_line_is_judged(text in line(), other in line()) {
+    fn parsing_any_line_causes_no_panic(text in line(), other in line()) {
         let _ = (instruction(&text), Parameter::from_text(&text));
         if let Ok(request) = Request::parse(&text) {
             let _ = (request.check(), request.content(), request.risk(), request.parameter());
@@ -225,7 +224,7 @@ proptest! {
     }
 
     #[test]
-    fn any_line_is_explained(text in line(), asked in line()) {
+    fn describing_any_line_causes_no_panic(text in line(), asked in line()) {
         let request = Request::parse(&asked).ok();
         let line = text.trim_end_matches(['\r', '\n']);
         for sender in [Sender::guess(&text), Sender::Host, Sender::Controller] {
@@ -245,7 +244,7 @@ proptest! {
     #[test]
     fn blocks_within_their_ranges_have_no_problem(row: Index, picks in picks()) {
         let row = &ROWS[row.index(ROWS.len())];
-        // What stands there instead is of another table, or nobody knows (ambiguity C5).
+        // These fields belong to another table, or are not specified (ambiguity C5).
         let opaque = |layout: &&Layout| !layout.fields.iter().any(|field| ["body", "key", "text", "point"].contains(&field.name) && field.form == Form::Text);
         for (layouts, sender) in [(row.requests, Sender::Host), (row.answers, Sender::Controller)] {
             for layout in layouts.iter().filter(opaque) {
@@ -268,7 +267,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_a_program_or_told(bytes in vec(any::<u8>(), 0..400), lines in vec(text_line(), 0..40)) {
+    fn any_bytes_are_a_program_or_an_error(bytes in vec(any::<u8>(), 0..400), lines in vec(text_line(), 0..40)) {
         for text in [&bytes[..], lines.join("\n").as_bytes()] {
             let checked = program::check(text, 100);
             prop_assert_eq!(checked.program.is_some(), checked.errors().count() == 0);
@@ -282,7 +281,7 @@ proptest! {
     }
 }
 
-/// Lines that often look like one of a program.
+/// Lines that are often similar to a program line.
 fn text_line() -> impl Strategy<Value = String> {
     let words = select(&INSTRUCTIONS[..]).prop_map(|row| row.word);
     let mangled = (words, "( ?[a-zA-Z=<>0-9.+:#;-]{0,8}){0,5}").prop_map(|(word, rest)| format!("{word} {rest}"));

@@ -1,5 +1,5 @@
-//! What must not happen to a machine behind a Toyo controller, tried with the program itself against a controller of the
-//! test's own: an axis that is left jogging, a program that Ctrl-C does not stop, an order that leaves twice.
+//! Safety of a machine behind a Toyo controller, tested with the binary and a controller of the test: no axis continues to
+//! jog, Ctrl-C stops a program, and no order is sent twice.
 
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
@@ -13,12 +13,12 @@ use std::time::Duration;
 
 use crate::support::simulator::Simulator;
 
-/// What is done with a block beside what it says.
+/// Fault of the line at a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Peculiar {
-    No,
-    Silence,
-    HangUp,
+enum BlockFault {
+    None,
+    NoAnswer,
+    Disconnect,
 }
 
 /// A controller with its origin and servo power, whose axis 1 moves while it is jogged or a program runs.
@@ -63,29 +63,29 @@ impl Machine {
     }
 }
 
-/// A controller behind a device server, and what it hears.
+/// A controller behind a device server, and the blocks that it receives.
 struct Controller {
     url: String,
-    news: Receiver<String>,
-    heard: Vec<String>,
+    incoming: Receiver<String>,
+    received: Vec<String>,
     server: JoinHandle<Machine>,
 }
 
 impl Controller {
     /// Serves one connection.
-    fn new(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> Self {
+    fn new(mut fault: impl FnMut(&str) -> BlockFault + Send + 'static) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let url = format!("tcp://{}", listener.local_addr().unwrap());
-        let (tell, news): (Sender<String>, _) = channel();
+        let (sender, incoming): (Sender<String>, _) = channel();
         let server = std::thread::spawn(move || {
             let mut machine = Machine::default();
             let (mut stream, _) = listener.accept().unwrap();
             for block in BufReader::new(stream.try_clone().unwrap()).lines().map_while(Result::ok) {
-                let _gone = tell.send(block.clone());
-                match peculiar(&block) {
-                    Peculiar::Silence => continue,
-                    Peculiar::HangUp => drop(stream.shutdown(Shutdown::Both)),
-                    Peculiar::No => {}
+                let _is_sent = sender.send(block.clone());
+                match fault(&block) {
+                    BlockFault::NoAnswer => continue,
+                    BlockFault::Disconnect => drop(stream.shutdown(Shutdown::Both)),
+                    BlockFault::None => {}
                 }
                 let answer = machine.answer(&block);
                 if stream.write_all(format!("{answer}\r\n").as_bytes()).is_err() {
@@ -94,7 +94,7 @@ impl Controller {
             }
             machine
         });
-        Self { url, news, heard: Vec::new(), server }
+        Self { url, incoming, received: Vec::new(), server }
     }
 
     fn command(&self, words: &str) -> Command {
@@ -105,23 +105,23 @@ impl Controller {
         command
     }
 
-    /// Waits for so many blocks of a kind.
+    /// Waits for this number of equal blocks.
     fn wait_for(&mut self, block: &str, count: usize) {
         for _ in 0..count {
-            while let heard = self.news.recv_timeout(Duration::from_secs(30)).expect("the block comes")
-                && heard != block
+            while let received = self.incoming.recv_timeout(Duration::from_secs(30)).expect("the block comes")
+                && received != block
             {
-                self.heard.push(heard);
+                self.received.push(received);
             }
-            self.heard.push(block.to_owned());
+            self.received.push(block.to_owned());
         }
     }
 
-    /// All that was heard, and the machine as it was left.
+    /// All received blocks, and the final state of the machine.
     fn end(mut self) -> (Vec<String>, Machine) {
         let machine = self.server.join().unwrap();
-        self.heard.extend(self.news.try_iter());
-        (self.heard, machine)
+        self.received.extend(self.incoming.try_iter());
+        (self.received, machine)
     }
 }
 
@@ -137,26 +137,29 @@ fn errors(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-fn count(heard: &[String], block: &str) -> usize {
-    heard.iter().filter(|heard| *heard == block).count()
+fn count(received: &[String], block: &str) -> usize {
+    received.iter().filter(|received| *received == block).count()
 }
 
 #[track_caller]
-fn stands(controller: Controller) -> Vec<String> {
-    let (heard, machine) = controller.end();
-    assert_eq!(count(&heard, GO), 1, "{heard:?}");
-    assert!(heard.iter().rposition(|block| block == STOP) > heard.iter().position(|block| block == GO), "{heard:?}");
+fn assert_axis_stopped(controller: Controller) -> Vec<String> {
+    let (received, machine) = controller.end();
+    assert_eq!(count(&received, GO), 1, "{received:?}");
+    assert!(
+        received.iter().rposition(|block| block == STOP) > received.iter().position(|block| block == GO),
+        "{received:?}"
+    );
     assert!(!machine.jogs, "the axis is left jogging");
-    heard
+    received
 }
 
-/// Every way of ending a process that can be heard stops the axis, also that of keys that would suspend it.
+/// Every signal that a process can handle stops the axis, also those of keys that suspend a process.
 #[test]
 fn every_signal_that_ends_the_process_stops_the_jog() {
-    // A test that is run under nohup hears no SIGHUP.
+    // A test under nohup gets no SIGHUP.
     let ignored = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = ignored.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
-    for (name, said) in [
+    for (name, messages) in [
         ("INT", "the robot was stopped (@JGST X=SP"),
         ("TERM", "the robot was stopped (@JGST X=SP"),
         ("HUP", "the robot was stopped (@JGST X=SP"),
@@ -167,98 +170,98 @@ fn every_signal_that_ends_the_process_stops_the_jog() {
             continue;
         }
         for flags in ["", " --on-interrupt leave"] {
-            let mut controller = Controller::new(|_| Peculiar::No);
+            let mut controller = Controller::new(|_| BlockFault::None);
             let child = controller.command(&format!("{JOG}{flags}")).spawn().unwrap();
             controller.wait_for(GO, 1);
             controller.wait_for("@MPST", 3);
             signal(&child, name);
             let output = child.wait_with_output().unwrap();
             assert_eq!(output.status.code(), Some(130), "{name}{flags}: {}", errors(&output));
-            assert!(errors(&output).contains(said), "{name}{flags}: {}", errors(&output));
-            assert_eq!(stands(controller).last().unwrap(), "@HSOF", "the host is given back");
+            assert!(errors(&output).contains(messages), "{name}{flags}: {}", errors(&output));
+            assert_eq!(assert_axis_stopped(controller).last().unwrap(), "@HSOF", "the host is released");
         }
     }
 }
 
-/// Ctrl-C in every phase: before an answer came, and while a look is not answered.
+/// Ctrl-C before the answer to the jog, and during an unanswered status or position read.
 #[test]
 fn ctrl_c_during_a_missing_answer_stops_the_jog() {
-    for silent in [GO, "@STAS SNO=0", "@MPST"] {
-        let (mut goes, mut was_silent) = (false, false);
+    for unanswered in [GO, "@STAS SNO=0", "@MPST"] {
+        let (mut is_jogging, mut was_silent) = (false, false);
         let mut controller = Controller::new(move |block| {
-            goes |= block == GO;
-            if goes && !was_silent && block == silent {
+            is_jogging |= block == GO;
+            if is_jogging && !was_silent && block == unanswered {
                 was_silent = true;
-                return Peculiar::Silence;
+                return BlockFault::NoAnswer;
             }
-            Peculiar::No
+            BlockFault::None
         });
         let child = controller.command(JOG).spawn().unwrap();
         controller.wait_for(GO, 1);
-        if silent != GO {
-            controller.wait_for(silent, 1);
+        if unanswered != GO {
+            controller.wait_for(unanswered, 1);
         }
         signal(&child, "INT");
         let output = child.wait_with_output().unwrap();
-        // The silence may be noticed before the signal is.
-        assert!(matches!(output.status.code(), Some(130 | 4 | 6)), "{silent}: {}", errors(&output));
-        let (heard, machine) = controller.end();
-        assert!(!machine.jogs && count(&heard, STOP) > 0, "{silent}: {heard:?}");
+        // The timeout can come before the signal.
+        assert!(matches!(output.status.code(), Some(130 | 4 | 6)), "{unanswered}: {}", errors(&output));
+        let (received, machine) = controller.end();
+        assert!(!machine.jogs && count(&received, STOP) > 0, "{unanswered}: {received:?}");
     }
 }
 
 #[test]
 fn a_closed_output_pipe_does_not_prevent_the_stop() {
-    let controller = Controller::new(|_| Peculiar::No);
+    let controller = Controller::new(|_| BlockFault::None);
     let mut child = controller.command("jog X + low --for 200ms").spawn().unwrap();
     drop(child.stdout.take());
     drop(child.stderr.take());
     assert_eq!(child.wait().unwrap().code(), Some(0));
-    stands(controller);
+    assert_axis_stopped(controller);
 }
 
 #[test]
 fn a_lost_line_during_a_jog_has_a_hint_to_press_the_emergency_stop() {
-    let mut goes = false;
+    let mut is_jogging = false;
     let controller = Controller::new(move |block| {
-        let cut = goes;
-        goes |= block == GO;
-        if cut { Peculiar::HangUp } else { Peculiar::No }
+        let cut = is_jogging;
+        is_jogging |= block == GO;
+        if cut { BlockFault::Disconnect } else { BlockFault::None }
     });
     let output = controller.command(JOG).output().unwrap();
     assert_eq!(output.status.code(), Some(6), "{}", errors(&output));
-    let told = errors(&output);
-    assert!(told.contains("the axis can still move"), "{told}");
-    assert!(told.contains("press the emergency stop") && told.contains("`toyo stop --jog`"), "{told}");
+    let message = errors(&output);
+    assert!(message.contains("the axis can still move"), "{message}");
+    assert!(message.contains("press the emergency stop") && message.contains("`toyo stop --jog`"), "{message}");
 }
 
-/// From the moment the order is on the line: unanswered, accepted, under way.
+/// Ctrl-C after the order was sent, after its acceptance, and during the motion.
 #[test]
 fn ctrl_c_stops_what_runs() {
     for (words, order) in [("run sequential 1 --wait", "@SPST 0001"), ("home", "@HOME")] {
-        for (is_answered, looks) in [(false, 0), (true, 0), (true, 3)] {
+        for (is_answered, status_reads) in [(false, 0), (true, 0), (true, 3)] {
             let mut controller =
                 Controller::new(
                     move |block| {
-                        if block == order && !is_answered { Peculiar::Silence } else { Peculiar::No }
+                        if block == order && !is_answered { BlockFault::NoAnswer } else { BlockFault::None }
                     },
                 );
             let child = controller.command(&format!("{words} --timeout 20s")).spawn().unwrap();
             controller.wait_for(order, 1);
-            controller.wait_for("@STAS SNO=0", looks);
+            controller.wait_for("@STAS SNO=0", status_reads);
             signal(&child, "INT");
             let output = child.wait_with_output().unwrap();
             assert_eq!(output.status.code(), Some(130), "{words}: {}", errors(&output));
             assert!(errors(&output).contains("the robot was stopped (@STOP)"), "{words}: {}", errors(&output));
-            let (heard, machine) = controller.end();
-            assert_eq!((count(&heard, order), machine.runs), (1, false), "{heard:?}");
+            let (received, machine) = controller.end();
+            assert_eq!((count(&received, order), machine.runs), (1, false), "{received:?}");
         }
     }
 }
 
 #[test]
 fn on_interrupt_leave_does_not_stop_the_program() {
-    let mut controller = Controller::new(|_| Peculiar::No);
+    let mut controller = Controller::new(|_| BlockFault::None);
     let child = controller.command("run sequential 1 --wait --on-interrupt leave").spawn().unwrap();
     controller.wait_for("@SPST 0001", 1);
     controller.wait_for("@STAS SNO=0", 2);
@@ -266,11 +269,11 @@ fn on_interrupt_leave_does_not_stop_the_program() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130));
     assert!(errors(&output).contains("not stopped; the motion or program continues"), "{}", errors(&output));
-    let (heard, machine) = controller.end();
-    assert!(machine.runs && count(&heard, "@STOP") == 0, "{heard:?}");
+    let (received, machine) = controller.end();
+    assert!(machine.runs && count(&received, "@STOP") == 0, "{received:?}");
 }
 
-/// An order whose answer is lost leaves once, and the outcome is told as unknown.
+/// An order without an answer is sent once, and its outcome is reported as unknown.
 #[test]
 fn an_unanswered_order_is_sent_once() {
     for (words, order) in [
@@ -289,18 +292,19 @@ fn an_unanswered_order_is_sent_once() {
         ("card write", "@WMCA"),
         ("card read", "@RMCA"),
     ] {
-        let controller = Controller::new(move |block| if block == order { Peculiar::Silence } else { Peculiar::No });
+        let controller =
+            Controller::new(move |block| if block == order { BlockFault::NoAnswer } else { BlockFault::None });
         let output = controller.command(&format!("{words} --timeout 100ms")).output().unwrap();
         assert_eq!(output.status.code(), Some(6), "{words}: {}", errors(&output));
         assert!(errors(&output).contains("hint: "), "{words}: {}", errors(&output));
-        let (heard, _) = controller.end();
-        assert_eq!(count(&heard, order), 1, "{words}: {heard:?}");
+        let (received, _) = controller.end();
+        assert_eq!(count(&received, order), 1, "{words}: {received:?}");
     }
 }
 
-/// A controller behind a device server that takes one connection after the other, and hangs up at the blocks that are
-/// `peculiar`; it ends with the test.
-fn lasting(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> String {
+/// Serves one connection after the other as a device server with a controller, until the test ends. `fault` selects the
+/// blocks at which it disconnects.
+fn serve_connections(mut fault: impl FnMut(&str) -> BlockFault + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("tcp://{}", listener.local_addr().unwrap());
     std::thread::spawn(move || {
@@ -308,7 +312,7 @@ fn lasting(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> Strin
         for stream in listener.incoming().map_while(Result::ok) {
             let mut writer = stream.try_clone().unwrap();
             for block in BufReader::new(stream).lines().map_while(Result::ok) {
-                if peculiar(&block) == Peculiar::HangUp {
+                if fault(&block) == BlockFault::Disconnect {
                     writer.shutdown(Shutdown::Both).unwrap_or_default();
                     break;
                 }
@@ -332,31 +336,31 @@ fn toyo(url: &str, state: &std::path::Path, words: &str) -> Command {
 #[test]
 fn changes_of_a_killed_command_are_reported_until_they_are_undone() {
     let state = tempfile::tempdir().unwrap();
-    let (tell, moves) = channel();
-    let url = lasting(move |block| {
+    let (sender, moves) = channel();
+    let url = serve_connections(move |block| {
         if block == GO {
-            tell.send(()).unwrap_or_default();
+            sender.send(()).unwrap_or_default();
         }
-        Peculiar::No
+        BlockFault::None
     });
     let mut jog = toyo(&url, state.path(), JOG).spawn().unwrap();
     moves.recv_timeout(Duration::from_secs(30)).unwrap();
     signal(&jog, "KILL");
     jog.wait().unwrap();
-    let said = || errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(said().contains("the host is still ON and was OFF before; `toyo host off`"));
+    let messages = || errors(&toyo(&url, state.path(), "position").output().unwrap());
+    assert!(messages().contains("the host is still ON and was OFF before; `toyo host off`"));
     // The guardian stops the jog.
-    assert!((0..1000).any(|_| !said().contains("the robot still runs")), "{}", said());
-    let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(!said.contains("the robot still runs") && said.contains("the host is still ON"), "{said}");
+    assert!((0..1000).any(|_| !messages().contains("the robot still runs")), "{}", messages());
+    let messages = errors(&toyo(&url, state.path(), "position").output().unwrap());
+    assert!(!messages.contains("the robot still runs") && messages.contains("the host is still ON"), "{messages}");
     assert!(toyo(&url, state.path(), "host off").status().unwrap().success());
     toyo(&url, state.path(), "position").status().unwrap();
-    let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert_eq!(said, "");
+    let messages = errors(&toyo(&url, state.path(), "position").output().unwrap());
+    assert_eq!(messages, "");
 }
 
-/// What another client of a device server does, and leaves so.
-fn another_client(url: &str, block: &str) {
+/// Sends a block as another client of the device server, and disconnects.
+fn send_as_other_client(url: &str, block: &str) {
     let mut stream = std::net::TcpStream::connect(url.trim_start_matches("tcp://")).unwrap();
     stream.write_all(format!("{block}\r\n").as_bytes()).unwrap();
     let mut answer = String::new();
@@ -367,93 +371,93 @@ fn another_client(url: &str, block: &str) {
 #[test]
 fn a_host_switched_on_by_another_client_is_reported() {
     let state = tempfile::tempdir().unwrap();
-    let url = lasting(|_| Peculiar::No);
-    let said = |words: &str| {
+    let url = serve_connections(|_| BlockFault::None);
+    let messages = |words: &str| {
         let output = toyo(&url, state.path(), words).output().unwrap();
         assert!(output.status.success(), "{words}: {}", errors(&output));
         errors(&output)
     };
-    assert_eq!(said("status"), "");
-    another_client(&url, "@HSON");
-    let told = said("status");
-    assert!(told.contains("another client switched the host ON, which disables the start input"), "{told}");
-    assert!(told.contains("`toyo host off` releases the host"), "{told}");
+    assert_eq!(messages("status"), "");
+    send_as_other_client(&url, "@HSON");
+    let message = messages("status");
+    assert!(message.contains("another client switched the host ON, which disables the start input"), "{message}");
+    assert!(message.contains("`toyo host off` releases the host"), "{message}");
     assert_eq!(
-        said("status --watch=20ms --count 3").matches("another client switched the host ON").count(),
+        messages("status --watch=20ms --count 3").matches("another client switched the host ON").count(),
         1,
-        "once is enough"
+        "the notice is printed once"
     );
-    // What changes something looks who commands, too; what does not ask is not made to.
-    assert!(said("stop").is_empty() && said("position").is_empty());
-    another_client(&url, "@SPST 0001");
-    let told = said("status");
-    assert!(told.contains("another client switched the host ON and started a program"), "{told}");
-    assert!(told.contains("`toyo stop` stops it and `toyo host off` releases the host"), "{told}");
-    said("stop");
-    said("host off");
-    assert_eq!(said("status"), "");
-    // What is wanted here is no news, until it is over.
-    said("raw @HSON");
-    assert_eq!(said("status"), "");
-    said("host off");
-    said("host on");
-    assert_eq!(said("status"), "");
-    another_client(&url, "@HSOF");
-    assert_eq!(said("status"), "");
-    another_client(&url, "@HSON");
-    assert!(said("status").contains("another client switched the host ON"));
+    // Only a command that reads the host state reports it.
+    assert!(messages("stop").is_empty() && messages("position").is_empty());
+    send_as_other_client(&url, "@SPST 0001");
+    let message = messages("status");
+    assert!(message.contains("another client switched the host ON and started a program"), "{message}");
+    assert!(message.contains("`toyo stop` stops it and `toyo host off` releases the host"), "{message}");
+    messages("stop");
+    messages("host off");
+    assert_eq!(messages("status"), "");
+    // A host that this user switched ON is not reported.
+    messages("raw @HSON");
+    assert_eq!(messages("status"), "");
+    messages("host off");
+    messages("host on");
+    assert_eq!(messages("status"), "");
+    send_as_other_client(&url, "@HSOF");
+    assert_eq!(messages("status"), "");
+    send_as_other_client(&url, "@HSON");
+    assert!(messages("status").contains("another client switched the host ON"));
 }
 
 #[test]
 fn a_task_selected_by_another_client_is_reported() {
     let state = tempfile::tempdir().unwrap();
-    let url = lasting(|_| Peculiar::No);
-    let said = |words: &str| errors(&toyo(&url, state.path(), words).output().unwrap());
-    assert_eq!(said("task get"), "");
-    another_client(&url, "@CTSK TASK=02");
-    let told = said("task get");
-    assert!(told.contains("another client selected task 2"), "{told}");
-    assert!(told.contains("`toyo task set 1` selects task 1"), "{told}");
-    said("task set 2");
-    assert_eq!(said("task get"), "");
-    another_client(&url, "@CTSK TASK=03");
-    assert!(said("task get").contains("another client selected task 3"));
-    said("task set 1");
-    assert_eq!(said("task get"), "");
+    let url = serve_connections(|_| BlockFault::None);
+    let messages = |words: &str| errors(&toyo(&url, state.path(), words).output().unwrap());
+    assert_eq!(messages("task get"), "");
+    send_as_other_client(&url, "@CTSK TASK=02");
+    let message = messages("task get");
+    assert!(message.contains("another client selected task 2"), "{message}");
+    assert!(message.contains("`toyo task set 1` selects task 1"), "{message}");
+    messages("task set 2");
+    assert_eq!(messages("task get"), "");
+    send_as_other_client(&url, "@CTSK TASK=03");
+    assert!(messages("task get").contains("another client selected task 3"));
+    messages("task set 1");
+    assert_eq!(messages("task get"), "");
 }
 
 #[test]
 fn a_watch_continues_after_a_reconnect() {
     let state = tempfile::tempdir().unwrap();
-    let mut places = 0;
-    let url = lasting(move |block| {
-        places += u32::from(block == "@MPST");
-        if block == "@MPST" && places == 3 { Peculiar::HangUp } else { Peculiar::No }
+    let mut position_reads = 0;
+    let url = serve_connections(move |block| {
+        position_reads += u32::from(block == "@MPST");
+        if block == "@MPST" && position_reads == 3 { BlockFault::Disconnect } else { BlockFault::None }
     });
     let watch = toyo(&url, state.path(), "position --watch=50ms --count 6 -o jsonl").output().unwrap();
     assert!(watch.status.success(), "{}", errors(&watch));
     let lines = String::from_utf8_lossy(&watch.stdout).into_owned();
     let ok: Vec<bool> = lines.lines().map(|line| line.contains(r#""ok":true"#)).collect();
     assert_eq!(ok, [true, true, false, true, true, true], "{lines}");
-    // `--until` lives through it, too.
-    let mut places = 0;
-    let url = lasting(move |block| {
-        places += u32::from(block == "@STAS SNO=0");
-        if block == "@STAS SNO=0" && places == 2 { Peculiar::HangUp } else { Peculiar::No }
+    // `--until` also continues.
+    let mut position_reads = 0;
+    let url = serve_connections(move |block| {
+        position_reads += u32::from(block == "@STAS SNO=0");
+        if block == "@STAS SNO=0" && position_reads == 2 { BlockFault::Disconnect } else { BlockFault::None }
     });
     let mut until = toyo(&url, state.path(), "status --watch=50ms");
     let until = until.args(["--until", ".data.servo_on and false", "--count", "4"]).output().unwrap();
     assert_eq!(until.status.code(), Some(8), "{}", errors(&until));
 }
 
-/// A serial port has one host: who has it is named, with how to end it.
+/// A serial port has one host. The error names the process that has it, and the command that ends it.
 #[test]
 fn a_busy_serial_port_names_the_process_that_uses_it() {
     let folder = tempfile::tempdir().unwrap();
     let simulator = Simulator::start_with("toyo", &["--pty"]);
     let mut home = toyo(&simulator.url, folder.path(), "home --no-session -vv").spawn().unwrap();
-    let mut said = BufReader::new(home.stderr.take().unwrap()).lines().map_while(Result::ok);
-    assert!(said.any(|line| line.contains("-> @HOME")), "it never moved");
+    let mut messages = BufReader::new(home.stderr.take().unwrap()).lines().map_while(Result::ok);
+    assert!(messages.any(|line| line.contains("-> @HOME")), "the origin return did not start");
     let stop = toyo(&simulator.url, folder.path(), "stop --no-session").output().unwrap();
     let pid = home.id();
     assert_eq!(stop.status.code(), Some(4), "{}", errors(&stop));
@@ -463,9 +467,9 @@ fn a_busy_serial_port_names_the_process_that_uses_it() {
     ] {
         assert!(errors(&stop).contains(&part), "{part}: {}", errors(&stop));
     }
-    // The advice is good: it stops what it moves, and frees the port.
+    // The hint works: the process stops its motion and frees the port.
     signal(&home, "TERM");
     assert_eq!(home.wait().unwrap().code(), Some(130));
-    let looked = toyo(&simulator.url, folder.path(), "status --json --jq .data.running --no-session").output().unwrap();
-    assert_eq!(String::from_utf8_lossy(&looked.stdout).trim(), "false", "{}", errors(&looked));
+    let status = toyo(&simulator.url, folder.path(), "status --json --jq .data.running --no-session").output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&status.stdout).trim(), "false", "{}", errors(&status));
 }

@@ -1,4 +1,4 @@
-//! `armctl sim toyo` as its user has it: a process with a TCP port or a pseudo-terminal, a console, and an end.
+//! `armctl sim toyo` as a process: TCP port or pseudo-terminal, console, end.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -8,16 +8,16 @@ use std::process::{Child, ChildStderr, Command, Output, Stdio};
 
 use serde_json::Value;
 
-/// A simulator that serves.
+/// A simulator process that serves.
 struct Served {
     process: Child,
     stderr: BufReader<ChildStderr>,
-    /// The URL to reach it by.
+    /// URL of the simulator.
     target: String,
 }
 
 impl Served {
-    /// Starts one and waits until it serves.
+    /// Starts a simulator and waits until it serves.
     fn start(folder: &Path, words: &str) -> Self {
         let mut process = armctl(folder, &format!("sim toyo {words} --jq .data.target"))
             .stdin(Stdio::piped())
@@ -31,7 +31,7 @@ impl Served {
         Self { process, stderr, target: target.trim_end().to_owned() }
     }
 
-    /// What a command line for it prints.
+    /// Data of a command line for the simulator.
     fn data(&self, folder: &Path, words: &str) -> Value {
         let output = armctl(folder, &format!("--json -t {} toyo {words}", self.target)).output().unwrap();
         assert!(output.status.success(), "{words}: {}", stderr(&output));
@@ -40,13 +40,13 @@ impl Served {
     }
 
     /// A line on stderr.
-    fn said(&mut self) -> String {
+    fn next_message(&mut self) -> String {
         let mut line = String::new();
         self.stderr.read_line(&mut line).unwrap();
         line
     }
 
-    /// Asks it to end, and returns its exit code.
+    /// Ends the process with a signal, and returns its exit code.
     fn end(mut self, signal: &str) -> Option<i32> {
         let pid = self.process.id().to_string();
         assert!(Command::new("kill").args([signal, pid.as_str()]).status().unwrap().success());
@@ -56,7 +56,7 @@ impl Served {
 
 impl Drop for Served {
     fn drop(&mut self) {
-        // It may have ended as it was asked to.
+        // The process can have ended already.
         self.process.kill().unwrap_or_default();
         self.process.wait().unwrap();
     }
@@ -88,8 +88,8 @@ fn a_pseudo_terminal_has_its_link_until_the_simulator_ends() {
     }
 }
 
-/// Envelopes as a watch prints them, up to one that is a success or none.
-fn until(lines: &mut impl Iterator<Item = std::io::Result<String>>, ok: bool) {
+/// Reads the envelopes of a watch up to one with this `ok`.
+fn read_until(lines: &mut impl Iterator<Item = std::io::Result<String>>, ok: bool) {
     let is_so = |line: &String| line.contains(&format!(r#""ok":{ok}"#));
     assert!(lines.map_while(Result::ok).any(|line| is_so(&line)), "none came that has ok: {ok}");
 }
@@ -106,17 +106,17 @@ fn a_watch_continues_after_its_port_is_unplugged_and_plugged_in() {
         let words = format!("-o jsonl -t {} toyo {words}", served.target);
         let mut watch = armctl(folder.path(), &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut lines = BufReader::new(watch.stdout.take().unwrap()).lines();
-        until(&mut lines, true);
+        read_until(&mut lines, true);
         assert_eq!(served.end("-INT"), Some(0));
         assert!(!folder.path().join("port").exists(), "the path is gone");
-        until(&mut lines, false);
+        read_until(&mut lines, false);
         served = Served::start(folder.path(), &format!("--pty --link port{state}"));
-        until(&mut lines, true);
+        read_until(&mut lines, true);
         if state.is_empty() {
             let pid = watch.id().to_string();
             assert!(Command::new("kill").args(["-INT", pid.as_str()]).status().unwrap().success());
         }
-        // What was waited for came true on the controller that came back.
+        // The awaited condition is true on the new controller.
         assert_eq!(watch.wait().unwrap().code(), Some(if state.is_empty() { 130 } else { 0 }));
     }
 }
@@ -126,15 +126,15 @@ fn the_console_switches_inputs() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 127.0.0.1:0 --console");
     let mut console = served.process.stdin.take().unwrap();
-    assert!(served.said().starts_with("reach it:") && served.said().starts_with("end it:"));
+    assert!(served.next_message().starts_with("reach it:") && served.next_message().starts_with("end it:"));
     console.write_all(b"input 0/01/3 on\n").unwrap();
-    assert!(served.said().contains("servo on"), "what is now");
+    assert!(served.next_message().contains("servo on"), "the present state");
     assert_eq!(served.data(folder.path(), "io get IN1.3")["items"][0]["value"], true);
     console.write_all(b"\ninptu 0/01/3 off\n").unwrap();
-    assert!(served.said().contains("inptu"));
+    assert!(served.next_message().contains("inptu"));
     drop(console);
-    assert!(served.said().trim().is_empty() && served.said().contains("`help`"), "a hint follows");
-    // It serves on after the end of the console.
+    assert!(served.next_message().trim().is_empty() && served.next_message().contains("`help`"), "a hint follows");
+    // It serves also after the end of the console.
     assert_eq!(served.data(folder.path(), "io get IN1.3")["items"][0]["value"], true);
 }
 
@@ -153,6 +153,6 @@ fn a_line_has_a_baud_rate_and_an_address_has_one_simulator() {
 fn a_simulator_on_all_interfaces_prints_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 0.0.0.0:0");
-    assert_eq!(served.said(), "warning: others on the network can reach this simulator\n");
+    assert_eq!(served.next_message(), "warning: others on the network can reach this simulator\n");
     assert_eq!(served.end("-INT"), Some(0));
 }

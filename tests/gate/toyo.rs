@@ -1,4 +1,4 @@
-//! Toyo: what is replaced is asked, dry runs go to their end, a stop is always allowed.
+//! Toyo: an overwrite needs a confirmation, dry runs go to their end, a stop is always allowed.
 
 use super::desk::Desk;
 use crate::support::simulator::Simulator;
@@ -20,8 +20,8 @@ fn overwriting_user_data_needs_confirmation() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     for line in ["point set 7 1 2 3 4", "easy set 1 5 6 7", "program insert 1 TAG TAG=005 --yes"] {
-        let came = desk.run(&format!("-r cell toyo {line}"));
-        assert_eq!(came.exit, Some(0), "nobody wrote what is there: {line}: {came:?}");
+        let output = desk.run(&format!("-r cell toyo {line}"));
+        assert_eq!(output.exit, Some(0), "an empty cell needs no confirmation: {line}: {output:?}");
     }
     for (line, part) in [
         ("point set 7 z=5", "overwrite a point of task 1 (point 7: z=3.00 mm -> z=5.00 mm)"),
@@ -39,7 +39,7 @@ fn overwriting_user_data_needs_confirmation() {
     assert_eq!(desk.data("-r cell toyo point get 7")["items"][0]["value"]["z_mm"], 3.0);
     assert_eq!(desk.data("-r cell toyo easy get 1")["items"][0]["value"]["loops"], 6);
     assert!(desk.run("-r cell toyo program get --to 1").stdout.contains("TAG TAG=005"));
-    // As it is already: nothing to ask.
+    // Equal values need no confirmation.
     assert_eq!(desk.run("-r cell toyo point set 7 1 2 3 4").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo point set 7 z=5 --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo program delete 1 --yes").exit, Some(0));
@@ -53,14 +53,14 @@ fn the_confirmation_of_a_move_shows_positions_and_speed() {
     desk.fails("-r cell toyo run point 7", 7, "would move the axes to point 7 of the coordinate table");
     for (key, exit) in [("n\n", 7), ("y\n", 3)] {
         let mut terminal = Terminal::start(desk.command("-r cell toyo run point 7"), 80, 24).unwrap();
-        for said in
+        for text in
             ["REAL CONTROLLER: cell", "X: 0.00 -> 90.00 mm", "Z: 0.00 -> 5.00 mm", "The speed override is 100 %."]
         {
-            terminal.says(said);
+            terminal.says(text);
         }
         terminal.says("Continue?");
         terminal.press(key);
-        // It has not been at its origin, and refuses.
+        // Without the origin, the controller refuses.
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
     }
 }
@@ -72,9 +72,9 @@ fn an_offline_run_ends_at_its_time_limit() {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("loop.toyo");
     std::fs::write(&program, "TAG TAG=001\nTIM TM=001.0\nJMP TAG=001\nEND\n").unwrap();
-    let came = desk.run(&format!("toyo sim run {} --for 5s", program.display()));
-    assert_eq!(came.exit, Some(8), "{came:?}");
-    assert!(came.stderr.contains("after 5.000 s, it still runs"), "{came:?}");
+    let output = desk.run(&format!("toyo sim run {} --for 5s", program.display()));
+    assert_eq!(output.exit, Some(8), "{output:?}");
+    assert!(output.stderr.contains("after 5.000 s, it still runs"), "{output:?}");
 }
 
 #[test]

@@ -135,7 +135,7 @@ impl Error {
     pub fn is_malformed(&self) -> bool {
         match self {
             Self::Malformed { .. } | Self::TooMuchData { .. } => true,
-            Self::NoAnswer(unanswered) => unanswered.unfitting.is_some(),
+            Self::NoAnswer(unanswered) => unanswered.invalid_answer.is_some(),
             _ => false,
         }
     }
@@ -156,13 +156,13 @@ pub struct Unanswered {
     /// Line counters so far.
     pub counters: Counters,
     /// The last received block that is not the answer, and the reason.
-    pub unfitting: Option<(String, String)>,
+    pub invalid_answer: Option<(String, String)>,
 }
 
 impl fmt::Display for Unanswered {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Counters { received, noise, echoes, .. } = self.counters;
-        match &self.unfitting {
+        match &self.invalid_answer {
             Some((block, why)) => write!(f, "unexpected answer '{block}': {why}")?,
             None if received == echoes && echoes > 0 => f.write_str("received only an echo of the sent bytes")?,
             None if received == 0 && noise > 0 => write!(f, "no answer, but {noise} stray characters")?,
@@ -182,17 +182,17 @@ mod tests {
     fn each_error_has_a_readable_message() {
         let counters = Counters { sent: 4, ..Counters::default() };
         let request = Some(Request::bare(Command::Mpst));
-        let silence = Unanswered { request, waited: Duration::from_secs(1), counters, unfitting: None };
-        let silent = Error::NoAnswer(Box::new(silence.clone()));
-        assert_eq!(silent.to_string(), "no answer within 1.0s (@MPST)");
-        let unfitting = Some(("@M".to_owned(), "unknown command 'M'".to_owned()));
+        let silence = Unanswered { request, waited: Duration::from_secs(1), counters, invalid_answer: None };
+        let no_answer = Error::NoAnswer(Box::new(silence.clone()));
+        assert_eq!(no_answer.to_string(), "no answer within 1.0s (@MPST)");
+        let invalid_answer = Some(("@M".to_owned(), "unknown command 'M'".to_owned()));
         let noise = Unanswered { counters: Counters { noise: 7, ..counters }, request: None, ..silence };
         assert_eq!(noise.to_string(), "no answer, but 7 stray characters");
-        let odd = Error::NoAnswer(Box::new(Unanswered { unfitting, ..noise }));
-        assert!(odd.is_malformed() && !silent.is_malformed());
-        assert_eq!(odd.to_string(), "unexpected answer '@M': unknown command 'M'");
-        let kept = Error::HostNotReleased(None).to_string();
-        assert_eq!(kept, "armctl switched host control ON and could not switch it OFF again: @NG");
+        let malformed = Error::NoAnswer(Box::new(Unanswered { invalid_answer, ..noise }));
+        assert!(malformed.is_malformed() && !no_answer.is_malformed());
+        assert_eq!(malformed.to_string(), "unexpected answer '@M': unknown command 'M'");
+        let message = Error::HostNotReleased(None).to_string();
+        assert_eq!(message, "armctl switched host control ON and could not switch it OFF again: @NG");
         let refusal = Error::from(Refusal(Request::bare(Command::Home)));
         assert_eq!(refusal.to_string(), "the controller refused HOME (@NG)");
         let unseen = Error::StopUnconfirmed(Box::new(Error::StatusRefused)).to_string();

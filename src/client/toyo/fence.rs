@@ -52,7 +52,7 @@ impl Client {
         let line = opening.await.map_err(|error| Error::NotReopened(Box::new(error)))?;
         self.transport = Transport::Line(Box::new(line));
         self.ends = self.transport.ends();
-        self.session.renew();
+        self.session.reset();
         self.is_line_lost = false;
         self.host = HostState::Unknown;
         self.is_fenced = false;

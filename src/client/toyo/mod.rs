@@ -18,7 +18,7 @@ use std::time::Duration;
 use armctl_controller::toyo::field::Value;
 use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::request::{Answer, Request};
-use armctl_controller::toyo::session::{Counters, Ended, LineSession, Policy};
+use armctl_controller::toyo::session::{Counters, ExchangeResult, LineSession, Policy};
 use armctl_controller::toyo::status::Status;
 use armctl_controller::toyo::table::commands::Command;
 use armctl_controller::{Risk, Session as _, Step};
@@ -275,7 +275,7 @@ impl Client {
         self.set_moving(Some(Moving::Program));
         self.session.begin_raw(block);
         match self.exchange(Risk::Motion).await? {
-            Ended::Answered(answer) => Ok(answer),
+            ExchangeResult::Answered(answer) => Ok(answer),
             ended => Err(self.unanswered(ended, Risk::Motion, None)),
         }
     }
@@ -411,7 +411,7 @@ impl Client {
             return Err(self.unanswered(why, order.risk(), Some(&order)));
         }
         match ended {
-            Ended::Answered(block) => {
+            ExchangeResult::Answered(block) => {
                 // The answer to an order may be a late one; the answer to a read is newer than all earlier answers.
                 self.is_fenced = risk == Risk::Read;
                 request.answer_kept(&block).map_err(|error| malformed(&block, &error))
@@ -421,7 +421,7 @@ impl Client {
     }
 
     /// Runs the exchange to its end. The future may be dropped: the next exchange discards the pending answer.
-    async fn exchange(&mut self, risk: Risk) -> Result<Ended, Error> {
+    async fn exchange(&mut self, risk: Risk) -> Result<ExchangeResult, Error> {
         let ended = self.run_exchange(risk).await;
         if let Some(line) = self.transport.line() {
             line.give();
@@ -440,7 +440,7 @@ impl Client {
         line.take(until).await.map_err(Error::Session)
     }
 
-    async fn run_exchange(&mut self, risk: Risk) -> Result<Ended, Error> {
+    async fn run_exchange(&mut self, risk: Risk) -> Result<ExchangeResult, Error> {
         let began = self.started.elapsed();
         let mut now = began;
         let mut is_sent = false;
@@ -494,13 +494,13 @@ impl Client {
         Ok(received)
     }
 
-    fn unanswered(&self, ended: Ended, risk: Risk, request: Option<&Request>) -> Error {
-        let unfitting = match ended {
-            Ended::Unfitting { block, why } => Some((block, why)),
-            Ended::Answered(_) | Ended::NoAnswer => None,
+    fn unanswered(&self, ended: ExchangeResult, risk: Risk, request: Option<&Request>) -> Error {
+        let invalid_answer = match ended {
+            ExchangeResult::InvalidAnswer { block, why } => Some((block, why)),
+            ExchangeResult::Answered(_) | ExchangeResult::NoAnswer => None,
         };
         let (waited, counters) = (self.policy.timeout, self.session.counters());
-        let unanswered = Box::new(Unanswered { request: request.cloned(), waited, counters, unfitting });
+        let unanswered = Box::new(Unanswered { request: request.cloned(), waited, counters, invalid_answer });
         if risk > Risk::Read { Error::OutcomeUnknown(unanswered) } else { Error::NoAnswer(unanswered) }
     }
 

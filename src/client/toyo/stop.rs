@@ -5,7 +5,7 @@ use std::time::Duration;
 use armctl_controller::Risk;
 use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::request::{Answer, Request};
-use armctl_controller::toyo::session::{Ended, Policy};
+use armctl_controller::toyo::session::{ExchangeResult, Policy};
 use armctl_controller::toyo::table::commands::Command;
 use tokio::time::{Instant, timeout_at};
 
@@ -42,7 +42,7 @@ impl Moving {
 struct Attempt {
     is_refused: bool,
     is_busy: bool,
-    place: Record,
+    position: Record,
 }
 
 impl Client {
@@ -73,7 +73,7 @@ impl Client {
         let until = Instant::now() + STOP_WITHIN;
         let stopped = timeout_at(until, self.stop_until_at_rest(moving, &mut why)).await;
         let stopped = stopped.unwrap_or_else(|_| {
-            let silent = || self.unanswered(Ended::NoAnswer, Risk::Read, Some(&moving.stop()));
+            let silent = || self.unanswered(ExchangeResult::NoAnswer, Risk::Read, Some(&moving.stop()));
             Err(stop_error(why.unwrap_or_else(silent)))
         });
         self.set_policy(self.configured_policy);
@@ -87,7 +87,7 @@ impl Client {
 
     /// Sends a stop at once while an answer is pending. [`Client::stop`] would wait for that answer first.
     pub async fn send_urgent(&mut self, moving: Moving) {
-        if let Some(bytes) = self.session.urgent(self.started.elapsed(), &moving.stop()) {
+        if let Some(bytes) = self.session.begin_urgent(self.started.elapsed(), &moving.stop()) {
             // If the line is broken, the stop that follows reports it.
             self.send(&bytes).await.unwrap_or_default();
         }
@@ -103,9 +103,11 @@ impl Client {
             let attempt = self.try_stop(moving, &stop).await;
             let is_slow = began.elapsed() >= JOG_ASSUMED_AFTER;
             previous = match attempt {
-                Ok(Attempt { is_busy: false, place, .. }) if previous.as_ref() == Some(&place) => return Ok(place),
+                Ok(Attempt { is_busy: false, position, .. }) if previous.as_ref() == Some(&position) => {
+                    return Ok(position);
+                }
                 Err(error) if self.is_line_lost => return Err(stop_error(error)),
-                Ok(Attempt { is_refused, is_busy, place }) => {
+                Ok(Attempt { is_refused, is_busy, position }) => {
                     *why = Some(Error::StillMoving { is_refused });
                     // The next attempt shows any error of this one.
                     if is_refused && moving == Moving::Jog {
@@ -116,7 +118,7 @@ impl Client {
                         // Still moving, perhaps with no program running: an axis was left jogging.
                         self.stop_a_jog().await;
                     }
-                    (!is_busy).then_some(place)
+                    (!is_busy).then_some(position)
                 }
                 Err(error) => {
                     *why = Some(error);
@@ -138,8 +140,8 @@ impl Client {
             self.stop_a_jog().await;
             state = self.status_of(&[0]).await?;
         }
-        let place = self.read_position().await?;
-        Ok(Attempt { is_refused: answer == Answer::Refused, is_busy: state.executing() || state.homing(), place })
+        let position = self.read_position().await?;
+        Ok(Attempt { is_refused: answer == Answer::Refused, is_busy: state.executing() || state.homing(), position })
     }
 
     /// Takes host control without a check of the grant: a stop is always allowed.

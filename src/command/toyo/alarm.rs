@@ -59,8 +59,9 @@ impl Command for List {
             link.plan(&status_page(1), "which");
             return Err(unknown());
         }
-        let present = present(link).await?.map(|code| Row::new(1, "alarm", explained(entry(code), context.robot)));
-        Ok(Alarms { alarms: present.into_iter().collect(), standing: Nothing {}, asked: 1 })
+        let row =
+            read_error_code(link).await?.map(|code| Row::new(1, "alarm", with_site_texts(entry(code), context.robot)));
+        Ok(Alarms { alarms: row.into_iter().collect(), standing: Nothing {}, asked: 1 })
     }
 }
 
@@ -71,14 +72,14 @@ impl Watchable for List {
 }
 
 /// Code of the present error; code 00 if the controller does not report the code.
-async fn present(link: &mut Link) -> Result<Option<u8>, Failure> {
+async fn read_error_code(link: &mut Link) -> Result<Option<u8>, Failure> {
     let status = link.status_of(&[0, 1]).await?;
     Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
 }
 
 /// The present alarms as a list.
-pub(super) async fn now(link: &mut Link) -> Result<Vec<Told>, Failure> {
-    Ok(present(link).await?.map(alarm_from_code).into_iter().collect())
+pub(super) async fn present_alarms(link: &mut Link) -> Result<Vec<Told>, Failure> {
+    Ok(read_error_code(link).await?.map(alarm_from_code).into_iter().collect())
 }
 
 /// Additional keys of a toyo alarm.
@@ -107,7 +108,7 @@ fn entry(code: u8) -> AlarmEntry<Axis> {
 }
 
 /// The entry with additions from `alarms.toml`.
-fn explained(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
+fn with_site_texts(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
 }
@@ -148,15 +149,15 @@ impl Command for History {
                 Err(_) if number > 1 => break,
                 Err(_) => link.ask(&entry_request(number)).await?,
             };
-            let Some(entry) = past(&record) else { break };
-            alarms.push(Row::new(number.into(), format!("alarm {number}"), explained(entry, context.robot)));
+            let Some(entry) = history_entry(&record) else { break };
+            alarms.push(Row::new(number.into(), format!("alarm {number}"), with_site_texts(entry, context.robot)));
         }
         Ok(Alarms { asked: alarms.len(), alarms, standing: Nothing {} })
     }
 }
 
 /// Entry of the history; `None` if it is empty.
-fn past(record: &Record) -> Option<AlarmEntry<Axis>> {
+fn history_entry(record: &Record) -> Option<AlarmEntry<Axis>> {
     if record.byte("error") == Some(errors::NONE) {
         return None;
     }
@@ -180,35 +181,35 @@ pub struct Reset {}
 
 impl Command for Reset {
     type Family = Toyo;
-    type Report = Cancelled;
+    type Report = ResetReport;
     const ID: &'static str = "toyo.alarm.reset";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Cancelled, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<ResetReport, Failure> {
         let link = context.link;
         let code = |status: &Status| (status.error != errors::NONE).then(|| format!("{:02X}", status.error));
         let old = Old::read(link.status_before(1).await?.as_ref().and_then(code));
         link.ask(&Request::bare(table::Command::Cerr)).await?;
         let has_ended = wait_for_status(link, (0, "whether the alarm has ended"), |status| !status.has_error()).await?;
-        let remaining = if has_ended { None } else { present(link).await?.map(alarm_from_code) };
+        let remaining = if has_ended { None } else { read_error_code(link).await?.map(alarm_from_code) };
         let words = remaining
             .as_ref()
             .map_or_else(|| "the alarm has ended".to_owned(), |remaining| format!("still there: {}", remaining.line()));
         let new = New::of("fault_code", remaining.as_ref().and_then(|remaining| remaining.code.clone()), words);
-        Ok(Cancelled { done: new.replaces(old), alarms: remaining.into_iter().collect() })
+        Ok(ResetReport { done: new.replaces(old), alarms: remaining.into_iter().collect() })
     }
 }
 
 /// Alarms after a reset.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Cancelled {
+pub struct ResetReport {
     #[serde(flatten)]
     done: Done,
     /// Alarms that are still present.
     alarms: Vec<Told>,
 }
 
-impl Alike for Cancelled {
+impl Alike for ResetReport {
     type Core = Done;
 
     fn core(&self) -> Done {
@@ -216,7 +217,7 @@ impl Alike for Cancelled {
     }
 }
 
-impl Report for Cancelled {
+impl Report for ResetReport {
     fn view(&self) -> View {
         self.done.view()
     }
@@ -299,7 +300,7 @@ mod tests {
     #[test]
     fn the_history_ends_at_its_first_empty_entry() {
         let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
-        let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
+        let (mut bench, received) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["alarm", "history"]);
         let entries = data["alarms"].as_array().unwrap();
         assert_eq!(entries.len(), 3, "{data}");
@@ -308,7 +309,7 @@ mod tests {
             (&"13".into(), &"1:02:03".into(), &1.into())
         );
         assert_eq!((&entries[1]["power_off"], &entries[1]["code"]), (&true.into(), &serde_json::Value::Null));
-        assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@EHTR")).count(), 4);
+        assert_eq!(received.borrow().iter().filter(|block| block.starts_with("@EHTR")).count(), 4);
         assert_eq!(bench.data(&["alarm", "history", "--limit", "1"])["alarms"].as_array().unwrap().len(), 1);
     }
 

@@ -41,13 +41,13 @@ pub struct Write {
 
 impl Command for Read {
     type Family = Toyo;
-    type Report = Transferred;
+    type Report = TransferReport;
     const ID: &'static str = "toyo.card.read";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str =
         "replace programs, tables and parameters of the controller with the content of the memory card";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<TransferReport, Failure> {
         let work = AcceptedWork {
             work: Work::Card,
             order: table::Command::Rmca,
@@ -60,12 +60,12 @@ impl Command for Read {
 
 impl Command for Write {
     type Family = Toyo;
-    type Report = Transferred;
+    type Report = TransferReport;
     const ID: &'static str = "toyo.card.write";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite the content of the memory card";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<TransferReport, Failure> {
         let work = AcceptedWork {
             work: Work::Card,
             order: table::Command::Wmca,
@@ -76,23 +76,23 @@ impl Command for Write {
     }
 }
 
-async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool) -> Result<Transferred, Failure> {
+async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool) -> Result<TransferReport, Failure> {
     let link = context.link;
     link.ask(&Request::bare(work.order)).await?;
     if no_wait {
-        return Ok(Transferred { accepted: true, elapsed_ms: None, needs_power_cycle: None });
+        return Ok(TransferReport { accepted: true, elapsed_ms: None, needs_power_cycle: None });
     }
     let Some(end) = work.wait(link, context.screen, crate::client::toyo::Letters::UNKNOWN).await.known()? else {
         link.status_of(&[0]).await?;
         return Err(unknown());
     };
     let needs_power_cycle = link.status_of(&[0]).await?.needs_power_cycle();
-    Ok(Transferred { accepted: true, elapsed_ms: end.elapsed_ms, needs_power_cycle: Some(needs_power_cycle) })
+    Ok(TransferReport { accepted: true, elapsed_ms: end.elapsed_ms, needs_power_cycle: Some(needs_power_cycle) })
 }
 
 /// Result of a transfer.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Transferred {
+pub struct TransferReport {
     /// Whether the controller accepted the command.
     accepted: bool,
     /// Time from acceptance to end; null without a wait, or if the transfer ended before the first read.
@@ -101,7 +101,7 @@ pub struct Transferred {
     needs_power_cycle: Option<bool>,
 }
 
-impl Report for Transferred {
+impl Report for TransferReport {
     fn view(&self) -> View {
         let due = match self.needs_power_cycle {
             None => return View::fields([("memory card", "started".into())]),

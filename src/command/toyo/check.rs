@@ -23,14 +23,14 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
         Err(failure) => layers.fail("line", &failure),
         Ok(mut link) => {
             layers.ok("line", format!("{} is open", robot.target.value));
-            look(robot, &mut link, &mut layers).await;
+            check_state(robot, &mut link, &mut layers).await;
             Toyo::close(link, screen).await?;
         }
     }
     Ok(layers.finish())
 }
 
-async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
+async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     let status = match link.status().await {
         Ok(status) => status,
         Err(failure) => return layers.fail("answer", &failure),

@@ -62,19 +62,20 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
     }
     let endpoint = endpoint(robot)?;
     let character = endpoint.character();
-    let way = Way { endpoint, robot: robot.clone(), access: access.clone(), screen: *screen, claim: Mutex::default() };
-    let line = Box::pin(way.open()).await?;
+    let connector =
+        Connector { endpoint, robot: robot.clone(), access: access.clone(), screen: *screen, claim: Mutex::default() };
+    let line = Box::pin(connector.open()).await?;
     let mut client = Client::over(line, character, options);
-    let way = Arc::new(way);
+    let connector = Arc::new(connector);
     client.reopen_by(move || {
-        let way = Arc::clone(&way);
-        Box::pin(async move { way.open().await.map_err(|failure| Error::Opener(Arc::new(failure))) })
+        let connector = Arc::clone(&connector);
+        Box::pin(async move { connector.open().await.map_err(|failure| Error::Opener(Arc::new(failure))) })
     });
     Ok(client)
 }
 
 /// Connector of one client, which can open the line again after a loss.
-struct Way {
+struct Connector {
     endpoint: Endpoint,
     robot: Robot,
     access: Access,
@@ -83,7 +84,7 @@ struct Way {
     claim: Mutex<Option<Claim>>,
 }
 
-impl Way {
+impl Connector {
     /// Opens the line, or joins the session that has it open.
     async fn open(&self) -> Result<Line, Failure> {
         let Self { endpoint, robot, access, screen, claim } = self;

@@ -64,9 +64,9 @@ impl Set {
     }
 
     /// Text after "This will …".
-    fn in_words(&self, place: &str) -> String {
+    fn in_words(&self, coordinates: &str) -> String {
         format!(
-            "move to {place} with the next RSMV step of task {} at {}",
+            "move to {coordinates} with the next RSMV step of task {} at {}",
             field("task").meaning(&self.task),
             self.pace()
         )
@@ -93,18 +93,18 @@ impl Command for Set {
         let Context { link, authority, .. } = context;
         let letters = link.letters().await?;
         let changes = Changes::read_by("coordinates", &point_table().body(), &letters, values)?;
-        let place = changes.whole().ok_or_else(|| {
+        let coordinates = changes.whole().ok_or_else(|| {
             Failure::usage("coordinates: a value is missing; each axis needs one")
                 .hint("`toyo coordinate set -h` has examples")
         })?;
-        let values = std::iter::once(task.clone()).chain(place).chain([speed.clone()]).collect();
+        let values = std::iter::once(task.clone()).chain(coordinates).chain([speed.clone()]).collect();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
-        let place = Coordinates::of(request.record(), letters);
-        let aim = format!("{} (mm)", place.in_a_line());
-        authority.confirm(&Change::new(self.in_words(&aim))).await?;
+        let coordinates = Coordinates::of(request.record(), letters);
+        let target = format!("{} (mm)", coordinates.in_a_line());
+        authority.confirm(&Change::new(self.in_words(&target))).await?;
         link.ask(&request).await?;
-        let words = format!("task {} has {aim} at {}", field("task").meaning(task), self.pace());
-        let new = New::of("coordinates", serde_json::json!(place), words).with("task", json(field("task"), task));
+        let words = format!("task {} has {target} at {}", field("task").meaning(task), self.pace());
+        let new = New::of("coordinates", serde_json::json!(coordinates), words).with("task", json(field("task"), task));
         let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", json(field("speed"), speed)) };
         Ok(new.replaces(Old::UNREAD))
     }

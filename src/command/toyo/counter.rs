@@ -286,9 +286,9 @@ mod tests {
             serde_json::Value::Null
         );
         let silent = |block: &str, _| if block.starts_with("@MC") { Fault::Lost } else { Fault::None };
-        let (mut bench, heard) = Bench::with_faults("", silent);
+        let (mut bench, received) = Bench::with_faults("", silent);
         assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::NoAnswer);
-        assert!(!heard.borrow().iter().any(|block| block.starts_with("@MCST")), "nothing was written");
+        assert!(!received.borrow().iter().any(|block| block.starts_with("@MCST")), "nothing was written");
     }
 
     #[test]
@@ -299,12 +299,12 @@ mod tests {
             "@MCST CN06=0001" => Fault::Lost,
             _ => Fault::None,
         };
-        let (mut bench, heard) = Bench::with_faults("host = true\n", late);
+        let (mut bench, received) = Bench::with_faults("host = true\n", late);
         assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
-        heard.borrow_mut().clear();
+        received.borrow_mut().clear();
         // The command received no `@OK`, so its result is unknown.
         assert_eq!(bench.run(&["counter", "set", "6", "1"]).unwrap_err().kind, Kind::OutcomeUnknown);
-        assert_eq!(heard.borrow()[..2], ["@MCNT CN=06", "@MCST CN06=0001"], "something harmless is asked first");
+        assert_eq!(received.borrow()[..2], ["@MCNT CN=06", "@MCST CN06=0001"], "something harmless is asked first");
     }
 
     #[test]

@@ -88,10 +88,10 @@ fn with_pendant_on_only_commands_that_need_the_host_are_not_sent() {
     let needs_host = |command: &str| Row::named(command).is_none_or(|row| row.needs_host);
     for (line, commands) in LINES {
         let words: Vec<&str> = line.split(' ').collect();
-        let (mut bench, heard) = Bench::with_faults("pendant = true\n", |_, _| Fault::None);
+        let (mut bench, received) = Bench::with_faults("pendant = true\n", |_, _| Fault::None);
         let outcome = bench.run(&words);
-        let heard = heard.borrow();
-        let sent: BTreeSet<&str> = heard.iter().filter_map(|block| block.get(1..5)).collect();
+        let received = received.borrow();
+        let sent: BTreeSet<&str> = received.iter().filter_map(|block| block.get(1..5)).collect();
         for command in *commands {
             let is_sent = sent.contains(command);
             // Equal values are not written.

@@ -51,7 +51,7 @@ impl decode::Decode for Decode {
     }
 
     fn decode(&self) -> Result<DecodedLines, Failure> {
-        Ok(explained(&self.lines()?))
+        Ok(decode_lines(&self.lines()?))
     }
 }
 
@@ -90,16 +90,16 @@ fn joined(arguments: &[String]) -> Vec<String> {
 }
 
 /// Explanation of each line. The request before an answer explains it.
-fn explained(lines: &[String]) -> DecodedLines {
-    let mut asked: Option<Request> = None;
+fn decode_lines(lines: &[String]) -> DecodedLines {
+    let mut last_request: Option<Request> = None;
     let lines = lines.iter().map(|line| {
         let (marked, text) = unmarked(line);
         // The answer to TYPE has the form of its request.
-        let is_answer = || asked.as_ref().is_some_and(|request| request.answer(text).is_ok());
+        let is_answer = || last_request.as_ref().is_some_and(|request| request.answer(text).is_ok());
         let sender = marked.unwrap_or_else(|| if is_answer() { Sender::Controller } else { Sender::guess(text) });
-        let description = describe(text, sender, asked.take().as_ref());
+        let description = describe(text, sender, last_request.take().as_ref());
         if sender == Sender::Host {
-            asked = Request::parse(text).ok();
+            last_request = Request::parse(text).ok();
         }
         DecodedLine::new(text, sender, description)
     });
@@ -185,7 +185,7 @@ mod tests {
     fn senders(lines: &[&str]) -> Vec<&'static str> {
         let lines = lines.iter().map(ToString::to_string).collect();
         let toyo = Decode { lines, selection: Selection::default() };
-        explained(&toyo.lines().unwrap()).lines.iter().map(|line| line.sender).collect()
+        decode_lines(&toyo.lines().unwrap()).lines.iter().map(|line| line.sender).collect()
     }
 
     #[test]
@@ -201,16 +201,16 @@ mod tests {
     #[test]
     fn an_answer_is_decoded_with_the_request_before_it() {
         let lines = ["@HOME", "@OK", "@OK"].map(str::to_owned);
-        let titles: Vec<String> = explained(&lines).lines.into_iter().map(|line| line.title).collect();
+        let titles: Vec<String> = decode_lines(&lines).lines.into_iter().map(|line| line.title).collect();
         assert_eq!(titles[1..], ["answer to HOME: done", "answer: done"]);
     }
 
     #[test]
     fn a_damaged_line_fails_and_shows_the_fields_before_the_damage() {
-        let lines = explained(&["@STAS SNO=0 ST1=2".to_owned()]);
+        let lines = decode_lines(&["@STAS SNO=0 ST1=2".to_owned()]);
         assert_eq!(lines.lines[0].fields.len(), 2);
         let failure = Report::failure(&lines).unwrap();
         assert_eq!(failure.kind, Kind::Malformed);
-        assert!(Report::failure(&explained(&["@HOME".to_owned()])).is_none());
+        assert!(Report::failure(&decode_lines(&["@HOME".to_owned()])).is_none());
     }
 }

@@ -74,7 +74,7 @@ impl Declaration for Toyo {
     }
 
     async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
-        alarm::now(link).await
+        alarm::present_alarms(link).await
     }
 
     fn traffic(link: &Link) -> Traffic {

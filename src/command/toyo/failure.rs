@@ -19,7 +19,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::StatusRefused => refusal::mute(),
         Error::PendantOn => refusal::pendant(),
         Error::NoAnswer(unanswered) => {
-            let kind = if unanswered.unfitting.is_some() { Kind::Malformed } else { Kind::NoAnswer };
+            let kind = if unanswered.invalid_answer.is_some() { Kind::Malformed } else { Kind::NoAnswer };
             about(kind, unanswered.to_string()).hint(silence(&unanswered))
         }
         Error::OutcomeUnknown(ref unanswered) => {
@@ -67,10 +67,10 @@ pub fn failure(label: &str, error: Error) -> Failure {
 }
 
 /// Hint after a request without an answer.
-fn silence(Unanswered { counters, unfitting, .. }: &Unanswered) -> &'static str {
+fn silence(Unanswered { counters, invalid_answer, .. }: &Unanswered) -> &'static str {
     if counters.echoes > 0 {
         "only an echo was received: check for a loop-back plug, or an RS-485 adapter without a controller"
-    } else if counters.noise > 0 || unfitting.is_some() {
+    } else if counters.noise > 0 || invalid_answer.is_some() {
         "check baud rate and parity: the controller uses 9600 baud, 8 data bits, even parity, 1 stop bit"
     } else {
         "check that the controller is on, and that the cable crosses TXD and RXD without handshake"

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use super::testing::{Bench, Fault, ReceivedBlocks, gated, plan, text};
+use super::testing::{Bench, Fault, ReceivedBlocks, gate_input, plan, text};
 use crate::command::CommandSet as _;
 use crate::command::frame::testing::{QUIET, all_frames};
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
@@ -92,7 +92,7 @@ fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     write("programs.csv", "name,loops\n1,9\n");
     write("counts.csv", "name,count\nCN01,5\n");
     write("program.txt", "TAG TAG=005\nSPD V=05\nEND\n");
-    let (mut bench, heard) = Bench::with_faults(STATE, |_, _| Fault::None);
+    let (mut bench, received) = Bench::with_faults(STATE, |_, _| Fault::None);
     if line.starts_with("restore") || line.starts_with("diff") {
         let backup = folder.path().join("backup");
         bench.data(&["backup", backup.to_str().unwrap()]);
@@ -101,8 +101,8 @@ fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
         bench.data(&line.split(' ').collect::<Vec<_>>());
     }
     bench.end();
-    heard.borrow_mut().clear();
-    (bench, heard, folder)
+    received.borrow_mut().clear();
+    (bench, received, folder)
 }
 
 fn words(line: &str, folder: &tempfile::TempDir) -> Vec<String> {
@@ -126,7 +126,7 @@ fn the_table_has_every_command() {
         let (_, _, folder) = prepared("");
         let id = |line: &str| {
             let words = words(line, &folder);
-            gated(&words.iter().map(String::as_str).collect::<Vec<_>>()).2
+            gate_input(&words.iter().map(String::as_str).collect::<Vec<_>>()).2
         };
         LINES.iter().map(|(line, _)| id(line)).collect()
     };
@@ -140,24 +140,25 @@ fn the_table_has_every_command() {
 #[test]
 fn without_confirmation_no_command_changes_anything() {
     let mut wrong = Vec::new();
-    for (line, risk_of_it) in LINES {
-        let (mut bench, heard, folder) = prepared(line);
+    for (line, expected_risk) in LINES {
+        let (mut bench, received, folder) = prepared(line);
         let words = words(line, &folder);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let (robot, intent, _) = gated(&words);
-        assert_eq!(intent.risk, *risk_of_it, "{line}");
+        let (robot, intent, _) = gate_input(&words);
+        assert_eq!(intent.risk, *expected_risk, "{line}");
         let mut read_only = robot;
         read_only.read_only.value = true;
         let refused = Gate::default().must_ask(&QUIET, &read_only, &intent);
         let is_refused =
             refused.is_err_and(|failure| failure.kind == Kind::Rejected && failure.message.contains("read-only"));
-        if is_refused == (*risk_of_it == Read || intent.is_stop) {
+        if is_refused == (*expected_risk == Read || intent.is_stop) {
             wrong.push(format!("{line}: a read-only robot"));
         }
-        let outcome = bench.unasked(&words);
+        let outcome = bench.run_without_confirmation(&words);
         bench.end();
-        let riskier: Vec<String> = heard.borrow().iter().filter(|block| risk(block) >= Destroy).cloned().collect();
-        if *risk_of_it >= Destroy {
+        let destructive_blocks: Vec<String> =
+            received.borrow().iter().filter(|block| risk(block) >= Destroy).cloned().collect();
+        if *expected_risk >= Destroy {
             let kind = outcome.as_ref().err().map(|failure| failure.kind);
             // A block beyond the end is refused in any case.
             let is_expected =
@@ -165,12 +166,12 @@ fn without_confirmation_no_command_changes_anything() {
             if kind != Some(Kind::Rejected) || !outcome.as_ref().is_err_and(|failure| is_expected(&failure.message)) {
                 wrong.push(format!("{line}: {outcome:?}"));
             }
-            if intent.confirmation != Confirmation::WhenKnown && !heard.borrow().is_empty() {
-                wrong.push(format!("{line}: sent before it was asked: {:?}", heard.borrow()));
+            if intent.confirmation != Confirmation::WhenKnown && !received.borrow().is_empty() {
+                wrong.push(format!("{line}: sent before it was asked: {:?}", received.borrow()));
             }
         }
-        if !riskier.is_empty() {
-            wrong.push(format!("{line}: sent {riskier:?}"));
+        if !destructive_blocks.is_empty() {
+            wrong.push(format!("{line}: sent {destructive_blocks:?}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -179,8 +180,8 @@ fn without_confirmation_no_command_changes_anything() {
 #[test]
 fn a_dry_run_shows_the_blocks_that_are_sent() {
     let mut wrong = Vec::new();
-    for (line, risk_of_it) in LINES {
-        let (mut bench, heard, folder) = prepared(line);
+    for (line, expected_risk) in LINES {
+        let (mut bench, received, folder) = prepared(line);
         let words = words(line, &folder);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let report = match plan(&words) {
@@ -191,13 +192,13 @@ fn a_dry_run_shows_the_blocks_that_are_sent() {
             }
         };
         let planned = all_frames(&report);
-        if !planned.iter().any(|frame| risk(&text(frame)) == *risk_of_it) {
+        if !planned.iter().any(|frame| risk(&text(frame)) == *expected_risk) {
             wrong.push(format!("{line}: no frame has the risk of the command: {planned:?}"));
         }
         // The simulator refuses some commands; the blocks sent up to then count.
-        let is_whole = bench.run(&words).is_ok_and(|(_, failure)| failure.is_none());
+        let is_complete = bench.run(&words).is_ok_and(|(_, failure)| failure.is_none());
         bench.end();
-        if let Err(why) = follows(&planned, &heard.borrow(), is_whole && report["complete"] == true) {
+        if let Err(why) = follows(&planned, &received.borrow(), is_complete && report["complete"] == true) {
             wrong.push(format!("{line}: {why}"));
         }
     }
@@ -206,10 +207,10 @@ fn a_dry_run_shows_the_blocks_that_are_sent() {
 
 /// Whether the sent blocks match the plan: `?` matches any text, a block that depends on an answer can be absent, and a
 /// block with "until" can repeat.
-fn follows(planned: &[Value], sent: &[String], is_whole: bool) -> Result<(), String> {
+fn follows(planned: &[Value], sent: &[String], is_complete: bool) -> Result<(), String> {
     let is_open = |frame: &Value| frame["depends_on"].is_string();
     let is_poll = |frame: &Value| frame["about"].as_str().is_some_and(|about| about.contains("until"));
-    let closed = |mut at: usize| {
+    let reachable = |mut at: usize| {
         let mut all = vec![at];
         while planned.get(at).is_some_and(is_open) {
             at += 1;
@@ -217,10 +218,10 @@ fn follows(planned: &[Value], sent: &[String], is_whole: bool) -> Result<(), Str
         }
         all
     };
-    let mut places = BTreeSet::from([0]);
+    let mut positions = BTreeSet::from([0]);
     for (index, block) in sent.iter().enumerate() {
         let mut next = BTreeSet::new();
-        for at in places.iter().flat_map(|at| closed(*at)) {
+        for at in positions.iter().flat_map(|at| reachable(*at)) {
             if planned.get(at).is_some_and(|frame| fits(&text(frame), block)) {
                 next.insert(at + 1);
             }
@@ -230,16 +231,16 @@ fn follows(planned: &[Value], sent: &[String], is_whole: bool) -> Result<(), Str
         }
         if next.is_empty() {
             let planned: Vec<String> = planned.iter().map(text).collect();
-            return if is_whole {
+            return if is_complete {
                 Err(format!("block {index}, {block}, was not planned\n  sent {sent:?}\n  planned {planned:?}"))
             } else {
                 Ok(())
             };
         }
-        places = next;
+        positions = next;
     }
-    let is_end = |at: &usize| closed(*at).contains(&planned.len());
-    if is_whole && !places.iter().any(is_end) {
+    let is_end = |at: &usize| reachable(*at).contains(&planned.len());
+    if is_complete && !positions.iter().any(is_end) {
         let planned: Vec<String> = planned.iter().map(text).collect();
         return Err(format!("more was planned than sent\n  sent {sent:?}\n  planned {planned:?}"));
     }
@@ -250,8 +251,8 @@ fn fits(planned: &str, sent: &str) -> bool {
     let mut rest = sent;
     let parts: Vec<&str> = planned.split('?').collect();
     let [first, middle @ ..] = &parts[..] else { return false };
-    let Some(behind) = rest.strip_prefix(first) else { return false };
-    rest = behind;
+    let Some(remaining) = rest.strip_prefix(first) else { return false };
+    rest = remaining;
     for part in middle {
         // At least one character for each `?`.
         let Some(at) = rest.get(1..).and_then(|rest| if part.is_empty() { Some(rest.len()) } else { rest.find(part) })
@@ -265,10 +266,10 @@ fn fits(planned: &str, sent: &str) -> bool {
 
 #[test]
 fn a_confirmation_shows_old_and_new_and_empty_cells_need_none() {
-    let (mut bench, heard, _folder) = prepared("");
-    let mut refused = |line: &str| {
+    let (mut bench, received, _folder) = prepared("");
+    let mut question_of = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
-        let failure = bench.unasked(&words).expect_err(line);
+        let failure = bench.run_without_confirmation(&words).expect_err(line);
         assert_eq!(failure.kind, Kind::Rejected, "{line}");
         failure.message.split(" this would ").nth(1).unwrap_or_default().to_owned()
     };
@@ -287,14 +288,14 @@ fn a_confirmation_shows_old_and_new_and_empty_cells_need_none() {
         ("program delete 8", "delete a step of task 1 (step 8: NOP)"),
         ("program copy 2 2 --at 3", "overwrite a step of task 1 (step 3: SPD V=06 -> SPD V=05)"),
     ] {
-        assert_eq!(refused(line), question, "{line}");
+        assert_eq!(question_of(line), question, "{line}");
     }
-    let sent = heard.borrow().iter().filter(|block| risk(block) >= Destroy).count();
+    let sent = received.borrow().iter().filter(|block| risk(block) >= Destroy).count();
     assert_eq!(sent, 0);
     // Equal values and empty cells need no confirmation.
     for line in ["param set P01 ax2=1000", "point set 4 1 2 3 4", "point set 1 9 9 9 9", "easy set 5 1 2 3"] {
         let words: Vec<&str> = line.split(' ').collect();
-        if let Err(failure) = bench.unasked(&words) {
+        if let Err(failure) = bench.run_without_confirmation(&words) {
             panic!("{line}: {failure}");
         }
     }

@@ -73,7 +73,7 @@ impl Command for Home {
             return Ok(HomeReport { motion: Motion { accepted: true, ..Motion::default() } });
         }
         let end = accepted.wait(link, screen, letters).await?;
-        let position = end.place.map(|place| place.position().of_group(UNIT));
+        let position = end.coordinates.map(|coordinates| coordinates.position().of_group(UNIT));
         let motion = Motion { accepted: true, group: Some(UNIT.to_owned()), ..Motion::default() };
         Ok(HomeReport { motion: Motion { position, reached: Some(true), elapsed_ms: end.elapsed_ms, ..motion } })
     }
@@ -81,14 +81,14 @@ impl Command for Home {
 
 /// Adds the present position of each axis. A busy controller can refuse to report it.
 async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change, Failure> {
-    let place = match link.read_position().await {
+    let coordinates = match link.read_position().await {
         Ok(record) => Coordinates::of(&record, letters),
         Err(failure) if failure.kind == Kind::Refused => {
             return Ok(change.note("The controller did not report the position."));
         }
         Err(failure) => return Err(failure),
     };
-    let axes = place.mm().into_iter().enumerate();
+    let axes = coordinates.mm().into_iter().enumerate();
     Ok(axes.fold(change, |change, (axis, mm)| {
         change.replaces(&titled(axis, letters.of(axis)), &format!("{mm:.2} mm"), "origin")
     }))
@@ -103,10 +103,10 @@ pub struct HomeReport {
 
 impl Report for HomeReport {
     fn view(&self) -> View {
-        let Some(place) = &self.motion.position else { return View::fields([("origin", "moving".into())]) };
+        let Some(position) = &self.motion.position else { return View::fields([("origin", "moving".into())]) };
         View::fields([
             ("origin", Cell::from("done").tone(Tone::Good)),
-            ("at", place.line().into()),
+            ("at", position.line().into()),
             ("elapsed (ms)", Cell::maybe(self.motion.elapsed_ms)),
         ])
     }
@@ -142,13 +142,13 @@ mod tests {
 
     #[test]
     fn home_ends_with_all_axes_at_their_origin() {
-        let (mut bench, heard) = Bench::with_faults("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fault::None);
+        let (mut bench, received) = Bench::with_faults("position = [50.0, 20.0, 0.0, 0.0]\n", |_, _| Fault::None);
         let data = bench.data(&["home"]);
         assert!(data["elapsed_ms"].as_u64().unwrap() > 1000, "{data}");
         assert_eq!(data["position"]["x_mm"], 0.0);
         let status = bench.data(&["status"]);
         assert_eq!((&status["homed"], &status["running"]), (&true.into(), &false.into()));
-        assert_eq!(heard.borrow().iter().filter(|block| *block == "@HOME").count(), 1);
+        assert_eq!(received.borrow().iter().filter(|block| *block == "@HOME").count(), 1);
     }
 
     #[test]

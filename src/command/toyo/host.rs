@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::link::Toyo;
-use super::orders::not_so;
+use super::orders::no_effect;
 use super::wait::wait_for_status;
 use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::{Command, Context};
@@ -48,7 +48,7 @@ impl Command for Host {
         {
             return Ok(New::of("host_on", is_on, done).replaces(old));
         }
-        Err(not_so("the host").hint("`toyo status` shows whether the host is ON"))
+        Err(no_effect("the host").hint("`toyo status` shows whether the host is ON"))
     }
 }
 
@@ -69,30 +69,30 @@ mod tests {
         let lost = |fault| move |block: &str, _| if block == "@HSON" { fault } else { Fault::None };
         // The command was executed, and the status confirms it.
         assert_eq!(Bench::with_faults("", lost(Fault::Unanswered)).0.data(&["host", "on"])["new"], true);
-        let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Unanswered));
+        let (mut bench, received) = Bench::with_faults("origin = true\n", lost(Fault::Unanswered));
         bench.data(&["counter", "set", "1", "5"]);
         bench.close().unwrap();
-        assert_eq!(heard.borrow().iter().filter(|block| *block == "@HSON").count(), 1);
-        assert_eq!(heard.borrow().last().unwrap(), "@HSOF", "it was taken, and is given back");
+        assert_eq!(received.borrow().iter().filter(|block| *block == "@HSON").count(), 1);
+        assert_eq!(received.borrow().last().unwrap(), "@HSOF", "it was taken, and is given back");
         let lost_end = |block: &str, _| if block == "@HSOF" { Fault::Unanswered } else { Fault::None };
-        let (mut bench, heard) = Bench::with_faults("origin = true\n", lost_end);
+        let (mut bench, received) = Bench::with_faults("origin = true\n", lost_end);
         bench.data(&["counter", "set", "1", "5"]);
         bench.close().unwrap();
-        assert_eq!(heard.borrow()[heard.borrow().len() - 2..], ["@HSOF", "@STAS SNO=2"]);
+        assert_eq!(received.borrow()[received.borrow().len() - 2..], ["@HSOF", "@STAS SNO=2"]);
         // The command was not executed, and nothing else was sent.
-        let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Lost));
+        let (mut bench, received) = Bench::with_faults("origin = true\n", lost(Fault::Lost));
         let failure = bench.run(&["home"]).unwrap_err();
         assert!(failure.message.starts_with("the command was not sent: "), "{failure}");
-        assert!(!heard.borrow().iter().any(|block| block == "@HOME"));
+        assert!(!received.borrow().iter().any(|block| block == "@HOME"));
     }
 
     #[test]
     fn with_pendant_on_commands_that_need_no_host_are_sent() {
-        let (mut bench, heard) = Bench::with_faults("pendant = true\n", |_, _| Fault::None);
+        let (mut bench, received) = Bench::with_faults("pendant = true\n", |_, _| Fault::None);
         bench.data(&["counter", "set", "1", "5"]);
-        assert!(heard.borrow().iter().any(|block| block.starts_with("@MCST")));
+        assert!(received.borrow().iter().any(|block| block.starts_with("@MCST")));
         assert!(bench.run(&["home"]).unwrap_err().message.contains("the teach pendant is ON"));
-        assert!(!heard.borrow().iter().any(|block| block == "@HOME" || block == "@HSON"));
+        assert!(!received.borrow().iter().any(|block| block == "@HOME" || block == "@HSON"));
     }
 
     #[test]

@@ -40,7 +40,7 @@ impl Command for Info {
         let mut about = About::of(&link.ask(&system).await?);
         for request in &all[1..] {
             match link.try_ask(request).await? {
-                Ok(answer) => about.learn(request, &answer),
+                Ok(answer) => about.add_answer(request, &answer),
                 Err(_) => about.refused.push(request.text()),
             }
         }
@@ -99,7 +99,7 @@ impl About {
         }
     }
 
-    fn learn(&mut self, request: &Request, answer: &Record) {
+    fn add_answer(&mut self, request: &Request, answer: &Record) {
         match request.command() {
             table::Command::Cver => {
                 self.stations.push(Station { station: small(answer, "station"), version: meaning(answer, "version") });

@@ -31,12 +31,12 @@ use crate::output::view::View;
 )]
 pub struct Init {
     /// Memory to clear
-    what: What,
+    what: MemoryArea,
 }
 
 /// Memory that can be cleared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum What {
+enum MemoryArea {
     /// The whole memory
     #[value(alias = "all")]
     Everything,
@@ -52,7 +52,7 @@ enum What {
     Points,
 }
 
-impl What {
+impl MemoryArea {
     /// Word on the command line, word in the protocol (TO 2-3, MINT), and text.
     const fn row(self) -> (&'static str, &'static str, &'static str) {
         match self {
@@ -72,7 +72,7 @@ impl What {
 
 impl Command for Init {
     type Family = Toyo;
-    type Report = Cleared;
+    type Report = ClearReport;
     const ID: &'static str = "toyo.init";
     const RISK: Risk = Risk::Destroy;
 
@@ -85,22 +85,22 @@ impl Command for Init {
         Confirmation::Word(self.what.row().0)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Cleared, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<ClearReport, Failure> {
         let Context { link, screen, .. } = context;
         let (name, number, words) = self.what.row();
         let clear = Request::of(table::Command::Mint, [Value::Word(number)]);
         let task = task::current(link).await.known()?;
         link.ask(&clear).await?;
-        let status = settled(link, screen).await.map_err(accepted)?;
-        Ok(Cleared { cleared: name, about: words, task, needs_power_cycle: status.needs_power_cycle() })
+        let status = wait_until_cleared(link, screen).await.map_err(unknown_result)?;
+        Ok(ClearReport { cleared: name, about: words, task, needs_power_cycle: status.needs_power_cycle() })
     }
 }
 
 /// Interval between two reads of the status.
-const LOOK_EVERY: Duration = Duration::from_millis(200);
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Waits until the controller has completed the accepted work (ambiguity A3).
-async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
+async fn wait_until_cleared(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
     if link.is_dry() {
         link.plan(&status_page(0), "every 200 ms until the memory is cleared");
         return Err(unknown());
@@ -111,12 +111,12 @@ async fn settled(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
         if !status.executing() {
             return Ok(status);
         }
-        tokio::time::sleep(LOOK_EVERY).await;
+        tokio::time::sleep(POLL_INTERVAL).await;
     }
 }
 
 /// Failure while waiting for the end.
-fn accepted(failure: Failure) -> Failure {
+fn unknown_result(failure: Failure) -> Failure {
     if failure.kind == Kind::DryRun {
         return failure;
     }
@@ -126,7 +126,7 @@ fn accepted(failure: Failure) -> Failure {
 
 /// Result of a clear.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Cleared {
+pub struct ClearReport {
     /// Word as typed: `points`.
     cleared: &'static str,
     /// Text for the word.
@@ -137,11 +137,11 @@ pub struct Cleared {
     needs_power_cycle: bool,
 }
 
-impl Report for Cleared {
+impl Report for ClearReport {
     fn view(&self) -> View {
         let task = self.task.map(|task| format!(" (task {task})")).unwrap_or_default();
-        let then = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
-        View::text(format!("cleared: {}{task}{then}", self.about))
+        let restart_hint = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
+        View::text(format!("cleared: {}{task}{restart_hint}", self.about))
     }
 }
 
@@ -153,7 +153,8 @@ mod tests {
 
     #[test]
     fn each_word_clears_the_data_of_the_manual() {
-        let typed: Vec<(&str, &str)> = What::value_variants().iter().map(|what| (what.row().0, what.row().1)).collect();
+        let typed: Vec<(&str, &str)> =
+            MemoryArea::value_variants().iter().map(|what| (what.row().0, what.row().1)).collect();
         assert_eq!(
             typed.iter().map(|(_, number)| *number).collect::<Vec<_>>(),
             CLEARS.iter().map(|word| word.text).collect::<Vec<_>>()
@@ -171,7 +172,7 @@ mod tests {
 
     #[test]
     fn the_block_has_the_word_of_the_command_line() {
-        for what in What::value_variants() {
+        for what in MemoryArea::value_variants() {
             let value = what.to_possible_value().unwrap();
             assert_eq!(Command::confirmation(&Init { what: *what }), Confirmation::Word(what.row().0));
             assert_eq!(value.get_name(), what.row().0);

@@ -134,9 +134,9 @@ pub fn topic() -> (&'static str, &'static str, String) {
 
 const HEAD: &str = "Instructions of Toyo programs (section 2-5 of the manual)
 
-A file has a step per line. # and ; begin a comment. A label stands for a tag.
-Numbers may be short. A name of a point, counter or timer (robots.toml) stands
-for its number: PT=pick, JMPC TAG=next parts>=5. `MOVP pick` alone is
+A file has one step per line. # and ; begin a comment. A label replaces a tag
+number. Numbers can be short. A name of a point, counter or timer (robots.toml)
+replaces its number: PT=pick, JMPC TAG=next parts>=5. `MOVP pick` alone is
 MOVP a PT=pick CN=0 S V=0 POST.
 
       SPD V=5

@@ -200,8 +200,8 @@ mod tests {
     use crate::command::toyo::testing::{Bench, Fault};
     use crate::failure::Kind;
 
-    fn with_faults(spoil: &'static str, fate: Fault) -> Bench {
-        Bench::with_faults("", move |block, _| if block == spoil { fate } else { Fault::None }).0
+    fn with_faults(faulty_block: &'static str, fault: Fault) -> Bench {
+        Bench::with_faults("", move |block, _| if block == faulty_block { fault } else { Fault::None }).0
     }
 
     #[test]
@@ -272,7 +272,7 @@ mod tests {
             assert_eq!(odd[0]["raw"], raw, "{entry}");
             let others = data["items"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
             assert!(others.count() > 50);
-            // A kept value is not written back.
+            // A value outside the manual is not written back.
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
                 assert!(failure.message.contains("'ax2=+0000.5' is not in the manual"), "{failure}");

@@ -38,14 +38,14 @@ use crate::settings::duration;
 #[derive(Debug, Args)]
 pub struct Jog {
     /// Axis, by its letter on the teach pendant or its number
-    #[arg(value_name = "X|Y|Z|R|1-4", value_parser = axis)]
+    #[arg(value_name = "X|Y|Z|R|1-4", value_parser = parse_axis)]
     axis: Axis,
     /// Direction
     direction: Direction,
     /// Speed: high, low, or inching steps (parameter P12)
     speed: Speed,
     /// Duration, 100ms to 60s (high and low)
-    #[arg(long = "for", value_name = "TIME", value_parser = hold, required_if_eq_any([("speed", "low"), ("speed", "high")]))]
+    #[arg(long = "for", value_name = "TIME", value_parser = parse_duration, required_if_eq_any([("speed", "low"), ("speed", "high")]))]
     within: Option<Duration>,
     /// Number of inching steps
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100), conflicts_with = "within")]
@@ -56,7 +56,7 @@ pub struct Jog {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Axis {
     /// By its index, 0 to 3, regardless of its letter.
-    Place(usize),
+    Index(usize),
     /// By its letter on the teach pendant (E01).
     Letter(String),
 }
@@ -64,9 +64,9 @@ pub enum Axis {
 /// Possible letters (TO 2-4, E01).
 const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
 
-fn axis(text: &str) -> Result<Axis, String> {
-    if let Some(place) = ["1", "2", "3", "4"].iter().position(|number| *number == text) {
-        return Ok(Axis::Place(place));
+fn parse_axis(text: &str) -> Result<Axis, String> {
+    if let Some(index) = ["1", "2", "3", "4"].iter().position(|number| *number == text) {
+        return Ok(Axis::Index(index));
     }
     let letter = LETTERS.iter().find(|letter| letter.eq_ignore_ascii_case(text));
     letter.map(|letter| Axis::Letter((*letter).to_owned())).ok_or_else(|| "axes are X, Y, Z, R or 1 to 4".to_owned())
@@ -74,9 +74,9 @@ fn axis(text: &str) -> Result<Axis, String> {
 
 impl Axis {
     /// Index of the axis, 0 to 3, on a machine with these letters.
-    fn place(&self, letters: Letters) -> Result<usize, Failure> {
+    fn index(&self, letters: Letters) -> Result<usize, Failure> {
         match self {
-            Self::Place(place) => Ok(*place),
+            Self::Index(index) => Ok(*index),
             Self::Letter(letter) => letters.axis(letter).ok_or_else(|| {
                 Failure::usage(format!("the axis of {letter} is unknown: {}", machine(&letters)))
                     .hint("type the number of the axis, 1 to 4; `toyo param get axis-letters` shows the letters")
@@ -88,7 +88,7 @@ impl Axis {
 impl fmt::Display for Axis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Place(place) => write!(f, "{}", place + 1),
+            Self::Index(index) => write!(f, "{}", index + 1),
             Self::Letter(letter) => f.write_str(letter),
         }
     }
@@ -96,13 +96,13 @@ impl fmt::Display for Axis {
 
 /// An axis of this machine.
 #[derive(Debug, Clone)]
-struct Known {
+struct MachineAxis {
     /// Index, 0 to 3.
     index: usize,
     letters: Letters,
 }
 
-impl Known {
+impl MachineAxis {
     /// `2 (Z)`; the number alone if the controller reports no letter.
     fn in_words(&self) -> String {
         match self.letters.of(self.index) {
@@ -111,8 +111,8 @@ impl Known {
         }
     }
 
-    fn of(&self, place: &Coordinates) -> f64 {
-        place.mm()[self.index]
+    fn of(&self, coordinates: &Coordinates) -> f64 {
+        coordinates.mm()[self.index]
     }
 }
 
@@ -142,7 +142,7 @@ pub enum Speed {
 const SHORTEST: Duration = Duration::from_millis(100);
 const LONGEST: Duration = Duration::from_secs(60);
 
-fn hold(text: &str) -> Result<Duration, String> {
+fn parse_duration(text: &str) -> Result<Duration, String> {
     let time = duration::parse(text)?;
     if (SHORTEST..=LONGEST).contains(&time) {
         return Ok(time);
@@ -161,7 +161,7 @@ const MAX_REFUSALS: u32 = 3;
 
 /// Early end of a motion.
 #[derive(Debug)]
-enum Cut {
+enum JogError {
     /// The command was refused.
     Refused,
     /// An error occurred.
@@ -170,7 +170,7 @@ enum Cut {
     Failed(Failure),
 }
 
-impl From<Failure> for Cut {
+impl From<Failure> for JogError {
     fn from(failure: Failure) -> Self {
         Self::Failed(failure)
     }
@@ -189,7 +189,7 @@ impl Jog {
         }
     }
 
-    fn order(&self, axis: &Known) -> Request {
+    fn order(&self, axis: &MachineAxis) -> Request {
         jog(self.word(), Some(axis.index))
     }
 
@@ -203,7 +203,7 @@ impl Jog {
             None => "once".to_owned(),
         };
         match &self.axis {
-            Axis::Place(place) => link.plan(&jog(self.word(), Some(*place)), &about),
+            Axis::Index(index) => link.plan(&jog(self.word(), Some(*index)), &about),
             Axis::Letter(letter) => {
                 let about = format!("{} for axis {letter}, SP for the others; {about}", self.word());
                 let reason = Reason::about(&about).depending_on("letters of the axes");
@@ -230,80 +230,95 @@ impl Jog {
     }
 
     /// Moves for the time or by all steps. Returns the number of completed steps.
-    async fn go(&self, link: &mut Link, live: &Live, axis: &Known, start: Coordinates) -> Result<u8, Cut> {
-        let Some(time) = self.within else { return self.inch(link, live, axis, start).await };
+    async fn run_jog(
+        &self,
+        link: &mut Link,
+        display: &LiveDisplay,
+        axis: &MachineAxis,
+        start: Coordinates,
+    ) -> Result<u8, JogError> {
+        let Some(time) = self.within else { return self.run_inching_steps(link, display, axis, start).await };
         link.use_short_timeouts();
         let until = Instant::now() + time;
         let mut is_accepted = false;
-        match timeout_at(until, self.hold(link, live, axis, (start, until), &mut is_accepted)).await {
-            Ok(Err(cut)) => Err(cut),
+        match timeout_at(until, self.jog_until(link, display, axis, (start, until), &mut is_accepted)).await {
+            Ok(Err(error)) => Err(error),
             Err(_) if is_accepted => Ok(0),
-            Err(_) => Err(Cut::Failed(Failure::new(Kind::OutcomeUnknown, "the jog command was not answered in time"))),
+            Err(_) => {
+                Err(JogError::Failed(Failure::new(Kind::OutcomeUnknown, "the jog command was not answered in time")))
+            }
         }
     }
 
     /// Moves without an end and watches the axis.
-    async fn hold(
+    async fn jog_until(
         &self,
         link: &mut Link,
-        live: &Live,
-        axis: &Known,
+        display: &LiveDisplay,
+        axis: &MachineAxis,
         (start, until): (Coordinates, Instant),
         is_accepted: &mut bool,
-    ) -> Result<Infallible, Cut> {
+    ) -> Result<Infallible, JogError> {
         let began = Instant::now();
-        link.try_ask(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
+        link.try_ask(&self.order(axis)).await?.map_err(|_| JogError::Refused)?;
         *is_accepted = true;
         // One read of the state is two requests.
         let mut longest = 2 * began.elapsed();
-        let mut watch = Watch { start, last: start, was_busy: false, since: Instant::now() };
+        let mut detector = RestDetector { start, last: start, was_busy: false, since: Instant::now() };
         loop {
             let began = Instant::now();
             if began + longest > until {
                 // No request must be pending when the stop is sent.
                 return std::future::pending().await;
             }
-            let (is_busy, place) = look(link, axis).await?;
-            if watch.has_come_to_rest(is_busy, place) {
+            let (is_busy, coordinates) = read_state(link, axis).await?;
+            if detector.has_come_to_rest(is_busy, coordinates) {
                 let message = "the axis stopped early: another client stopped it";
-                return Err(Cut::Failed(Failure::new(Kind::ConditionNotMet, message)));
+                return Err(JogError::Failed(Failure::new(Kind::ConditionNotMet, message)));
             }
-            live.say(format!("jogging {}", place.in_a_line()));
+            display.say(format!("jogging {}", coordinates.in_a_line()));
             longest = longest.max(began.elapsed());
             sleep_until(began + POLL_INTERVAL.max(longest)).await;
         }
     }
 
     /// Moves by inching steps, each after the axis stands still.
-    async fn inch(&self, link: &mut Link, live: &Live, axis: &Known, start: Coordinates) -> Result<u8, Cut> {
+    async fn run_inching_steps(
+        &self,
+        link: &mut Link,
+        display: &LiveDisplay,
+        axis: &MachineAxis,
+        start: Coordinates,
+    ) -> Result<u8, JogError> {
         let steps = self.steps.unwrap_or(1);
         let mut last = start;
         for step in 1..=steps {
-            last = self.step(link, axis, last).await.map_err(|cut| match cut {
-                Cut::Failed(failure) => {
-                    Cut::Failed(Failure { message: format!("step {step} of {steps}: {}", failure.message), ..failure })
-                }
-                cut => cut,
+            last = self.step(link, axis, last).await.map_err(|error| match error {
+                JogError::Failed(failure) => JogError::Failed(Failure {
+                    message: format!("step {step} of {steps}: {}", failure.message),
+                    ..failure
+                }),
+                error => error,
             })?;
-            live.say(format!("step {step} of {steps} {}", last.in_a_line()));
+            display.say(format!("step {step} of {steps} {}", last.in_a_line()));
         }
         Ok(steps)
     }
 
     /// Moves by one inching step, and returns the position afterwards.
-    async fn step(&self, link: &mut Link, axis: &Known, start: Coordinates) -> Result<Coordinates, Cut> {
-        link.try_ask(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
+    async fn step(&self, link: &mut Link, axis: &MachineAxis, start: Coordinates) -> Result<Coordinates, JogError> {
+        link.try_ask(&self.order(axis)).await?.map_err(|_| JogError::Refused)?;
         let (mut last, began) = (start, Instant::now());
         loop {
-            let (is_busy, here) = look(link, axis).await?;
-            let stands = !is_busy && here == last;
-            last = here;
-            if stands && here != start {
-                return Ok(here);
+            let (is_busy, current) = read_state(link, axis).await?;
+            let is_at_rest = !is_busy && current == last;
+            last = current;
+            if is_at_rest && current != start {
+                return Ok(current);
             }
-            if stands && began.elapsed() >= START_TIMEOUT {
+            if is_at_rest && began.elapsed() >= START_TIMEOUT {
                 let message = "the step was accepted, but the axis did not move";
-                return Err(Cut::Failed(
+                return Err(JogError::Failed(
                     Failure::new(Kind::ConditionNotMet, message)
                         .hint("`toyo param get P12` shows the size of a step, `toyo status` shows the reason"),
                 ));
@@ -314,7 +329,7 @@ impl Jog {
 }
 
 /// Detector for an axis that has come to rest early.
-struct Watch {
+struct RestDetector {
     start: Coordinates,
     last: Coordinates,
     was_busy: bool,
@@ -322,42 +337,42 @@ struct Watch {
     since: Instant,
 }
 
-impl Watch {
+impl RestDetector {
     /// Whether the axis has come to rest: no execution, or the same position in several reads after some motion.
-    fn has_come_to_rest(&mut self, is_busy: bool, place: Coordinates) -> bool {
-        if place != self.last {
+    fn has_come_to_rest(&mut self, is_busy: bool, coordinates: Coordinates) -> bool {
+        if coordinates != self.last {
             self.since = Instant::now();
         }
-        let stands = place == self.last && place != self.start;
-        let is_at_rest = stands && ((self.was_busy && !is_busy) || self.since.elapsed() >= REST_TIME);
+        let is_at_rest = coordinates == self.last && coordinates != self.start;
+        let is_at_rest = is_at_rest && ((self.was_busy && !is_busy) || self.since.elapsed() >= REST_TIME);
         self.was_busy |= is_busy;
-        self.last = place;
+        self.last = coordinates;
         is_at_rest
     }
 }
 
 /// Reads whether the controller executes, and the position. Refusals of a busy controller are repeated.
-async fn look(link: &mut Link, axis: &Known) -> Result<(bool, Coordinates), Cut> {
+async fn read_state(link: &mut Link, axis: &MachineAxis) -> Result<(bool, Coordinates), JogError> {
     let mut refused = 0;
     loop {
-        match try_look(link, axis).await {
-            Err(Cut::Failed(failure)) if failure.kind == Kind::Refused && refused < MAX_REFUSALS => refused += 1,
+        match try_read_state(link, axis).await {
+            Err(JogError::Failed(failure)) if failure.kind == Kind::Refused && refused < MAX_REFUSALS => refused += 1,
             state => return state,
         }
     }
 }
 
-async fn try_look(link: &mut Link, axis: &Known) -> Result<(bool, Coordinates), Cut> {
+async fn try_read_state(link: &mut Link, axis: &MachineAxis) -> Result<(bool, Coordinates), JogError> {
     let status = link.status_of(&[0]).await?;
     if status.has_error() {
-        return Err(Cut::Error);
+        return Err(JogError::Error);
     }
     Ok((status.executing(), Coordinates::of(&link.read_position().await?, axis.letters)))
 }
 
 impl Command for Jog {
     type Family = Toyo;
-    type Report = Jogged;
+    type Report = JogReport;
     const ID: &'static str = "toyo.jog";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -371,7 +386,7 @@ impl Command for Jog {
     }
 
     /// The controller reports the letters of the axes.
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Jogged, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<JogReport, Failure> {
         if self.within.is_some() && self.speed == Speed::Inch {
             return Err(Failure::usage("an inching step has no duration")
                 .hint("remove --for, or use --steps for several steps"));
@@ -381,8 +396,8 @@ impl Command for Jog {
         }
         let Context { link, screen, authority, .. } = context;
         let letters = link.letters().await?;
-        let index = self.axis.place(letters)?;
-        let axis = Known { index, letters };
+        let index = self.axis.index(letters)?;
+        let axis = MachineAxis { index, letters };
         authority.confirm(&Change::new(self.in_words(&axis.in_words()))).await?;
         link.ask(&jog("RS", None)).await?;
         if link.is_dry() {
@@ -390,13 +405,13 @@ impl Command for Jog {
             link.stop(Moving::Jog).await?;
         }
         let start = Coordinates::of(&link.ask(&position_request()).await?, letters);
-        let live = Live::new(screen);
+        let display = LiveDisplay::new(screen);
         let began = Instant::now();
-        let outcome = self.go(link, &live, &axis, start).await;
-        if let Err(Cut::Refused) = outcome {
+        let outcome = self.run_jog(link, &display, &axis, start).await;
+        if let Err(JogError::Refused) = outcome {
             // This command caused no motion. Other motion belongs to another client and needs no wait for a stop.
             link.stop_refused_motion(Moving::Jog).await;
-            live.end();
+            display.end();
             return Err(refusal::explained(link, &self.order(&axis)).await);
         }
         // The stop is sent in any case.
@@ -405,31 +420,31 @@ impl Command for Jog {
             &link.stop(Moving::Jog).await.map_err(|failure| still_moving(outcome.as_ref().err(), failure))?,
             letters,
         );
-        live.end();
+        display.end();
         match outcome {
-            Ok(steps) => Ok(Jogged::of(self, &axis, (start, end), elapsed, steps)),
-            Err(cut) => Err(cut_short(link, cut, &end).await),
+            Ok(steps) => Ok(JogReport::of(self, &axis, (start, end), elapsed, steps)),
+            Err(error) => Err(stopped_early(link, error, &end).await),
         }
     }
 }
 
 /// Reason of the early end, after the axis has stopped.
-async fn cut_short(link: &mut Link, cut: Cut, place: &Coordinates) -> Failure {
-    let stopped = format!("the axis was stopped at {}", place.in_a_line());
-    match cut {
-        Cut::Refused => refusal::explained(link, &jog("RS", None)).await,
-        Cut::Error => {
+async fn stopped_early(link: &mut Link, error: JogError, coordinates: &Coordinates) -> Failure {
+    let stopped = format!("the axis was stopped at {}", coordinates.in_a_line());
+    match error {
+        JogError::Refused => refusal::explained(link, &jog("RS", None)).await,
+        JogError::Error => {
             let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{what}; {stopped}"));
             explain_present_error(link, &fail).await
         }
-        Cut::Failed(failure) => Failure { message: format!("{}; {stopped}", failure.message), ..failure },
+        JogError::Failed(failure) => Failure { message: format!("{}; {stopped}", failure.message), ..failure },
     }
 }
 
 /// Failure because the stop was not confirmed.
-fn still_moving(cut: Option<&Cut>, failure: Failure) -> Failure {
-    let why = match cut {
-        Some(Cut::Failed(cut)) => format!("{}; ", cut.message),
+fn still_moving(error: Option<&JogError>, failure: Failure) -> Failure {
+    let why = match error {
+        Some(JogError::Failed(error)) => format!("{}; ", error.message),
         _ => String::new(),
     };
     Failure { message: format!("{why}the axis can still move: {}", failure.message), ..failure }
@@ -437,12 +452,12 @@ fn still_moving(cut: Option<&Cut>, failure: Failure) -> Failure {
 }
 
 /// Live display of the position in its own thread, because a blocked terminal must not delay the stop.
-struct Live {
+struct LiveDisplay {
     texts: Sender<String>,
     thread: std::thread::JoinHandle<()>,
 }
 
-impl Live {
+impl LiveDisplay {
     fn new(screen: &Screen) -> Self {
         let (texts, updates) = mpsc::channel::<String>();
         let screen = *screen;
@@ -469,7 +484,7 @@ impl Live {
 
 /// Result of a jog.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Jogged {
+pub struct JogReport {
     /// Letter of the axis: `X`, `Y`, `Z` or `R`; empty if the controller does not report it.
     axis: &'static str,
     /// Number of the axis, 1 to 4.
@@ -484,15 +499,21 @@ pub struct Jogged {
     motion: Motion,
 }
 
-impl Jogged {
-    fn of(jog: &Jog, axis: &Known, (start, end): (Coordinates, Coordinates), elapsed: Duration, steps: u8) -> Self {
+impl JogReport {
+    fn of(
+        jog: &Jog,
+        axis: &MachineAxis,
+        (start, end): (Coordinates, Coordinates),
+        elapsed: Duration,
+        steps: u8,
+    ) -> Self {
         let moved = axis.of(&end) - axis.of(&start);
-        let place = |place: Coordinates| Some(place.position().of_group(UNIT));
+        let report_position = |coordinates: Coordinates| Some(coordinates.position().of_group(UNIT));
         let motion = Motion {
             accepted: true,
             group: Some(UNIT.to_owned()),
-            from: place(start),
-            position: place(end),
+            from: report_position(start),
+            position: report_position(end),
             elapsed_ms: u64::try_from(elapsed.as_millis()).ok(),
             ..Motion::default()
         };
@@ -507,10 +528,10 @@ impl Jogged {
     }
 }
 
-impl Report for Jogged {
+impl Report for JogReport {
     fn view(&self) -> View {
         let steps = self.steps.map_or_else(|| "-".into(), Cell::from);
-        let line = |place: &Option<Position>| Cell::maybe(place.as_ref().map(Position::line));
+        let line = |position: &Option<Position>| Cell::maybe(position.as_ref().map(Position::line));
         View::fields([
             ("axis", titled(self.axis_number - 1, self.axis).into()),
             ("moved (mm)", Cell::number(format!("{:.2}", self.moved_mm))),

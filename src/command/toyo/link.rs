@@ -72,9 +72,9 @@ impl Family for Toyo {
         link.send_urgent(moving).await;
         let stop = moving.stop().text();
         link.screen.note(&format!("stopping the robot: {stop}"));
-        let place = link.stop(moving).await?;
-        let place = link.coordinates(&place).await;
-        Ok(format!("the robot was stopped ({stop}); the axes are at {}", place.in_a_line()))
+        let coordinates = link.stop(moving).await?;
+        let coordinates = link.coordinates(&coordinates).await;
+        Ok(format!("the robot was stopped ({stop}); the axes are at {}", coordinates.in_a_line()))
     }
 
     fn must_halt(link: &Link) -> bool {
@@ -136,9 +136,9 @@ impl Link {
     /// Wraps a client.
     pub(super) fn of(mut client: Client, robot: &Robot, access: &Access, screen: &Screen) -> Result<Self, Failure> {
         let (target, label) = (robot.target.value.to_string(), robot.label());
-        let is_kept = !robot.target.value.is_simulated();
-        let write_log = if is_kept { WriteLog::of(&target) } else { WriteLog::without_file() };
-        let (journal, choices) = if is_kept && !access.dry_run {
+        let has_files = !robot.target.value.is_simulated();
+        let write_log = if has_files { WriteLog::of(&target) } else { WriteLog::without_file() };
+        let (journal, choices) = if has_files && !access.dry_run {
             (ChangeJournal::of(&target), UserChoices::of(&target))
         } else {
             (ChangeJournal::without_files(), UserChoices::without_file())

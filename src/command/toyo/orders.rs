@@ -58,7 +58,7 @@ impl Command for Servo {
         if done {
             return Ok(new.replaces(old));
         }
-        Err(not_so("servo power").hint("`toyo alarm list` and `toyo status` show the reason"))
+        Err(no_effect("servo power").hint("`toyo alarm list` and `toyo status` show the reason"))
     }
 }
 
@@ -152,13 +152,13 @@ impl Command for Mode {
             let (set, new) = mode.data();
             return Ok(New::of(set, new, mode.in_force()).replaces(old));
         }
-        Err(not_so("the mode")
+        Err(no_effect("the mode")
             .hint("check parameter M10, which selects easy or external point mode: `toyo param get M10`"))
     }
 }
 
 /// Failure for a command that was accepted without effect.
-pub(super) fn not_so(what: &str) -> Failure {
+pub(super) fn no_effect(what: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("the command was accepted, but {what} did not change within 1s"))
 }
 
@@ -198,7 +198,7 @@ impl Stop {
 
 impl Command for Stop {
     type Family = Toyo;
-    type Report = Stopped;
+    type Report = StopReport;
     const ID: &'static str = "toyo.stop";
     const RISK: Risk = Risk::Write;
 
@@ -206,29 +206,29 @@ impl Command for Stop {
         true
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stopped, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<StopReport, Failure> {
         let moving = if self.jog { Moving::Jog } else { Moving::Program };
-        let place = context.link.stop(moving).await;
+        let record = context.link.stop(moving).await;
         if context.link.is_dry() {
             context.link.letters().await?;
         }
-        let position = context.link.coordinates(&place?).await;
+        let position = context.link.coordinates(&record?).await;
         let words = format!("the axes have stopped at {}", position.in_a_line());
         let position = position.position().of_group(UNIT);
-        Ok(Stopped { done: New::of("running", false, words).replaces(Old::UNREAD), position })
+        Ok(StopReport { done: New::of("running", false, words).replaces(Old::UNREAD), position })
     }
 }
 
 /// Report of a stop.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Stopped {
+pub struct StopReport {
     #[serde(flatten)]
     done: Done,
     /// Final position of the axes.
     position: Position,
 }
 
-impl Alike for Stopped {
+impl Alike for StopReport {
     type Core = Done;
 
     fn core(&self) -> Done {
@@ -236,7 +236,7 @@ impl Alike for Stopped {
     }
 }
 
-impl Report for Stopped {
+impl Report for StopReport {
     fn view(&self) -> View {
         self.done.view()
     }
@@ -312,8 +312,9 @@ mod tests {
 
     #[test]
     fn an_accepted_order_without_status_has_an_unknown_outcome() {
-        let blind = |block: &str, count| if block == "@STAS SNO=3" && count > 1 { Fault::Lost } else { Fault::None };
-        let failure = Bench::with_faults("", blind).0.run(&["servo", "off"]).unwrap_err();
+        let loses_status =
+            |block: &str, count| if block == "@STAS SNO=3" && count > 1 { Fault::Lost } else { Fault::None };
+        let failure = Bench::with_faults("", loses_status).0.run(&["servo", "off"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert!(failure.message.starts_with("the command was accepted, but its result is unknown: "));
         let busy = |block: &str, count| {
@@ -324,38 +325,38 @@ mod tests {
 
     #[test]
     fn a_stop_ends_a_return_to_origin() {
-        let (mut bench, heard) = Bench::with_faults("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fault::None);
+        let (mut bench, received) = Bench::with_faults("position = [300.0, 0.0, 0.0, 0.0]\n", |_, _| Fault::None);
         bench.data(&["home", "--no-wait"]);
         bench.wait(std::time::Duration::from_secs(2));
         assert!(bench.data(&["stop"])["position"]["x_mm"].as_f64().unwrap() < -10.0);
         assert_eq!(bench.data(&["status"])["running"], false);
         // The status shows execution, so a jog is stopped in the same round.
-        let heard = heard.borrow();
-        let stop = heard.iter().position(|block| block == "@STOP").unwrap();
-        assert_eq!(heard[stop + 1..stop + 3], ["@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP"]);
+        let received = received.borrow();
+        let stop = received.iter().position(|block| block == "@STOP").unwrap();
+        assert_eq!(received[stop + 1..stop + 3], ["@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP"]);
     }
 
     #[test]
     fn stop_of_an_abandoned_jog_takes_the_host_only_if_refused() {
-        let (mut bench, heard) = Bench::with_faults("host = true\n", |_, _| Fault::None);
-        bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
+        let (mut bench, received) = Bench::with_faults("host = true\n", |_, _| Fault::None);
+        bench.run_and_abandon(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
         bench.data(&["stop", "--jog"]);
         assert_eq!(bench.data(&["status"])["running"], false);
-        assert!(!heard.borrow().iter().any(|block| block == "@HSON"));
+        assert!(!received.borrow().iter().any(|block| block == "@HSON"));
 
         // A jog of another client, on a controller whose JOG needs the host and does not stop without it.
-        let (mut bench, heard) = Bench::with_faults("", |block, count| {
+        let (mut bench, received) = Bench::with_faults("", |block, count| {
             if block.starts_with("@JGST") && count == 1 { Fault::Answered("@NG") } else { Fault::None }
         });
         bench.data(&["stop", "--jog"]);
-        assert_eq!(heard.borrow().iter().filter(|block| *block == "@HSON").count(), 1);
+        assert_eq!(received.borrow().iter().filter(|block| *block == "@HSON").count(), 1);
     }
 
     #[test]
     fn if_stop_does_not_end_a_jog_the_jog_stop_follows() {
-        let deaf = |block: &str, _| if block == "@STOP" { Fault::Answered("@OK") } else { Fault::None };
-        let (mut bench, _) = Bench::with_faults("host = true\n", deaf);
-        bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
+        let ignores_stop = |block: &str, _| if block == "@STOP" { Fault::Answered("@OK") } else { Fault::None };
+        let (mut bench, _) = Bench::with_faults("host = true\n", ignores_stop);
+        bench.run_and_abandon(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
         bench.data(&["stop"]);
         assert_eq!(bench.data(&["status"])["running"], false);
     }
@@ -365,21 +366,21 @@ mod tests {
         let jog = "@JGST X=SP Y=SP Z=SP R=SP";
         for refuses in [false, true] {
             // STOP does not stop the jog. With the host OFF, the first stop of the jog is refused.
-            let (mut bench, heard) = Bench::with_faults("host = true\n", move |block, count| match block {
+            let (mut bench, received) = Bench::with_faults("host = true\n", move |block, count| match block {
                 "@STOP" => Fault::Answered("@OK"),
                 "@STAS SNO=2" if refuses && count == 1 => Fault::Answered("@STAS SNO=2 ST1=00 ST2=00"),
                 _ if block == jog && refuses && count == 1 => Fault::Answered("@NG"),
                 _ => Fault::None,
             });
-            bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
-            heard.borrow_mut().clear();
+            bench.run_and_abandon(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
+            received.borrow_mut().clear();
             bench.data(&["stop"]);
             assert_eq!(bench.data(&["status"])["running"], false);
-            let heard = heard.borrow();
-            let of = |block: &str| heard.iter().position(|other| other == block).unwrap();
-            assert!(of("@STOP") < of(jog) && of(jog) < of("@MPST"), "{heard:#?}");
-            let last = heard.iter().rposition(|block| block == jog).unwrap();
-            assert!(last < of("@MPST"), "the last jog stop precedes the first position read: {heard:#?}");
+            let received = received.borrow();
+            let of = |block: &str| received.iter().position(|other| other == block).unwrap();
+            assert!(of("@STOP") < of(jog) && of(jog) < of("@MPST"), "{received:#?}");
+            let last = received.iter().rposition(|block| block == jog).unwrap();
+            assert!(last < of("@MPST"), "the last jog stop precedes the first position read: {received:#?}");
         }
     }
 }

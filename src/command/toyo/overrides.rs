@@ -63,11 +63,11 @@ impl Command for Get {
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = Written;
+    type Report = WriteReport;
     const ID: &'static str = "toyo.override.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Written, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<WriteReport, Failure> {
         let value = Value::Number(self.percent);
         let wanted = table::Command::Rovr.row().answers[0].record(vec![value.clone()]);
         let cell = Cell {
@@ -79,7 +79,7 @@ impl Command for Set {
         let stored = context.link.store(context.screen, &cell, &mut cells).await?;
         let old = Old::read(stored.and_then(|record| record.number(field().name)));
         let new = New::of("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
-        Ok(Written { done: new.with("speed_override_percent", self.percent).replaces(old), cells })
+        Ok(WriteReport { done: new.with("speed_override_percent", self.percent).replaces(old), cells })
     }
 }
 
@@ -91,7 +91,7 @@ pub struct Percent {
 
 /// Result of a write.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Written {
+pub struct WriteReport {
     #[serde(flatten)]
     done: Done,
     #[serde(flatten)]
@@ -104,7 +104,7 @@ impl Report for Percent {
     }
 }
 
-impl Report for Written {
+impl Report for WriteReport {
     fn view(&self) -> View {
         self.done.view()
     }

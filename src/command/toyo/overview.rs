@@ -14,15 +14,15 @@ use crate::failure::Failure;
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let status = link.status_of(&[0, 1, 2, 3]).await?;
     let letters = link.letters().await?;
-    let place = Coordinates::of(&link.ask(&Request::bare(Command::Mpst)).await?, letters);
-    Ok(report(status, Some(place)))
+    let coordinates = Coordinates::of(&link.ask(&Request::bare(Command::Mpst)).await?, letters);
+    Ok(report(status, Some(coordinates)))
 }
 
 /// Report of the answers.
-pub(super) fn report(status: Status, place: Option<Coordinates>) -> OverviewReport {
+pub(super) fn report(status: Status, coordinates: Option<Coordinates>) -> OverviewReport {
     // The teach pendant gives the axes the letters X, Y and Z.
-    let position = place.and_then(|place| {
-        let of = |letter| place.of_letter(letter);
+    let position = coordinates.and_then(|coordinates| {
+        let of = |letter| coordinates.of_letter(letter);
         Some(PositionMm { x_mm: of("X")?, y_mm: of("Y")?, z_mm: of("Z")? })
     });
     let state = State { position, ..state(status) };

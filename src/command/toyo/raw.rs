@@ -182,21 +182,21 @@ mod tests {
                 _ if block == order => Fault::Lost,
                 _ => Fault::None,
             };
-            let (mut bench, heard) = Bench::with_faults("host = true\n", late);
+            let (mut bench, received) = Bench::with_faults("host = true\n", late);
             assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
-            heard.borrow_mut().clear();
+            received.borrow_mut().clear();
             assert_eq!(bench.run(&["raw", order]).unwrap_err().kind, Kind::OutcomeUnknown);
-            assert_eq!(heard.borrow()[..2], ["@STAS SNO=0", order]);
+            assert_eq!(received.borrow()[..2], ["@STAS SNO=0", order]);
         }
     }
 
     #[test]
     fn a_fence_follows_an_unknown_order() {
-        let (mut bench, heard) = Bench::with_faults("host = true\n", |_, _| Fault::None);
+        let (mut bench, received) = Bench::with_faults("host = true\n", |_, _| Fault::None);
         bench.run(&["raw", "@XXXX"]).unwrap();
         bench.run(&["raw", "@MCST CN06=0001"]).unwrap();
         let sent = ["@STAS SNO=0", "@XXXX", "@STAS SNO=0", "@MCST CN06=0001", "@STAS SNO=0"];
-        assert_eq!(heard.borrow()[..], sent, "what follows an order settles it");
+        assert_eq!(received.borrow()[..], sent, "what follows an order settles it");
     }
 
     #[test]

@@ -37,7 +37,7 @@ fn fields() -> &'static [Field] {
 
 impl Command for RobotType {
     type Family = Toyo;
-    type Report = InForce;
+    type Report = RobotTypeReport;
     const ID: &'static str = "toyo.robot-type";
     const RISK: Risk = Risk::Destroy;
 
@@ -49,7 +49,7 @@ impl Command for RobotType {
         Confirmation::Word("type")
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<InForce, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<RobotTypeReport, Failure> {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
         let Some(answer) = context.link.ask(&order).await.known()? else {
@@ -63,7 +63,7 @@ impl Command for RobotType {
             let message = format!("robot type {in_force} is active now, but then: {}", failure.message);
             Failure { message, ..failure }
         })?;
-        Ok(InForce {
+        Ok(RobotTypeReport {
             axis: u8::try_from(axis).unwrap_or(u8::MAX),
             robot_type: in_force,
             ordered_type: type_text(robot_type),
@@ -74,7 +74,7 @@ impl Command for RobotType {
 
 /// Robot type of an axis.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct InForce {
+pub struct RobotTypeReport {
     #[serde(rename = "axis_number")]
     axis: u8,
     /// Active type: six digits.
@@ -85,7 +85,7 @@ pub struct InForce {
     needs_power_cycle: bool,
 }
 
-impl Report for InForce {
+impl Report for RobotTypeReport {
     fn view(&self) -> View {
         let then = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
         View::text(format!("axis {} has robot type {}{then}", self.axis, self.robot_type))
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_rejected_type_is_a_refusal() {
-        let of = |robot_type: &str| InForce {
+        let of = |robot_type: &str| RobotTypeReport {
             axis: 2,
             robot_type: robot_type.into(),
             ordered_type: "000123".into(),

@@ -64,7 +64,7 @@ pub struct Sequential {
 
 impl Command for Sequential {
     type Family = Toyo;
-    type Report = Ran;
+    type Report = RunReport;
     const ID: &'static str = "toyo.run.sequential";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -76,7 +76,7 @@ impl Command for Sequential {
         }
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         if self.repeat.repeat.is_some() && self.step.is_none() {
             return Err(Failure::usage("--repeat needs the first step of each run")
                 .hint("type the step, as in `toyo run sequential 1 --repeat 20`; nothing was started"));
@@ -104,7 +104,7 @@ pub struct Palletizing {
 
 impl Command for Palletizing {
     type Family = Toyo;
-    type Report = Ran;
+    type Report = RunReport;
     const ID: &'static str = "toyo.run.palletizing";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -113,12 +113,13 @@ impl Command for Palletizing {
         format!("run {}{}", program_text("palletizing", self.number.or(self.program)), self.repeat.in_words())
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         let program = self.number.or(self.program);
         confirm_start(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
         select_program(context.link, table::Command::Spln, program).await?;
-        let ran = start_and_wait(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
-        Ok(ran.of("palletizing", program))
+        let report =
+            start_and_wait(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await?;
+        Ok(report.of("palletizing", program))
     }
 }
 
@@ -140,7 +141,7 @@ pub struct Easy {
 
 impl Command for Easy {
     type Family = Toyo;
-    type Report = Ran;
+    type Report = RunReport;
     const ID: &'static str = "toyo.run.easy";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -149,12 +150,13 @@ impl Command for Easy {
         format!("run {}{}", program_text("easy", self.number.or(self.program)), self.repeat.in_words())
     }
 
-    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         let program = self.number.or(self.program);
         confirm_start(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
         select_program(context.link, table::Command::Sesn, program).await?;
-        let ran = start_and_wait(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
-        Ok(ran.of("easy", program))
+        let report =
+            start_and_wait(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await?;
+        Ok(report.of("easy", program))
     }
 }
 
@@ -171,7 +173,7 @@ pub struct Point {
 
 impl Command for Point {
     type Family = Toyo;
-    type Report = Moved;
+    type Report = PointMoveReport;
     const ID: &'static str = "toyo.run.point";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -180,7 +182,7 @@ impl Command for Point {
         format!("move the axes to point {} of the coordinate table", self.point)
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Moved, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PointMoveReport, Failure> {
         let Context { link, authority, .. } = context;
         let (mut from, mut to) = (None, None);
         if authority.asks() {
@@ -200,19 +202,28 @@ impl Command for Point {
         let context = Context { link, authority, ..context };
         let start = Request::of(table::Command::Extp, [Value::Number(self.point)]);
         let result = start_and_wait(context, &start, (!self.end.no_wait()).then_some(None), Repeat::once()).await?;
-        let robot::Program { state, elapsed_ms, more: Place { position, .. }, .. } = result.program;
+        let robot::Program { state, elapsed_ms, more: StepReport { position, .. }, .. } = result.program;
         let reached = (state != Some(ProgramState::Running)).then_some(state == Some(ProgramState::Ended));
         let group = Some(UNIT.to_owned());
-        Ok(Moved(Motion { accepted: true, group, from, to, reached, position, elapsed_ms, ..Motion::default() }))
+        Ok(PointMoveReport(Motion {
+            accepted: true,
+            group,
+            from,
+            to,
+            reached,
+            position,
+            elapsed_ms,
+            ..Motion::default()
+        }))
     }
 }
 
 /// Result of a move to a point. From and to are null if no confirmation was necessary.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(transparent)]
-pub struct Moved(Motion);
+pub struct PointMoveReport(Motion);
 
-impl Report for Moved {
+impl Report for PointMoveReport {
     fn view(&self) -> View {
         let Self(Motion { reached, position, elapsed_ms, .. }) = self;
         let state = match reached {
@@ -221,7 +232,7 @@ impl Report for Moved {
             Some(false) => ProgramState::Held,
         };
         let mut fields = vec![("run", state.cell())];
-        fields.extend(position.as_ref().map(|place| ("at", place.line().into())));
+        fields.extend(position.as_ref().map(|position| ("at", position.line().into())));
         fields.extend(elapsed_ms.map(|elapsed| ("elapsed (ms)", elapsed.into())));
         View { sections: vec![Section::Fields(fields)] }
     }
@@ -290,21 +301,21 @@ impl Program {
     }
 }
 
-/// Program and step that will start: `wanted`, or those of the controller.
+/// Program and step that will start: `selected`, or those of the controller.
 async fn progress(
     link: &mut Link,
     question: table::Command,
-    (kind, wanted): (&str, Option<i32>),
+    (kind, selected): (&str, Option<i32>),
 ) -> Result<String, Failure> {
     let Ok(progress) = link.try_ask(&Request::bare(question)).await? else {
-        let number = wanted.map(|number| format!(" {number}")).unwrap_or_default();
+        let number = selected.map(|number| format!(" {number}")).unwrap_or_default();
         return Ok(format!("It is {kind} program{number}; the controller did not report the step."));
     };
     let (number, step) = (progress.number("program").unwrap_or(0), progress.number("step").unwrap_or(0));
-    Ok(match wanted.filter(|wanted| *wanted != number) {
+    Ok(match selected.filter(|selected| *selected != number) {
         None => format!("It is {kind} program {number}, at step {step}."),
-        Some(wanted) => {
-            format!("It is {kind} program {wanted}; now the controller is at program {number}, step {step}.")
+        Some(selected) => {
+            format!("It is {kind} program {selected}; now the controller is at program {number}, step {step}.")
         }
     })
 }
@@ -316,9 +327,9 @@ async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program:
     if authority.asks() {
         let letters = link.letters().await?;
         change = change.note(program.note(link).await?);
-        let place = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
+        let coordinates = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
         let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
-        change = change.note(format!("The axes are at {} (mm).", place.in_a_line()));
+        change = change.note(format!("The axes are at {} (mm).", coordinates.in_a_line()));
         change = change.note(format!("The speed override is {percent} %."));
     }
     authority.confirm(&change).await
@@ -345,7 +356,7 @@ async fn start_and_wait(
     start: &Request,
     limit: Option<Option<Duration>>,
     repeat: Repeat,
-) -> Result<Ran, Failure> {
+) -> Result<RunReport, Failure> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
     // The wait begins with the start.
@@ -354,27 +365,33 @@ async fn start_and_wait(
     loop {
         link.ask(start).await.map_err(|failure| runs.early(failure))?;
         let Some(limit) = limit else {
-            return Ok(Ran::new(robot::Program { state: Some(ProgramState::Running), ..robot::Program::default() }));
+            return Ok(RunReport::new(robot::Program {
+                state: Some(ProgramState::Running),
+                ..robot::Program::default()
+            }));
         };
-        let ran = within(limit, wait(link, screen, start.command(), letters)).await;
-        let ran = ran.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
+        let report = within(limit, wait(link, screen, start.command(), letters)).await;
+        let report = report.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
         if repeat.repeat.is_none() {
-            return Ok(ran);
+            return Ok(report);
         }
-        if ran.program.state == Some(ProgramState::Held) {
+        if report.program.state == Some(ProgramState::Held) {
             let failure = Failure::new(Kind::ConditionNotMet, "the program is paused at a stop or after a step")
                 .hint("to continue, start it without a step or program");
             return Err(runs.early(failure));
         }
-        runs.ended(ran.program.elapsed_ms.unwrap_or(0));
+        runs.ended(report.program.elapsed_ms.unwrap_or(0));
         if runs.are_over() {
-            return Ok(Ran::new(robot::Program { cycle: runs.cycle(), ..ran.program }));
+            return Ok(RunReport::new(robot::Program { cycle: runs.cycle(), ..report.program }));
         }
     }
 }
 
 /// Waits for the end up to a time limit. The program continues afterwards.
-async fn within(limit: Option<Duration>, end: impl Future<Output = Result<Ran, Failure>>) -> Result<Ran, Failure> {
+async fn within(
+    limit: Option<Duration>,
+    end: impl Future<Output = Result<RunReport, Failure>>,
+) -> Result<RunReport, Failure> {
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
         let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
@@ -382,24 +399,24 @@ async fn within(limit: Option<Duration>, end: impl Future<Output = Result<Ran, F
     })
 }
 
-async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<Ran, Failure> {
+async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<RunReport, Failure> {
     let work = AcceptedWork { work: Work::Program, order, done: DONE, doing: "running" };
     let ended = work.wait(link, screen, letters).await.known()?;
-    let Some(End { place, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
+    let Some(End { coordinates, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
     // A move to a point runs no steps.
     let last = match order {
         table::Command::Extp => None,
         _ => step(link).await.map_err(|failure| after(&failure))?,
     };
     if is_paused && !is_at_a_stop(link, last.as_ref()).await.map_err(|failure| after(&failure))? {
-        return Err(stopped(last.as_ref(), place));
+        return Err(stopped(last.as_ref(), coordinates));
     }
     let (step, instruction) = last.unzip();
-    let position = place.map(|place| place.position().of_group(UNIT));
+    let position = coordinates.map(|coordinates| coordinates.position().of_group(UNIT));
     let state = Some(if is_paused { ProgramState::Held } else { ProgramState::Ended });
-    let more = Place { instruction, position };
+    let more = StepReport { instruction, position };
     let step = step.map(i64::from);
-    Ok(Ran::new(robot::Program { step, state, elapsed_ms, more, ..robot::Program::default() }))
+    Ok(RunReport::new(robot::Program { step, state, elapsed_ms, more, ..robot::Program::default() }))
 }
 
 /// Records in a dry run the requests at the end.
@@ -427,10 +444,11 @@ async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<b
     Ok(record.text("text") == Some("STOP"))
 }
 
-fn stopped(last: Option<&(i32, String)>, place: Option<Coordinates>) -> Failure {
+fn stopped(last: Option<&(i32, String)>, coordinates: Option<Coordinates>) -> Failure {
     let step = last.map(|(step, text)| format!(" at step {step} ({text})")).unwrap_or_default();
-    let place = place.map(|place| format!("; the axes are at {}", place.in_a_line())).unwrap_or_default();
-    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{place}"))
+    let coordinates =
+        coordinates.map(|coordinates| format!("; the axes are at {}", coordinates.in_a_line())).unwrap_or_default();
+    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{coordinates}"))
         .hint("find the reason; then start it without a step or program to continue, or use `toyo reset`")
 }
 
@@ -442,24 +460,24 @@ fn after(failure: &Failure) -> Failure {
 
 /// Result of a start. A program at a STOP, or after a step in step mode, is held.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Ran {
+pub struct RunReport {
     /// Whether the controller accepted the command.
     accepted: bool,
     #[serde(flatten)]
-    program: robot::Program<Place>,
+    program: robot::Program<StepReport>,
 }
 
 /// Step of the program; null without a wait.
 #[derive(Debug, Default, Serialize, JsonSchema)]
-struct Place {
+struct StepReport {
     /// Instruction of the step.
     instruction: Option<String>,
     /// Position of the axes.
     position: Option<Position>,
 }
 
-impl Ran {
-    fn new(program: robot::Program<Place>) -> Self {
+impl RunReport {
+    fn new(program: robot::Program<StepReport>) -> Self {
         Self { accepted: true, program }
     }
 
@@ -471,216 +489,15 @@ impl Ran {
     }
 }
 
-impl Report for Ran {
+impl Report for RunReport {
     fn view(&self) -> View {
-        let Place { instruction, position } = &self.program.more;
+        let StepReport { instruction, position } = &self.program.more;
         let step = self.program.step.zip(instruction.as_ref()).map(|(step, text)| format!("{step}: {text}"));
         let step = step.map(|step| ("step", step.into()));
-        let at = position.as_ref().map(|place| ("at", place.line().into()));
+        let at = position.as_ref().map(|position| ("at", position.line().into()));
         View { sections: vec![Section::Fields(self.program.fields(step.into_iter().chain(at).collect()))] }
     }
 }
 
 #[cfg(test)]
-mod tests {
-
-    use super::*;
-    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
-
-    /// Half a second, then 100 mm at 100 mm/s.
-    const PROGRAM: &str = "origin = true\nspeeds = { 1 = 100.0 }\npoints = { 1 = { 1 = [100.0, 0.0, 0.0, 0.0] } }\n\
-        steps = { 1 = [\"TIM TM=000.5\", \"MOVP a PT=001 CN=00 S V=01 POST\", \"OUT STN=0 PN01=.......1\", \"END\"] }\n";
-
-    #[test]
-    fn dry_runs_show_the_start_and_the_status_reads() {
-        assert_eq!(
-            all_blocks(&["run", "sequential", "12", "--wait"]).unwrap(),
-            [
-                "@SYSP",
-                "@RPAR E01",
-                "@STAS SNO=2",
-                "@HSON",
-                "@STAS SNO=0",
-                "@SPST 0012",
-                "@STAS SNO=0",
-                "@MPST",
-                "@STAS SNO=4",
-                "@RSTX 0000",
-                "@STAS SNO=1",
-                "@RSTX 0000",
-                "@STAS SNO=2",
-                "@RSTX ?",
-                "@HSOF"
-            ]
-        );
-        assert_eq!(blocks(&["run", "sequential"]).unwrap(), ["@SPST 0000"]);
-        assert_eq!(blocks(&["run", "palletizing", "--program", "3", "--no-wait"]).unwrap(), ["@SPLN PR=03", "@PPST"]);
-        assert_eq!(blocks(&["run", "palletizing", "--no-wait"]).unwrap(), ["@PPST"]);
-        assert_eq!(blocks(&["run", "easy", "--program", "8", "--no-wait"]).unwrap(), ["@SESN PR=08", "@SESY"]);
-        assert_eq!(blocks(&["run", "point", "7", "--no-wait"]).unwrap(), ["@EXTP PT=007"]);
-        assert_eq!(intent(&["run", "easy", "--program", "8"]), "run easy program 8");
-        assert!(objection(&["run", "sequential", "5001"]).contains("1..=5000"));
-        assert!(objection(&["run", "point", "0"]).contains("1 to 999"));
-    }
-
-    #[test]
-    fn run_with_wait_ends_with_the_program() {
-        let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
-        let data = bench.data(&["run", "sequential", "1", "--wait"]);
-        assert_eq!((&data["state"], &data["position"]["x_mm"]), (&"ended".into(), &100.0.into()));
-        let elapsed = data["elapsed_ms"].as_u64().unwrap();
-        assert!((1600..2000).contains(&elapsed), "{elapsed}");
-        assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@SPST")).count(), 1);
-    }
-
-    #[test]
-    fn a_program_that_never_shows_execution_has_an_unknown_outcome() {
-        let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
-        let failure =
-            Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential", "--wait"]).unwrap_err();
-        assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert!(failure.message.contains("the status never showed execution"), "{}", failure.message);
-    }
-
-    #[test]
-    fn a_stop_instruction_holds_the_program_and_an_external_stop_fails() {
-        let state = "origin = true\nsteps = { 1 = [\"NOP\", \"STOP\", \"NOP\", \"TIM TM=010.0\", \"END\"] }\n\
-            [[event]]\nat_ms = 3000\ndo = \"stop\"\n";
-        let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
-        let data = bench.data(&["run", "sequential", "1", "--wait"]);
-        assert_eq!((&data["state"], &data["step"]), (&"held".into(), &3.into()));
-        let failure = bench.run(&["run", "sequential", "--wait"]).unwrap_err();
-        assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert!(failure.message.contains("the program was stopped at step 4 (TIM TM=010.0)"), "{}", failure.message);
-    }
-
-    #[test]
-    fn in_step_mode_the_wait_ends_after_one_step() {
-        let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
-        bench.data(&["mode", "step"]);
-        assert_eq!(bench.data(&["run", "sequential", "1", "--wait"])["state"], "held");
-    }
-
-    #[test]
-    fn an_error_during_the_program_fails() {
-        let state = format!("{PROGRAM}[[event]]\nat_ms = 1000\ndo = \"estop\"\n");
-        let failure =
-            Bench::with_faults(&state, |_, _| Fault::None).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
-        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("13")));
-        assert!(
-            failure
-                .message
-                .starts_with("the start was accepted, but an error occurred (13: emergency stop); the axes are at X "),
-            "{}",
-            failure.message
-        );
-        assert!(failure.hint.unwrap().contains("toyo alarm reset"));
-    }
-
-    #[test]
-    fn a_refused_start_names_the_missing_condition_and_changes_nothing() {
-        let refused = |state: &str| {
-            let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
-            let failure = bench.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
-            assert_eq!(failure.kind, Kind::Refused);
-            let changes = ["@MAUT", "@SVON", "@HOME", "@CERR", "@MSEQ"];
-            assert!(!heard.borrow().iter().any(|block| changes.contains(&block.as_str())), "{heard:?}");
-            failure.message
-        };
-        assert!(refused(&format!("mode = \"program\"\n{PROGRAM}")).ends_with("the controller is in program mode"));
-        assert!(refused(&format!("palletizing = true\n{PROGRAM}")).ends_with("the controller is in palletizing mode"));
-        assert!(refused(&format!("error = \"A1\"\n{PROGRAM}")).ends_with("error A1: tag undefined"));
-        assert!(refused(&format!("pendant = true\n{PROGRAM}")).contains("the teach pendant is ON"));
-    }
-
-    #[test]
-    fn an_unanswered_start_is_sent_once() {
-        for fate in [Fault::Lost, Fault::Unanswered, Fault::Answered("@O")] {
-            let (mut bench, heard) =
-                Bench::with_faults(
-                    PROGRAM,
-                    move |block, _| if block.starts_with("@SPST") { fate } else { Fault::None },
-                );
-            let failure = bench.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
-            assert_eq!(failure.kind, Kind::OutcomeUnknown, "{fate:?}");
-            assert!(failure.hint.unwrap().contains("`toyo status`"));
-            assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@SPST")).count(), 1);
-        }
-    }
-
-    #[test]
-    fn after_a_lost_connection_the_outcome_is_unknown() {
-        let lost = |block: &str, count| if block == "@STAS SNO=0" && count > 2 { Fault::Lost } else { Fault::None };
-        let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
-        assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert!(
-            failure.message.starts_with("the start was accepted, but its result is unknown: "),
-            "{}",
-            failure.message
-        );
-        assert!(failure.hint.unwrap().starts_with("do not send the command again: keep clear; `toyo status`"));
-    }
-
-    #[test]
-    fn a_refused_status_read_is_repeated() {
-        let busy = |block: &str, count| {
-            if block == "@STAS SNO=0" && count % 2 == 0 { Fault::Answered("@NG") } else { Fault::None }
-        };
-        assert_eq!(
-            Bench::with_faults(PROGRAM, busy).0.data(&["run", "sequential", "1", "--wait"])["position"]["x_mm"],
-            100.0
-        );
-    }
-
-    #[test]
-    fn ctrl_c_stops_what_runs() {
-        for (words, state) in
-            [(&["run", "sequential", "1", "--wait"][..], PROGRAM), (&["home"], "position = [300.0, 0.0, 0.0, 0.0]\n")]
-        {
-            for ms in (200..1400).step_by(170) {
-                let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
-                let said = bench.interrupted(words, Duration::from_millis(ms)).unwrap();
-                assert!(
-                    said.starts_with("the robot was stopped (@STOP); the axes are at X "),
-                    "{words:?} {ms}: {said}"
-                );
-                assert!(heard.borrow().iter().any(|block| block == "@STOP"));
-                let here = bench.data(&["position"]);
-                bench.wait(Duration::from_secs(10));
-                assert_eq!(bench.data(&["position"]), here, "{words:?} {ms}");
-                assert_eq!(bench.data(&["status"])["running"], false);
-            }
-        }
-    }
-
-    #[test]
-    fn a_late_ok_to_the_start_does_not_confirm_the_stop() {
-        // The start is answered after 400 ms; Ctrl-C comes before that, and the first stop is lost.
-        let (mut bench, heard) = Bench::with_faults(PROGRAM, |block, count| match block {
-            "@SPST 0001" => Fault::Late(Duration::from_millis(400)),
-            "@STOP" if count == 1 => Fault::Lost,
-            _ => Fault::None,
-        });
-        bench.interrupted(&["run", "sequential", "1", "--wait"], Duration::from_millis(250)).unwrap();
-        assert!(heard.borrow().iter().filter(|block| *block == "@STOP").count() >= 2);
-        assert_eq!(bench.data(&["status"])["running"], false);
-    }
-
-    #[test]
-    fn on_interrupt_leave_still_stops_a_jog() {
-        let must_halt = |words: &[&str]| {
-            let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
-            bench.left(words, Duration::from_millis(450))
-        };
-        assert!(!must_halt(&["run", "sequential", "1", "--wait"]));
-        assert!(must_halt(&["jog", "X", "+", "low", "--for", "5s"]));
-    }
-
-    #[test]
-    fn the_host_is_released_while_a_program_runs() {
-        let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
-        assert_eq!(bench.data(&["run", "sequential", "1", "--no-wait"])["state"], "running");
-        bench.close().unwrap();
-        assert_eq!(heard.borrow().last().unwrap(), "@HSOF");
-    }
-}
+mod tests;

@@ -6,25 +6,25 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Command;
 use crate::failure::{Failure, Kind};
 
-/// Reads the current task, selects `wanted` temporarily if it differs, and returns the task that is then current.
-pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> {
+/// Reads the current task, selects `task` temporarily if it differs, and returns the task that is then current.
+pub async fn choose(link: &mut Link, task: Option<u8>) -> Result<u8, Failure> {
     if link.is_dry() {
         link.plan(&Request::bare(Command::Mtsk), "the current task");
-        if let Some(task) = wanted {
+        if let Some(task) = task {
             let back = format!("@{} TASK=?", Command::Ctsk.row().word);
-            link.plan_to_borrow(&choice(task), &back, "whether it differs from the current task").await?;
+            link.plan_to_borrow(&select_request(task), &back, "whether it differs from the current task").await?;
         }
-        return Ok(wanted.unwrap_or(1));
+        return Ok(task.unwrap_or(1));
     }
     let answer = link.ask(&Request::bare(Command::Mtsk)).await?;
-    let found = answer.number("task").and_then(|task| u8::try_from(task).ok()).filter(|task| (1..=4).contains(task));
-    let found = found.ok_or_else(|| link.malformed(&answer.written(), "the task must be 1 to 4"))?;
-    match wanted.filter(|wanted| *wanted != found) {
-        Some(wanted) => {
-            link.borrow(&choice(wanted), choice(found)).await?;
-            Ok(wanted)
+    let current = answer.number("task").and_then(|task| u8::try_from(task).ok()).filter(|task| (1..=4).contains(task));
+    let current = current.ok_or_else(|| link.malformed(&answer.written(), "the task must be 1 to 4"))?;
+    match task.filter(|task| *task != current) {
+        Some(task) => {
+            link.borrow(&select_request(task), select_request(current)).await?;
+            Ok(task)
         }
-        None => Ok(found),
+        None => Ok(current),
     }
 }
 
@@ -40,6 +40,6 @@ pub async fn done<T>(link: &mut Link, outcome: Result<T, Failure>) -> Result<T, 
     Ok(value)
 }
 
-fn choice(task: u8) -> Request {
+fn select_request(task: u8) -> Request {
     Request::of(Command::Ctsk, [Value::Number(task.into())])
 }

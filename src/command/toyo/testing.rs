@@ -35,7 +35,7 @@ pub(super) fn objection(words: &[&str]) -> String {
 }
 
 /// Input of the gate for a command line.
-pub(super) fn gated(words: &[&str]) -> (Robot, Intent, &'static str) {
+pub(super) fn gate_input(words: &[&str]) -> (Robot, Intent, &'static str) {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words).expect("a command line");
     let intent = command.intent(Some(&robot));
     (robot, intent, command.id())
@@ -115,9 +115,9 @@ impl ReceivedBlocks {
 /// A simulated controller behind a line with faults.
 struct FaultyLine<F> {
     controller: Simulated,
-    coming: Vec<u8>,
+    incoming: Vec<u8>,
     answers: VecDeque<(Duration, Vec<u8>)>,
-    heard: ReceivedBlocks,
+    received: ReceivedBlocks,
     counts: HashMap<String, usize>,
     /// Fault of a block, by its text and its count from 1.
     fault: F,
@@ -132,20 +132,20 @@ impl<F> fmt::Debug for FaultyLine<F> {
 impl<F: FnMut(&str, usize) -> Fault + Send> Peer for FaultyLine<F> {
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
         for byte in bytes {
-            self.coming.push(*byte);
+            self.incoming.push(*byte);
             if *byte != b'\n' {
                 continue;
             }
-            let coming = std::mem::take(&mut self.coming);
-            let block = String::from_utf8_lossy(&coming).trim_end().to_owned();
-            self.heard.borrow_mut().push(block.clone());
+            let incoming = std::mem::take(&mut self.incoming);
+            let block = String::from_utf8_lossy(&incoming).trim_end().to_owned();
+            self.received.borrow_mut().push(block.clone());
             let count = self.counts.entry(block.clone()).or_default();
             *count += 1;
             let fault = (self.fault)(&block, *count);
             match fault {
                 Fault::Lost => continue,
                 Fault::Answered(answer) => self.answers.push_back((now, format!("{answer}\r\n").into_bytes())),
-                _ => self.controller.receive(now, channel, &coming),
+                _ => self.controller.receive(now, channel, &incoming),
             }
             while let Some((_, answer)) = self.controller.transmit(now) {
                 match fault {
@@ -174,10 +174,16 @@ impl Bench {
         fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
     ) -> (Self, ReceivedBlocks) {
         let controller = Simulated::new(Start::parse(state).expect("a start state"));
-        let heard = ReceivedBlocks::default();
-        let (coming, answers) = (Vec::new(), VecDeque::new());
-        let peer =
-            Box::new(FaultyLine { controller, coming, answers, heard: heard.clone(), counts: HashMap::new(), fault });
+        let received = ReceivedBlocks::default();
+        let (incoming, answers) = (Vec::new(), VecDeque::new());
+        let peer = Box::new(FaultyLine {
+            controller,
+            incoming,
+            answers,
+            received: received.clone(),
+            counts: HashMap::new(),
+            fault,
+        });
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let runtime = runtime();
         let link = runtime
@@ -189,17 +195,17 @@ impl Bench {
                 Link::of(client, &robot, &access, &quiet())
             })
             .expect("a link");
-        (Self { runtime, robot, link }, heard)
+        (Self { runtime, robot, link }, received)
     }
 
     /// Runs `armctl toyo WORDS…` until Ctrl-C after a time. Returns the message of the stop.
-    pub(super) fn interrupted(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
-        self.left(words, after);
+    pub(super) fn run_and_interrupt(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
+        self.run_and_abandon(words, after);
         self.runtime.block_on(Toyo::halt(&mut self.link))
     }
 
     /// Runs `armctl toyo WORDS…` for a time and abandons it. Returns whether a stop is mandatory.
-    pub(super) fn left(&mut self, words: &[&str], after: Duration) -> bool {
+    pub(super) fn run_and_abandon(&mut self, words: &[&str], after: Duration) -> bool {
         let (_, command) = resolved("sim:", words).expect("a command");
         let Self { runtime, robot, link } = self;
         runtime.block_on(async {
@@ -247,7 +253,7 @@ impl Bench {
     }
 
     /// Runs `armctl toyo WORDS…` on a robot that counts as real, without a possibility to confirm.
-    pub(super) fn unasked(&mut self, words: &[&str]) -> Result<Value, Failure> {
+    pub(super) fn run_without_confirmation(&mut self, words: &[&str]) -> Result<Value, Failure> {
         let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
         let intent = command.intent(Some(&robot));
         Gate::default().must_ask(&QUIET, &robot, &intent)?;

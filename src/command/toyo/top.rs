@@ -47,13 +47,13 @@ impl declared::Poller for Poller {
         };
         let status = self.link.status_of(rest).await?.with(0, first.state);
         let letters = self.link.letters().await?;
-        let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok();
-        let place = place.map(|record| Coordinates::of(&record, letters));
+        let coordinates = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok();
+        let coordinates = coordinates.map(|record| Coordinates::of(&record, letters));
         let whole = match detail {
             Detail::Summary => None,
-            Detail::Axes | Detail::Full => Some(self.whole(detail, status, place).await?),
+            Detail::Axes | Detail::Full => Some(self.whole(detail, status, coordinates).await?),
         };
-        Ok(Sample { line: report(status, place), answered_in, alarms: alarms(status), whole })
+        Ok(Sample { line: report(status, coordinates), answered_in, alarms: alarms(status), whole })
     }
 
     fn link(&mut self) -> &mut Link {
@@ -66,7 +66,12 @@ impl declared::Poller for Poller {
 }
 
 impl Poller {
-    async fn whole(&mut self, detail: Detail, status: Status, place: Option<Coordinates>) -> Result<Whole, Failure> {
+    async fn whole(
+        &mut self,
+        detail: Detail,
+        status: Status,
+        coordinates: Option<Coordinates>,
+    ) -> Result<Whole, Failure> {
         let is_full = detail == Detail::Full;
         let limits = match self.limits {
             Some(limits) => limits,
@@ -78,7 +83,7 @@ impl Poller {
             banks.push(self.bank(name, ports).await?);
         }
         let letters = self.link.letters().await?.all();
-        let axes = place.map_or_else(Vec::new, |place| axes(place, letters, limits));
+        let axes = coordinates.map_or_else(Vec::new, |coordinates| axes(coordinates, letters, limits));
         Ok(Whole { indicators: indicators(status), axes, torque_unit: None, banks, not_asked: None })
     }
 
@@ -133,10 +138,10 @@ fn indicators(status: Status) -> Vec<Indicator> {
     ]
 }
 
-fn axes(place: Coordinates, letters: [String; 4], limits: Limits) -> Vec<Axis> {
+fn axes(coordinates: Coordinates, letters: [String; 4], limits: Limits) -> Vec<Axis> {
     let names = letters.into_iter().enumerate();
     let names = names.map(|(axis, letter)| if letter.is_empty() { (axis + 1).to_string() } else { letter });
-    let axes = names.zip(place.mm()).zip(limits);
+    let axes = names.zip(coordinates.mm()).zip(limits);
     let axes = axes.map(|((name, position), limits)| Axis {
         name,
         position,

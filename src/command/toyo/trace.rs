@@ -19,7 +19,7 @@ pub struct Trace {
     /// Characters of the controller since its last line end.
     pending: Vec<u8>,
     /// Last request, because `@OK` and `@NG` do not name their request.
-    asked: Option<Request>,
+    last_request: Option<Request>,
 }
 
 /// Limit of characters in a line of text.
@@ -32,7 +32,7 @@ impl Trace {
             Some(_) => trace::Trace::of_network(access, screen)?,
             None => trace::Trace::of_lines(access, screen)?,
         };
-        Ok(Self { record, ends, pending: Vec::new(), asked: None })
+        Ok(Self { record, ends, pending: Vec::new(), last_request: None })
     }
 
     /// Records characters.
@@ -69,7 +69,7 @@ impl Trace {
     fn sent(&mut self, bytes: &[u8]) {
         self.flush();
         self.line(Direction::Sent, bytes);
-        self.asked = Request::parse(&text(bytes)).ok();
+        self.last_request = Request::parse(&text(bytes)).ok();
     }
 
     /// Characters arrive in pieces of any size; a line of text shows a whole block.
@@ -96,7 +96,7 @@ impl Trace {
             Direction::Received => Sender::Controller,
         };
         let text = text(bytes);
-        let summary = summary(&text, sender, self.asked.as_ref());
+        let summary = summary(&text, sender, self.last_request.as_ref());
         self.record.message(direction, &format!("{text}  # {summary}"), bytes);
     }
 }

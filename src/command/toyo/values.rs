@@ -281,17 +281,18 @@ impl Changes {
     /// All values; unchanged fields keep the values of `found`.
     ///
     /// # Errors
-    /// If a kept value cannot be written again.
+    /// If an unchanged value cannot be written again.
     pub fn over(&self, stored: &Record) -> Result<Vec<Value>, Failure> {
         // Numbers of rows and programs precede the values.
         let keys = stored.values().len().saturating_sub(self.0.len());
-        let kept = stored.pairs().skip(keys).zip(&self.0).filter(|(_, change)| change.is_none());
-        let foreign = kept.map(|((field, value), _)| (field, value)).find(|(field, value)| !field.is_listed(value));
+        let unchanged_values = stored.pairs().skip(keys).zip(&self.0).filter(|(_, change)| change.is_none());
+        let foreign =
+            unchanged_values.map(|((field, value), _)| (field, value)).find(|(field, value)| !field.is_listed(value));
         if stored.layout() == UNLISTED {
-            return Err(kept_unlisted(&stored.written()));
+            return Err(unwritable_value(&stored.written()));
         }
         if let Some((field, value)) = foreign {
-            return Err(kept_unlisted(&format!("{}={}", field.name, field.written(value))));
+            return Err(unwritable_value(&format!("{}={}", field.name, field.written(value))));
         }
         Ok(self.applied(&stored.values()[keys..]))
     }
@@ -327,8 +328,8 @@ fn by_name(slots: &[ValueSlot]) -> String {
     format!("type them by name: {}; ax1 to ax4 also work on every machine", names.join(" "))
 }
 
-/// Failure for a kept value that cannot be written again.
-fn kept_unlisted(stored: &str) -> Failure {
+/// Failure for an unchanged value that cannot be written again.
+fn unwritable_value(stored: &str) -> Failure {
     Failure::usage(format!("the stored value '{stored}' is not in the manual and cannot be written again"))
         .hint("nothing was written; type all values")
 }

@@ -62,7 +62,7 @@ pub(super) struct AcceptedWork {
 #[derive(Debug)]
 pub(super) struct End {
     /// Final position; `None` if nothing moves.
-    pub place: Option<Coordinates>,
+    pub coordinates: Option<Coordinates>,
     /// Time from acceptance to end; `None` if the work ended before the first read.
     pub elapsed_ms: Option<u64>,
     /// Whether the program is paused and can continue.
@@ -89,21 +89,21 @@ impl AcceptedWork {
             match self.read_state(link, &mut reporter, reads.is_multiple_of(READS_PER_STEP_READ)).await {
                 Ok((status, record)) => {
                     refusals = 0;
-                    let place = record.as_ref().map(|record| Coordinates::of(record, letters));
+                    let coordinates = record.as_ref().map(|record| Coordinates::of(record, letters));
                     match work_state.evaluate(began.elapsed(), status, record) {
                         // Until then, the status can be that of the time before the start.
                         WorkEvent::Running if !work_state.has_started => {}
-                        WorkEvent::Running => reporter.report(status, place),
+                        WorkEvent::Running => reporter.report(status, coordinates),
                         WorkEvent::Ended => {
                             link.end_motion();
                             let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
                             let elapsed_ms = work_state.has_started.then_some(elapsed_ms);
-                            return Ok(End { place, elapsed_ms, is_paused: status.paused() });
+                            return Ok(End { coordinates, elapsed_ms, is_paused: status.paused() });
                         }
                         WorkEvent::Failed(reason) => {
-                            let place = wait_for_rest(link, place, letters).await;
+                            let coordinates = wait_for_rest(link, coordinates, letters).await;
                             link.end_motion();
-                            return Err(self.failed(link, reason, place).await);
+                            return Err(self.failed(link, reason, coordinates).await);
                         }
                     }
                 }
@@ -126,8 +126,8 @@ impl AcceptedWork {
             reporter.inputs = link.status_of(&[4]).await?.inputs;
             reporter.step = step(link).await?.map_or(String::new(), |(number, text)| format!("step {number} {text}"));
         }
-        let place = if self.work == Work::Card { None } else { Some(link.read_position().await?) };
-        Ok((Status { inputs: reporter.inputs, ..status }, place))
+        let coordinates = if self.work == Work::Card { None } else { Some(link.read_position().await?) };
+        Ok((Status { inputs: reporter.inputs, ..status }, coordinates))
     }
 
     /// The page of errors is read last, so that an error that ends the work is not missed.
@@ -153,9 +153,10 @@ impl AcceptedWork {
     }
 
     /// Failure for work that did not complete.
-    async fn failed(self, link: &mut Link, reason: WaitFailure, place: Option<Coordinates>) -> Failure {
-        let place = place.map(|place| format!("; the axes are at {}", place.in_a_line())).unwrap_or_default();
-        let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{place}", self.done));
+    async fn failed(self, link: &mut Link, reason: WaitFailure, coordinates: Option<Coordinates>) -> Failure {
+        let coordinates =
+            coordinates.map(|coordinates| format!("; the axes are at {}", coordinates.in_a_line())).unwrap_or_default();
+        let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{coordinates}", self.done));
         match reason {
             WaitFailure::Error => explain_present_error(link, &fail).await,
             WaitFailure::NoOrigin => fail("it ended without the origin")
@@ -264,14 +265,14 @@ impl ProgressReporter {
         Self { doing, progress, screen: *screen, inputs: 0, step, halted: None }
     }
 
-    fn report(&mut self, status: Status, place: Option<Coordinates>) {
+    fn report(&mut self, status: Status, coordinates: Option<Coordinates>) {
         let halted = match (status.paused(), status.waits_for_input()) {
             (true, _) => Some("paused"),
             (_, true) => Some("waiting for an input"),
             _ => None,
         };
-        let place = place.map(|place| place.in_a_line()).unwrap_or_default();
-        self.progress.say(&format!("{} {place} {}", halted.unwrap_or(self.doing), self.step));
+        let coordinates = coordinates.map(|coordinates| coordinates.in_a_line()).unwrap_or_default();
+        self.progress.say(&format!("{} {coordinates} {}", halted.unwrap_or(self.doing), self.step));
         if halted != self.halted {
             self.halted = halted;
             if let Some(halted) = halted {
@@ -321,9 +322,9 @@ impl WorkState {
 
     /// Evaluates one read. The position was read after the status, so it is final once the status shows no execution.
     /// The start can appear late, and short work may not appear at all.
-    fn evaluate(&mut self, elapsed: Duration, status: Status, place: Option<Record>) -> WorkEvent {
-        let moves = self.last.is_some() && self.last != place;
-        self.last = place;
+    fn evaluate(&mut self, elapsed: Duration, status: Status, coordinates: Option<Record>) -> WorkEvent {
+        let moves = self.last.is_some() && self.last != coordinates;
+        self.last = coordinates;
         if status.has_error() {
             return WorkEvent::Failed(WaitFailure::Error);
         }
@@ -367,8 +368,9 @@ mod tests {
 
     fn evaluate_reads<const N: usize>(work: Work, reads: [(u64, Status, i32); N]) -> WorkEvent {
         let mut work_state = WorkState::new(work);
-        let events =
-            reads.map(|(ms, status, place)| work_state.evaluate(Duration::from_millis(ms), status, Some(at(place))));
+        let events = reads.map(|(ms, status, coordinates)| {
+            work_state.evaluate(Duration::from_millis(ms), status, Some(at(coordinates)))
+        });
         let [earlier @ .., last] = &events[..] else { panic!("one read at least") };
         assert!(earlier.iter().all(|event| *event == WorkEvent::Running), "{events:?}");
         match last {

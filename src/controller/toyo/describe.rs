@@ -80,12 +80,12 @@ pub fn describe(line: &str, sender: Sender, request: Option<&Request>) -> Descri
     if sender == Sender::Controller
         && let Some((what, about)) = verdict(text)
     {
-        return decided(text, what, about, request);
+        return describe_verdict(text, what, about, request);
     }
     let mut notes = Notes::new(text);
     let row = command_of(text).map(|(_, row)| row);
     if let Some(row) = row {
-        notes = explained(text, row, sender);
+        notes = describe_block(text, row, sender);
     }
     // An invalid block is reported as a whole; other damage with its position.
     let damage = match Request::parse(text) {
@@ -130,7 +130,7 @@ fn verdict(text: &str) -> Option<(&'static str, &'static str)> {
     }
 }
 
-fn decided(text: &str, what: &str, about: &'static str, request: Option<&Request>) -> Description {
+fn describe_verdict(text: &str, what: &str, about: &'static str, request: Option<&Request>) -> Description {
     let title = match request {
         Some(request) => format!("answer to {}: {what}", request.row().word),
         None => format!("answer: {what}"),
@@ -152,7 +152,7 @@ fn forms(row: &'static Row, sender: Sender) -> &'static [Layout] {
 }
 
 /// Decodes a line by the form that fits, or else by the one that fits furthest.
-fn explained<'t>(text: &'t str, row: &'static Row, sender: Sender) -> Notes<'t> {
+fn describe_block<'t>(text: &'t str, row: &'static Row, sender: Sender) -> Notes<'t> {
     let mut best: Option<(usize, Notes<'t>)> = None;
     for form in forms(row, sender) {
         let mut notes = Notes::new(text);
@@ -223,17 +223,17 @@ impl<'t> Notes<'t> {
         let start = self.command(row);
         // HTSK is parsed as CTSK, which has the same length.
         let text = format!("{}{}", row.word, self.text.get(start + row.word.len()..).unwrap_or_default());
-        let mut found = Vec::new();
-        let end = form.scan(&text, |field, value, bytes| found.push((field, value, bytes)));
+        let mut values = Vec::new();
+        let end = form.scan(&text, |field, value, bytes| values.push((field, value, bytes)));
         let number = |name: &str| {
-            found.iter().find(|(field, ..)| field.name == name).and_then(|(_, value, _)| match value {
+            values.iter().find(|(field, ..)| field.name == name).and_then(|(_, value, _)| match value {
                 Value::Number(number) => Some(*number),
                 _ => None,
             })
         };
         let record = number("record");
         let of = MessageContext { command: row.command, page: number("page"), sender };
-        for (field, value, bytes) in found {
+        for (field, value, bytes) in values {
             let bytes = bytes.start + start..bytes.end + start;
             if field.form == Form::Text && matches!(field.name, "body" | "key" | "text") {
                 self.content(of, record, bytes)?;
@@ -267,9 +267,9 @@ impl<'t> Notes<'t> {
                 Pallet::numbered(number).ok_or_else(|| unknown("record", &number.to_string()))?.layout
             }
         };
-        let mut found = Vec::new();
-        let end = layout.scan(body, |field, value, bytes| found.push((field, value, bytes)));
-        for (field, value, bytes) in found {
+        let mut values = Vec::new();
+        let end = layout.scan(body, |field, value, bytes| values.push((field, value, bytes)));
+        for (field, value, bytes) in values {
             self.value(of, field, &value, bytes.start + start..bytes.end + start);
         }
         end.map_err(|error| self.damage(start, &error))

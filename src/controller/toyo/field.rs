@@ -367,7 +367,7 @@ impl Field {
 
     /// Parses a value in full width at the start of a text. Returns it and the rest.
     pub fn take<'t>(&self, text: &'t str) -> Result<(Value, &'t str), FieldError> {
-        let misfit = || self.misfit(shown(text));
+        let misfit = || self.misfit(excerpt(text));
         let len = match self.form {
             Form::Number(number) => number.width(),
             Form::Hex => 2,
@@ -489,7 +489,7 @@ impl Field {
 }
 
 /// Start of a text, for an error.
-fn shown(text: &str) -> &str {
+fn excerpt(text: &str) -> &str {
     let end = text.char_indices().nth(16).map_or(text.len(), |(at, _)| at);
     let front = &text[..end];
     front.split_inclusive(' ').next().map_or(front, str::trim_end)

@@ -127,7 +127,7 @@ impl Layout {
     fn walk(
         &self,
         text: &str,
-        keeps: bool,
+        keeps_unlisted: bool,
         mut found: impl FnMut(&'static Field, Value, Range<usize>),
     ) -> Result<(), LayoutError> {
         let mut rest = text.trim_start_matches(' ');
@@ -136,20 +136,23 @@ impl Layout {
         let mut fields = self.fields.iter();
         loop {
             let expected = words.next().unwrap_or_default();
-            rest = pass(expected, rest)
+            rest = skip_words(expected, rest)
                 .map_err(|rest| LayoutError { at: at(rest), what: LayoutProblem::Words { expected } })?;
             let Some(field) = fields.next() else { break };
-            let mut taken = field.take(rest);
-            if keeps {
+            let mut parsed = field.take(rest);
+            if keeps_unlisted {
                 let (next, is_last) = (words.clone().next().unwrap_or_default(), fields.len() == 0);
-                let fits = |left| pass(next, left).is_ok_and(|left| !is_last || left.trim_end_matches(' ').is_empty());
-                if !taken.as_ref().is_ok_and(|(_, left)| fits(left)) {
-                    taken = kept(rest, next, is_last).map_or(taken, Ok);
+                let fits = |rest_after| {
+                    skip_words(next, rest_after)
+                        .is_ok_and(|rest_after| !is_last || rest_after.trim_end_matches(' ').is_empty())
+                };
+                if !parsed.as_ref().is_ok_and(|(_, rest_after)| fits(rest_after)) {
+                    parsed = take_unlisted(rest, next, is_last).map_or(parsed, Ok);
                 }
             }
-            let (value, left) = taken.map_err(|error| LayoutError { at: at(rest), what: error.into() })?;
-            found(field, value, at(rest)..at(left));
-            rest = left;
+            let (value, rest_after) = parsed.map_err(|error| LayoutError { at: at(rest), what: error.into() })?;
+            found(field, value, at(rest)..at(rest_after));
+            rest = rest_after;
         }
         match rest.trim_end_matches(' ') {
             "" => Ok(()),
@@ -183,7 +186,7 @@ impl Layout {
 }
 
 /// A value outside its format: all text before the next words.
-fn kept<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value, &'t str)> {
+fn take_unlisted<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value, &'t str)> {
     let end = match next {
         "" if is_last => text.len(),
         "" => return None,
@@ -195,7 +198,7 @@ fn kept<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value, &'t str)
 }
 
 /// Skips the expected words; a blank matches one or more. Returns the rest, or the position of the difference.
-fn pass<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
+fn skip_words<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
     for expected in words.chars() {
         let rest = text.strip_prefix(expected).ok_or(text)?;
         text = if expected == ' ' { rest.trim_start_matches(' ') } else { rest };
@@ -313,11 +316,15 @@ mod tests {
 
     #[test]
     fn a_value_outside_its_format_is_kept_and_never_sent() {
-        let kept = |text: &str| TWO.parse_kept(text).map(|record| (record.written(), record.is_listed()));
-        assert_eq!(kept("MCNT CN01=0000"), Ok(("MCNT CN01=0000".into(), true)));
-        assert_eq!(kept("MCNT CN1=00012"), Ok(("MCNT CN1=00012".into(), false)));
-        assert_eq!(kept("MCNT CN01=1 2"), Ok(("MCNT CN01=1 2".into(), false)));
-        assert!(kept("MCNT CM01=0000").is_err() && kept("MCNT CN01").is_err() && kept("MCNT CN01=").is_err());
+        let take_unlisted = |text: &str| TWO.parse_kept(text).map(|record| (record.written(), record.is_listed()));
+        assert_eq!(take_unlisted("MCNT CN01=0000"), Ok(("MCNT CN01=0000".into(), true)));
+        assert_eq!(take_unlisted("MCNT CN1=00012"), Ok(("MCNT CN1=00012".into(), false)));
+        assert_eq!(take_unlisted("MCNT CN01=1 2"), Ok(("MCNT CN01=1 2".into(), false)));
+        assert!(
+            take_unlisted("MCNT CM01=0000").is_err()
+                && take_unlisted("MCNT CN01").is_err()
+                && take_unlisted("MCNT CN01=").is_err()
+        );
         assert!(TWO.parse_kept("MCNT CN01=00012").unwrap().emit().is_err());
         let foreign = Record::unlisted("FOO X=1 ");
         assert_eq!((foreign.written().as_str(), foreign.is_listed()), ("FOO X=1", false));

@@ -62,19 +62,19 @@ struct Assignment {
 
 /// A port or a bit of it, as typed.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct Target {
     port: u8,
     bit: Option<u8>,
 }
 
 /// Parses `OUT1.3`, `OUT1`; also `PN01`, `1.3` and `1`.
-fn place_of(text: &str) -> Result<Place, String> {
+fn place_of(text: &str) -> Result<Target, String> {
     let (port, bit) = text.split_once('.').map_or((text, None), |(port, bit)| (port, Some(bit)));
     let prefix = ["PN", "pn", "OUT", "out"].into_iter().find_map(|prefix| port.strip_prefix(prefix));
     let port = u8::try_from(number(&fields()[1], prefix.unwrap_or(port))?).map_err(|error| error.to_string())?;
     let wrong = |bit: &str| format!("'{bit}' is not a valid bit; a port has the bits 1 to 8");
     let number = |bit: &str| bit.parse().ok().filter(|number| (1..=8).contains(number)).ok_or_else(|| wrong(bit));
-    Ok(Place { port, bit: bit.map(number).transpose()? })
+    Ok(Target { port, bit: bit.map(number).transpose()? })
 }
 
 /// Fields of DOUT STN=0 PN01=........
@@ -87,7 +87,7 @@ impl FromStr for Assignment {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (place, value) = typed::setting(text, "a port", "a value", "OUT1.3=on")?;
-        let Place { port, bit } = names::read(&[NameKind::Output], "OUT1.1", place, place_of)?;
+        let Target { port, bit } = names::read(&[NameKind::Output], "OUT1.1", place, place_of)?;
         let mask = match bit {
             Some(bit) => one_bit(bit, value)?,
             None => match fields()[2].read(value) {
@@ -146,7 +146,8 @@ impl Command for Set {
         let names = names::of(context.robot, context.screen);
         let mut written = Vec::new();
         for (done, order) in orders.iter().enumerate() {
-            let port = order.set(context.link, station).await.map_err(|failure| account(failure, &orders, done))?;
+            let port =
+                order.set(context.link, station).await.map_err(|failure| with_results(failure, &orders, done))?;
             written.extend(order.bits().map(|spot| port.of(spot, order, station, names)));
         }
         Ok(WrittenSignals::new(written))
@@ -154,14 +155,14 @@ impl Command for Set {
 }
 
 /// A port before and after a command, if it was read.
-struct Around {
+struct PortChange {
     old: Option<u8>,
     now: Option<u8>,
     /// Failure if bits differ from the command.
     failure: Option<Failure>,
 }
 
-impl Around {
+impl PortChange {
     const UNREAD: Self = Self { old: None, now: None, failure: None };
 
     fn of(&self, spot: Spot, order: &Assignment, station: u8, names: &Names) -> WrittenSignal {
@@ -184,11 +185,11 @@ impl Assignment {
     }
 
     /// Sets the port, and reads it back if possible.
-    async fn set(&self, link: &mut Link, station: u8) -> Result<Around, Failure> {
+    async fn set(&self, link: &mut Link, station: u8) -> Result<PortChange, Failure> {
         let order = self.order(station)?;
         let Some(screen) = OUTPUTS.screen_of(station, self.port) else {
             link.ask(&order).await?;
-            return Ok(Around::UNREAD);
+            return Ok(PortChange::UNREAD);
         };
         let read = OUTPUTS.request(station, screen);
         let own = |answer: &Record| ports_of(answer).into_iter().find(|port| port.number == self.port);
@@ -196,7 +197,7 @@ impl Assignment {
         link.ask(&order).await?;
         if link.is_dry() {
             link.plan(&read, "the port after the change");
-            return Ok(Around::UNREAD);
+            return Ok(PortChange::UNREAD);
         }
         let answer = read_back(link, &order, &read).await?;
         let Some(written) = own(&answer) else {
@@ -207,7 +208,7 @@ impl Assignment {
         let reads = format!("{} reads {:08b}", written.name, written.byte);
         let failure = stored_otherwise(&order, &reads)
             .hint("a running program can set the same outputs; `toyo io list --out` shows the outputs");
-        Ok(Around { old, now: Some(written.byte), failure: Some(failure) })
+        Ok(PortChange { old, now: Some(written.byte), failure: Some(failure) })
     }
 
     /// Request that sets the port.
@@ -222,7 +223,7 @@ impl Assignment {
 }
 
 /// Failure of a command with the result of the others; the controller accepted `done` of them.
-fn account(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
+fn with_results(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
     if orders.len() == 1 {
         return failure;
     }
@@ -298,7 +299,7 @@ mod tests {
     #[test]
     fn a_failure_reports_the_result_of_each_port() {
         let orders: Vec<Assignment> = ["1=......01", "2.1=on", "3.1=on"].map(|text| text.parse().unwrap()).into();
-        let message = |orders: &[Assignment], done| account(Failure::local("no"), orders, done).message;
+        let message = |orders: &[Assignment], done| with_results(Failure::local("no"), orders, done).message;
         assert_eq!(message(&orders[..1], 0), "no");
         assert_eq!(message(&orders, 1), "PN02: no; set before that: PN01; not set: PN03");
         let bits: Vec<u8> = orders[0].bits().map(|spot| spot.bit).collect();

@@ -265,7 +265,7 @@ fn a_written_machine_parameter_needs_a_power_cycle() {
 
 #[test]
 fn a_partial_change_reads_the_parameter_once_before_the_write() {
-    let (mut bench, heard) = Bench::with_faults("", |_, _| Fault::None);
+    let (mut bench, received) = Bench::with_faults("", |_, _| Fault::None);
     for (words, read) in [
         (&["param", "set", "P01", "ax2=150"][..], "@RPAR P01"),
         (&["point", "set", "7", "z=5"], "@RPAR T1 PT=007"),
@@ -274,10 +274,10 @@ fn a_partial_change_reads_the_parameter_once_before_the_write() {
         (&["palletizing", "set", "1", "source-p1", "x=5"], "@RPLT 01 SNO=03"),
         (&["mvm", "set", "1", "origin=5"], "@RPAR T4 S1 GRP=01"),
     ] {
-        heard.borrow_mut().clear();
+        received.borrow_mut().clear();
         bench.data(words);
-        let heard = heard.borrow();
+        let received = received.borrow();
         // Once before the write, and once to read it back.
-        assert_eq!(heard.iter().filter(|block| *block == read).count(), 2, "{heard:#?}");
+        assert_eq!(received.iter().filter(|block| *block == read).count(), 2, "{received:#?}");
     }
 }

@@ -44,7 +44,7 @@ pub const AXES: usize = 4;
 #[derive(Debug)]
 pub struct Points {
     letters: Letters,
-    wanted: Option<u8>,
+    selected_task: Option<u8>,
     /// Task of the points.
     task: u8,
 }
@@ -52,7 +52,7 @@ pub struct Points {
 impl Points {
     /// Table of a task, or of the current task.
     pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
-        Ok(Self { letters: link.letters().await?, wanted: task, task: task.unwrap_or_default() })
+        Ok(Self { letters: link.letters().await?, selected_task: task, task: task.unwrap_or_default() })
     }
 
     /// Table of a task of a machine whose axes have these letters.
@@ -164,7 +164,7 @@ impl Store for Points {
     }
 
     async fn select(&mut self, link: &mut Link) -> Result<(), Failure> {
-        self.task = tasks::choose(link, self.wanted).await?;
+        self.task = tasks::choose(link, self.selected_task).await?;
         Ok(())
     }
 

@@ -36,8 +36,8 @@ pub struct Teach {
 }
 
 /// Position as text.
-fn position_text(place: &Coordinates) -> String {
-    format!("{} (mm)", place.in_a_line())
+fn position_text(coordinates: &Coordinates) -> String {
+    format!("{} (mm)", coordinates.in_a_line())
 }
 
 impl Command for Teach {
@@ -74,7 +74,7 @@ impl Teach {
             points.plan(link, &[(point, Changes::of(vec![None; AXES]))]).await?;
             return Err(unknown());
         };
-        let place = Coordinates::of(&current, points.letters());
+        let coordinates = Coordinates::of(&current, points.letters());
         let old = Coordinates::of(&stored, points.letters());
         let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(current.number(axis).unwrap_or_default()));
         let new = points.cell(point, axes.into())?.wanted;
@@ -82,9 +82,9 @@ impl Teach {
         let change = overwritten(points, &[(point, Some(&stored), &new)]);
         authority.confirm(&change).await?;
         if needs_confirmation {
-            let now = Coordinates::of(&read_position(link).await?, points.letters());
-            if now != place {
-                let message = format!("the axes moved after the confirmation, to {}", position_text(&now));
+            let moved_to = Coordinates::of(&read_position(link).await?, points.letters());
+            if moved_to != coordinates {
+                let message = format!("the axes moved after the confirmation, to {}", position_text(&moved_to));
                 return Err(outdated(format!("{message}; nothing was stored")));
             }
         }
@@ -94,7 +94,8 @@ impl Teach {
         }
         // The value was written and read back.
         let name = point.to_string();
-        let taught = Taught::new(name, Some(old.position()), place.position(), place.position().of_group(UNIT));
+        let taught =
+            Taught::new(name, Some(old.position()), coordinates.position(), coordinates.position().of_group(UNIT));
         Ok(taught.unchanged(is_stored).with("point", point).with("task", points.task()))
     }
 }

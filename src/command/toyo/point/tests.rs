@@ -122,7 +122,7 @@ fn a_refusal_during_a_restore_gives_the_reason_and_the_points_written() {
 
 #[test]
 fn an_accepted_write_without_read_back_has_an_unknown_outcome() {
-    let (mut bench, heard) = Bench::with_faults("", |block, count| match block {
+    let (mut bench, received) = Bench::with_faults("", |block, count| match block {
         "@RPAR T1 PT=003" if count > 1 => Fault::Lost,
         _ => Fault::None,
     });
@@ -131,7 +131,7 @@ fn an_accepted_write_without_read_back_has_an_unknown_outcome() {
     assert!(failure.unwrap().message.contains("was accepted, but not read back: "));
     let kinds: Vec<_> = report["items"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
     assert_eq!(kinds[2..], ["outcome_unknown", "no_answer", "no_answer"]);
-    assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@WPAR")).count(), 3);
+    assert_eq!(received.borrow().iter().filter(|block| block.starts_with("@WPAR")).count(), 3);
 }
 
 #[test]
@@ -158,13 +158,13 @@ const CROSSED: &str = "write = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\norigin = 
 
 #[test]
 fn all_commands_use_the_axis_letters_of_the_machine() {
-    let (mut bench, heard) = Bench::with_faults(CROSSED, |_, _| Fault::None);
+    let (mut bench, received) = Bench::with_faults(CROSSED, |_, _| Fault::None);
     let stored = bench.data(&["point", "set", "1", "z=12.5"]);
     assert_eq!(
         (&stored["items"][0]["value"]["z_mm"], &stored["items"][0]["new"]["z_mm"]),
         (&12.5.into(), &12.5.into())
     );
-    let last = |word: &str| heard.borrow().iter().rfind(|block| block.starts_with(word)).cloned();
+    let last = |word: &str| received.borrow().iter().rfind(|block| block.starts_with(word)).cloned();
     assert_eq!(last("@WPAR").unwrap(), "@WPAR T1 PT=001 X=+0000.00 Y=+0012.50 Z=+0000.00 R=+0000.00");
     bench.data(&["point", "set", "1", "ax3=7"]);
     assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["value"]["y_mm"], 7.0);
@@ -183,14 +183,14 @@ fn all_commands_use_the_axis_letters_of_the_machine() {
 
 #[test]
 fn values_without_names_are_rejected_if_letters_are_not_in_default_order() {
-    let (mut bench, heard) = Bench::with_faults(CROSSED, |_, _| Fault::None);
+    let (mut bench, received) = Bench::with_faults(CROSSED, |_, _| Fault::None);
     for words in [&["point", "set", "1", "1", "2", "3", "4"][..], &["coordinate", "set", "1", "2", "3", "4"]] {
         let failure = bench.run(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2);
         assert!(failure.message.ends_with("axes 1 to 4 have the letters X, Z, Y, R"), "{failure}");
         assert!(failure.hint.unwrap().starts_with("type them by name: x=… z=… y=… r=…"));
     }
-    assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR T1") || block.starts_with("@MRSS")));
+    assert!(!received.borrow().iter().any(|block| block.starts_with("@WPAR T1") || block.starts_with("@MRSS")));
 }
 
 #[test]
@@ -199,13 +199,13 @@ fn without_reported_letters_axes_have_numbers() {
         "@SYSP" | "@RPAR E01" => Fault::Answered("@NG"),
         _ => Fault::None,
     };
-    let (mut bench, heard) = Bench::with_faults("origin = true\n", mute);
+    let (mut bench, received) = Bench::with_faults("origin = true\n", mute);
     for words in [&["point", "set", "1", "z=12.5"][..], &["jog", "Z", "+", "low", "--for", "1s"]] {
         let failure = bench.run(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2, "{failure}");
         assert!(failure.message.contains("the axis of Z is unknown"), "{failure}");
     }
-    assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR") || block.starts_with("@JGST")));
+    assert!(!received.borrow().iter().any(|block| block.starts_with("@WPAR") || block.starts_with("@JGST")));
     assert_eq!(bench.data(&["point", "set", "1", "ax3=12.5"])["items"][0]["value"]["joints"][2]["mm"], 12.5);
     assert_eq!(bench.data(&["jog", "3", "+", "low", "--for", "1s"])["axis_number"], 3);
 }
@@ -231,13 +231,13 @@ fn an_update_dumps_only_the_points_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.csv").to_str().unwrap().to_owned();
     std::fs::write(&path, "comment,name,x_mm,y_mm,z_mm,r_mm\ngate,7,,,,\nbin,3,1,1,1,1\n").unwrap();
-    let (mut bench, heard) = Bench::with_faults("", |_, _| Fault::None);
+    let (mut bench, received) = Bench::with_faults("", |_, _| Fault::None);
     bench.data(&["point", "set", "7", "1", "2", "3", "4"]);
-    let asked = heard.borrow().len();
+    let asked = received.borrow().len();
     assert_eq!(bench.data(&["point", "dump", &path, "--update"])["saved"], 2);
     let text = "comment,name,x_mm,y_mm,z_mm,r_mm\ngate,7,1.00,2.00,3.00,4.00\nbin,3,0.00,0.00,0.00,0.00\n";
     assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
-    let reads = heard.borrow()[asked..].iter().filter(|block| block.starts_with("@RPAR T1")).count();
+    let reads = received.borrow()[asked..].iter().filter(|block| block.starts_with("@RPAR T1")).count();
     assert_eq!(reads, 2);
     bench.data(&["point", "dump", &path, "1-3", "--update"]);
     assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 5);

@@ -269,7 +269,8 @@ b.txt: 2 steps, 1 label
             let check = Check { files: vec![path.clone()], room: 5000, points: None, name: Vec::new(), strict: false };
             let screen = Screen::new(crate::output::Format::Json, crate::output::ColorChoice::Never, true, 0);
             let verdict = check.run(&screen).unwrap();
-            let told = verdict.files[0].findings.iter().filter(|remark| remark.message.starts_with("in an offline run"));
+            let told =
+                verdict.files[0].findings.iter().filter(|remark| remark.message.starts_with("in an offline run"));
             told.map(|remark| (remark.severity, remark.line, remark.message.clone())).collect::<Vec<_>>()
         };
         let error = |code: &str| format!("in an offline run a controller stops here after 0.001 s: error {code}");

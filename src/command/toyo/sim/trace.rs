@@ -71,7 +71,7 @@ pub struct Trace {
     /// Output ports with a bit that is on at the end.
     outputs: Vec<Port>,
     /// Current steps of the tasks that have not ended.
-    steps: Vec<At>,
+    steps: Vec<TraceStep>,
     /// Events in order.
     trace: VecDeque<Row>,
     /// Number of omitted earlier rows.
@@ -112,7 +112,7 @@ struct Port {
 
 /// A step of a task, with its location in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-struct At {
+struct TraceStep {
     task: usize,
     step: usize,
     file: String,
@@ -132,7 +132,7 @@ struct Row {
     /// Text.
     what: String,
     /// Step that begins or ends.
-    at: Option<At>,
+    at: Option<TraceStep>,
     /// Output port that changed.
     port: Option<Port>,
     #[serde(flatten)]
@@ -153,7 +153,7 @@ impl Recorder {
             What::Step { task, step } => {
                 self.at.insert(*task, *step);
                 row.at = self.find(*task, *step);
-                row.what = row.at.as_ref().map_or_else(|| format!("step {step} of task {task}"), At::in_words);
+                row.what = row.at.as_ref().map_or_else(|| format!("step {step} of task {task}"), TraceStep::in_words);
             }
             What::Output { station, port, bits } => {
                 self.ports.insert((*station, *port), *bits);
@@ -186,7 +186,7 @@ impl Recorder {
 
     /// Completes the trace.
     pub fn ended(self, end: End, at: Duration, state: &State) -> Trace {
-        let steps: Vec<At> = self.at.iter().filter_map(|(task, step)| self.find(*task, *step)).collect();
+        let steps: Vec<TraceStep> = self.at.iter().filter_map(|(task, step)| self.find(*task, *step)).collect();
         let ports = self.ports.iter().filter(|(_, bits)| **bits != 0);
         let after_s = at.as_secs_f64();
         let line = steps.iter().find(|at| at.task == 1).map(|at| at.line);
@@ -214,12 +214,12 @@ impl Recorder {
         }
     }
 
-    fn find(&self, task: usize, step: usize) -> Option<At> {
+    fn find(&self, task: usize, step: usize) -> Option<TraceStep> {
         let Source { file, program, .. } = self.sources.iter().find(|source| source.task == task)?;
         let program_step = program.steps.get(step.checked_sub(1)?)?;
         let tag = ["tag", "then"].into_iter().find_map(|name| program_step.record.number(name));
         let label = program.labels.iter().find(|label| Some(label.tag) == tag);
-        Some(At {
+        Some(TraceStep {
             task,
             step,
             file: file.clone(),
@@ -242,8 +242,8 @@ impl End {
     }
 
     /// Failure of a run.
-    fn failure(self, at: Duration, steps: &[At]) -> Option<Failure> {
-        let places: Vec<String> = steps.iter().map(At::in_a_line).collect();
+    fn failure(self, at: Duration, steps: &[TraceStep]) -> Option<Failure> {
+        let places: Vec<String> = steps.iter().map(TraceStep::in_a_line).collect();
         let places = places.join("; ");
         let failed = |what: String| Failure::new(Kind::ConditionNotMet, what);
         let after = at.as_secs_f64();
@@ -256,8 +256,8 @@ impl End {
                     .code(format!("{code:02X}"))
             }
             Self::Waits => {
-                let what = steps.iter().find_map(At::awaited_condition).unwrap_or("something");
-                let hint = steps.iter().find_map(At::help).unwrap_or_else(|| "no other task runs".into());
+                let what = steps.iter().find_map(TraceStep::awaited_condition).unwrap_or("something");
+                let hint = steps.iter().find_map(TraceStep::help).unwrap_or_else(|| "no other task runs".into());
                 failed(format!("after {after:.3} s, all tasks wait for {what} without end: {places}")).hint(hint)
             }
             Self::TimeUp => {
@@ -267,7 +267,7 @@ impl End {
     }
 }
 
-impl At {
+impl TraceStep {
     /// `next: TAG TAG=001`, `JMP TAG=001 (next)`.
     fn in_words(&self) -> String {
         match &self.label {
@@ -360,7 +360,8 @@ impl Report for Trace {
         columns.extend(axes.iter().map(|(name, _)| *name));
         let mut table = Table::new(&columns, "nothing happened");
         for row in &self.trace {
-            let number = |of: fn(&At) -> usize| row.at.as_ref().map_or_else(|| Cell::number(""), |at| of(at).into());
+            let number =
+                |of: fn(&TraceStep) -> usize| row.at.as_ref().map_or_else(|| Cell::number(""), |at| of(at).into());
             let tone = match row.event {
                 "error" => Tone::Bad,
                 "output" | "ended" => Tone::Good,

@@ -8,9 +8,9 @@ use crate::toyo::table::{Instruction, Op};
 /// Reports suspicious control flow of a valid program. A part of a program may continue after its last step.
 pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings) {
     let steps = || resolved.program.steps.iter().zip(&resolved.places).map(|(step, at)| (step.instruction, *at));
-    let mut before: Option<Op> = None;
+    let mut previous: Option<Op> = None;
     for (row, at) in steps() {
-        if let Some(jump) = before.filter(|op| never_goes_on(*op))
+        if let Some(jump) = previous.filter(|op| ends_flow(*op))
             && !matches!(row.op, Op::Tag | Op::Nop | Op::End)
         {
             let word = jump.row().word;
@@ -21,14 +21,14 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
             );
         }
         // A NOP or END after a jump is padding.
-        if !(row.op == Op::Nop && before.is_some_and(never_goes_on)) {
-            before = Some(row.op);
+        if !(row.op == Op::Nop && previous.is_some_and(ends_flow)) {
+            previous = Some(row.op);
         }
     }
     if !is_part
         && let Some((row, at)) = steps().rfind(|(row, _)| row.op != Op::Nop)
-        && !never_goes_on(row.op)
-        && !jumps_somewhere(row.op)
+        && !ends_flow(row.op)
+        && !has_computed_target(row.op)
     {
         findings.warning(
             at,
@@ -36,7 +36,7 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
             Some("add END".to_owned()),
         );
     }
-    let unknown: Vec<_> = steps().filter(|(row, _)| jumps_somewhere(row.op)).collect();
+    let unknown: Vec<_> = steps().filter(|(row, _)| has_computed_target(row.op)).collect();
     if let Some((row, at)) = unknown.first() {
         let more = if unknown.len() > 1 { format!("; {} steps are like this", unknown.len()) } else { String::new() };
         findings
@@ -47,21 +47,21 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
 
 /// Reports instructions that only some controllers have, each once.
 fn limits<'s>(steps: impl Iterator<Item = (&'s Instruction, SourceLocation)>, findings: &mut Findings) {
-    let mut told: Vec<Op> = Vec::new();
+    let mut reported: Vec<Op> = Vec::new();
     for (row, at) in steps.filter(|(row, _)| !row.only_on.is_empty()) {
-        if !told.contains(&row.op) {
-            told.push(row.op);
+        if !reported.contains(&row.op) {
+            reported.push(row.op);
             findings.note(at, format!("only {} have {}", row.only_on.join(", "), row.word));
         }
     }
 }
 
 /// Whether the next step never runs directly after it.
-const fn never_goes_on(op: Op) -> bool {
+const fn ends_flow(op: Op) -> bool {
     matches!(op, Op::Jmp | Op::Ret | Op::End | Op::Loop)
 }
 
 /// Whether the jump target is not in the instruction.
-const fn jumps_somewhere(op: Op) -> bool {
+const fn has_computed_target(op: Op) -> bool {
     matches!(op, Op::Brac | Op::Psel)
 }

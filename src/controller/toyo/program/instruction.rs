@@ -67,12 +67,12 @@ pub(super) fn is_label(word: &str) -> bool {
 
 /// Parses one instruction up to the end of the code. Returns `None` after an error, which is added to the findings.
 pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findings) -> Option<Draft> {
-    let before = findings.errors();
+    let errors_before = findings.errors();
     let at = cursor.place();
     let word = cursor.word();
     let Some(row) = INSTRUCTIONS.iter().find(|row| row.word.eq_ignore_ascii_case(word)) else {
         let near = nearest(word, INSTRUCTIONS.iter().map(|row| row.word));
-        let message = format!("unknown instruction '{}'", shown(word));
+        let message = format!("unknown instruction '{}'", excerpt(word));
         findings.error(at, message, near.map(|near| format!("did you mean {near}?")));
         return None;
     };
@@ -115,10 +115,10 @@ pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findin
         cursor.pass_to(key, next, known).map_err(|missing| findings.error(cursor.place(), missing, form())).ok()?;
     }
     if !cursor.rest().is_empty() {
-        findings.error(cursor.place(), format!("unexpected text '{}'", shown(cursor.rest())), form());
+        findings.error(cursor.place(), format!("unexpected text '{}'", excerpt(cursor.rest())), form());
     }
     pass_fixed(&mut draft, findings);
-    (findings.errors() == before).then_some(draft)
+    (findings.errors() == errors_before).then_some(draft)
 }
 
 /// RSMV always passes its point, whatever is printed (ambiguity R4).
@@ -142,7 +142,7 @@ fn target(field: &Field, text: &str) -> Result<Target, String> {
     match field.read(text) {
         Ok(Value::Number(number)) => Ok(Target::Number(number)),
         Ok(_) | Err(FieldError::Form { .. }) => {
-            Err(format!("{}: '{}' is neither a valid tag (001 to 999) nor a label", field.name, shown(text)))
+            Err(format!("{}: '{}' is neither a valid tag (001 to 999) nor a label", field.name, excerpt(text)))
         }
         Err(error) => Err(error.to_string()),
     }
@@ -185,7 +185,7 @@ fn by_name(field: &Field, text: &str, known: &Names) -> Result<Option<i32>, Stri
         Found::One(name) => Ok(names::number(&name.address)),
         Found::Several(several) => {
             let addresses: Vec<&str> = several.iter().map(|name| name.address.as_str()).collect();
-            Err(format!("'{}' is the name of {}; write the number", shown(text), addresses.join(" and of ")))
+            Err(format!("'{}' is the name of {}; write the number", excerpt(text), addresses.join(" and of ")))
         }
         Found::None => Ok(None),
     }
@@ -205,10 +205,10 @@ fn named_value(field: &Field, text: &str, known: &Names) -> Result<Value, (Strin
 /// Error and hint for an unknown name; `None` if the field cannot have a name.
 fn unknown_name(field: &Field, text: &str, known: &Names) -> Option<(String, String)> {
     let (kind, prefix) = names::of_field(field.name).filter(|_| is_label(text))?;
-    let alike = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
-    let hint = nearest(text, alike).map(|near| format!("did you mean {near}?"));
-    let hint = hint.unwrap_or_else(|| format!("define names in robots.toml: {} = \"{prefix}1\"", shown(text)));
-    Some((format!("no {} has the name '{}'", kind.word(), shown(text)), hint))
+    let candidates = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
+    let hint = nearest(text, candidates).map(|near| format!("did you mean {near}?"));
+    let hint = hint.unwrap_or_else(|| format!("define names in robots.toml: {} = \"{prefix}1\"", excerpt(text)));
+    Some((format!("no {} has the name '{}'", kind.word(), excerpt(text)), hint))
 }
 
 fn value(field: &Field, text: &str) -> Result<Value, FieldError> {
@@ -219,13 +219,13 @@ fn value(field: &Field, text: &str) -> Result<Value, FieldError> {
         }
     }
     field.read(text).map_err(|error| match error {
-        FieldError::Form { name, found, form } => FieldError::Form { name, found: shown(&found).to_owned(), form },
+        FieldError::Form { name, found, form } => FieldError::Form { name, found: excerpt(&found).to_owned(), form },
         FieldError::Range { .. } | FieldError::Decimals { .. } => error,
     })
 }
 
 /// Start of a text, for a message.
-pub(super) fn shown(text: &str) -> &str {
+pub(super) fn excerpt(text: &str) -> &str {
     text.char_indices().nth(20).map_or(text, |(end, _)| &text[..end])
 }
 
@@ -325,7 +325,7 @@ impl<'t> Cursor<'t> {
         self.at = start;
         let words = words.trim();
         match self.rest().split(BLANKS).next() {
-            Some(found) if !found.is_empty() => format!("{words} is expected, not '{}'", shown(found)),
+            Some(found) if !found.is_empty() => format!("{words} is expected, not '{}'", excerpt(found)),
             _ => format!("{words} is missing"),
         }
     }

@@ -70,15 +70,15 @@ pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Row
     let Style { first, is_whole, is_numbered } = style;
     let used = used(steps).max(steps.len().min(1));
     let end = if is_whole { used } else { steps.len() };
-    let (shown, left_out) = (&steps[..end], steps.len() - end);
-    let texts: Vec<String> = shown.iter().map(Record::written).collect();
+    let (listed, left_out) = (&steps[..end], steps.len() - end);
+    let texts: Vec<String> = listed.iter().map(Record::written).collect();
     let width = texts.iter().map(String::len).max().unwrap_or_default();
-    let tags = tags(shown, first);
+    let tags = tags(listed, first);
     let mut text = String::new();
     if !unread.is_empty() {
         let _ = writeln!(text, "# INCOMPLETE: {} of {} steps were not read", unread.len(), steps.len());
     }
-    for (index, (record, own)) in shown.iter().zip(&texts).enumerate() {
+    for (index, (record, own)) in listed.iter().zip(&texts).enumerate() {
         if let Some(why) = unread.get(&index) {
             // Consecutive steps with the same reason have one comment.
             if index.checked_sub(1).and_then(|before| unread.get(&before)) != Some(why) {

@@ -45,7 +45,7 @@ struct Finder<'a> {
 
 /// Successors of a step: the index of the next step, of a jump target, of a subroutine.
 #[derive(Default)]
-struct Ways {
+struct Successors {
     next: bool,
     jumps: Vec<usize>,
     call: Option<usize>,
@@ -176,7 +176,7 @@ impl Finder<'_> {
             if index >= self.steps.len() || !reach.steps.insert(index) {
                 continue;
             }
-            let Ways { next, jumps, call } = self.ways(index, tags);
+            let Successors { next, jumps, call } = self.successors(index, tags);
             open.extend(jumps);
             if next {
                 open.push(index + 1);
@@ -186,16 +186,20 @@ impl Finder<'_> {
         reach
     }
 
-    fn ways(&self, index: usize, tags: &BTreeMap<i32, usize>) -> Ways {
+    fn successors(&self, index: usize, tags: &BTreeMap<i32, usize>) -> Successors {
         let step = &self.steps[index];
         let to = |name: &str| step.record.number(name).and_then(|tag| tags.get(&tag)).copied();
         match step.instruction.op {
-            Op::Jmp => Ways { jumps: to("tag").into_iter().collect(), ..Ways::default() },
-            Op::Jmpc | Op::Jmpi | Op::Jmpt => Ways { next: true, jumps: to("tag").into_iter().collect(), call: None },
-            Op::Loop => Ways { jumps: to("then").into_iter().chain(to("else")).collect(), ..Ways::default() },
-            Op::Cal | Op::Calc | Op::Cali | Op::Calt => Ways { next: true, jumps: Vec::new(), call: to("tag") },
-            Op::End | Op::Ret | Op::Brac => Ways::default(),
-            _ => Ways { next: true, ..Ways::default() },
+            Op::Jmp => Successors { jumps: to("tag").into_iter().collect(), ..Successors::default() },
+            Op::Jmpc | Op::Jmpi | Op::Jmpt => {
+                Successors { next: true, jumps: to("tag").into_iter().collect(), call: None }
+            }
+            Op::Loop => {
+                Successors { jumps: to("then").into_iter().chain(to("else")).collect(), ..Successors::default() }
+            }
+            Op::Cal | Op::Calc | Op::Cali | Op::Calt => Successors { next: true, jumps: Vec::new(), call: to("tag") },
+            Op::End | Op::Ret | Op::Brac => Successors::default(),
+            _ => Successors { next: true, ..Successors::default() },
         }
     }
 }
@@ -224,23 +228,23 @@ fn depth(
     entry: usize,
     bodies: &BTreeMap<usize, Reach>,
     known: &mut BTreeMap<usize, usize>,
-    within: &mut Vec<usize>,
+    call_stack: &mut Vec<usize>,
 ) -> Depth {
     if let Some(depth) = known.get(&entry) {
         return Depth::Calls(*depth);
     }
-    within.push(entry);
+    call_stack.push(entry);
     let mut most = 0;
     for (call, inner) in bodies.get(&entry).iter().flat_map(|body| &body.calls) {
-        if within.contains(inner) {
+        if call_stack.contains(inner) {
             return Depth::Endless(*call);
         }
-        match depth(*inner, bodies, known, within) {
+        match depth(*inner, bodies, known, call_stack) {
             Depth::Calls(depth) => most = most.max(depth),
             endless @ Depth::Endless(_) => return endless,
         }
     }
-    within.pop();
+    call_stack.pop();
     known.insert(entry, most + 1);
     Depth::Calls(most + 1)
 }

@@ -1,6 +1,6 @@
 //! Line parser of a program: step numbers, labels, instructions, comments.
 
-use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
+use super::instruction::{Cursor, Draft, TagUse, Target, excerpt, is_label, read as read_instruction};
 use super::listing::NOT_READ;
 use super::{MOST_STEPS, Part};
 use crate::findings::{Findings, SourceLocation};
@@ -10,14 +10,14 @@ use crate::toyo::table::Op;
 
 /// Parsed lines of a file.
 #[derive(Debug, Default)]
-pub(super) struct Read {
+pub(super) struct ParsedLines {
     pub steps: Vec<Draft>,
-    pub labels: Vec<Defined>,
+    pub labels: Vec<LabelDefinition>,
 }
 
 /// Definition of a label.
 #[derive(Debug)]
-pub(super) struct Defined {
+pub(super) struct LabelDefinition {
     pub name: String,
     /// Explicit tag number.
     pub tag: Option<i32>,
@@ -27,11 +27,17 @@ pub(super) struct Defined {
 }
 
 /// Parses the lines of a task or of a part, with room for `room` steps.
-pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names, findings: &mut Findings) -> Read {
+pub(super) fn read(
+    text: &[u8],
+    room: usize,
+    part: Option<&Part>,
+    names: &Names,
+    findings: &mut Findings,
+) -> ParsedLines {
     let room = room.min(MOST_STEPS);
     let lines = source::lines(text, findings);
     let start = part.map_or(1, |part| part.first);
-    let mut reader = Reader { read: Read::default(), start, first: None, names, findings };
+    let mut reader = Reader { read: ParsedLines::default(), start, first: None, names, findings };
     for (index, line) in lines.iter().enumerate() {
         if reader.findings.is_full() {
             break;
@@ -61,7 +67,7 @@ pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names,
 }
 
 struct Reader<'f> {
-    read: Read,
+    read: ParsedLines,
     /// Number of the first step.
     start: usize,
     /// Number of the first step in the file.
@@ -104,7 +110,7 @@ impl Reader<'_> {
         let at = cursor.place();
         let draft = read_instruction(&mut cursor, self.names, self.findings).unwrap_or_else(|| Draft::empty(at));
         if let (Op::Tag, [TagUse { target: Target::Label(name), .. }]) = (draft.instruction.op, &draft.tags[..]) {
-            self.read.labels.push(Defined { name: name.clone(), tag: None, step: self.read.steps.len(), at });
+            self.read.labels.push(LabelDefinition { name: name.clone(), tag: None, step: self.read.steps.len(), at });
         }
         self.read.steps.push(draft);
     }
@@ -126,7 +132,7 @@ impl Reader<'_> {
         let text = cursor.word();
         let steps = self.read.steps.len();
         let Ok(number) = text.parse::<usize>() else {
-            self.findings.error(at, format!("'{}' is not a valid step number", shown(text)), None);
+            self.findings.error(at, format!("'{}' is not a valid step number", excerpt(text)), None);
             return;
         };
         let is_first = self.first.is_none();
@@ -154,7 +160,7 @@ impl Reader<'_> {
         };
         let step = self.read.steps.len();
         if !is_label(name) {
-            let message = format!("'{}' is not a valid label", shown(name));
+            let message = format!("'{}' is not a valid label", excerpt(name));
             let hint = "a label begins with a letter, and contains letters, digits, _ and -";
             self.findings.error(at, message, Some(hint.to_owned()));
             return;
@@ -164,7 +170,7 @@ impl Reader<'_> {
             let message = format!("the tag of label {name} must be a number from 1 to 999");
             self.findings.error(at, message, None);
         }
-        self.read.labels.push(Defined { name: name.to_owned(), tag: number.flatten(), step, at });
+        self.read.labels.push(LabelDefinition { name: name.to_owned(), tag: number.flatten(), step, at });
         self.read.steps.push(Draft::tag(Target::Label(name.to_owned()), at));
     }
 }

@@ -4,7 +4,7 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 
 use super::instruction::{Draft, Target};
-use super::reader::{Defined, Read};
+use super::reader::{LabelDefinition, ParsedLines};
 use super::{Label, Part, Program, Step};
 use crate::findings::{Findings, SourceLocation};
 use crate::nearest::nearest;
@@ -20,25 +20,25 @@ pub(super) struct Resolved {
 const MOST: usize = 999;
 
 /// Assigns tags to labels, and to the steps that use them. The program is valid only without errors.
-pub(super) fn resolve(read: Read, part: Option<&Part>, findings: &mut Findings) -> Resolved {
+pub(super) fn resolve(read: ParsedLines, part: Option<&Part>, findings: &mut Findings) -> Resolved {
     let mut tags = Tags { part, ..Tags::default() };
-    tags.collect(&read.labels, findings);
-    tags.number(&read, findings);
-    tags.places(&read.steps, findings);
+    tags.collect_labels(&read.labels, findings);
+    tags.assign_tags(&read, findings);
+    tags.collect_positions(&read.steps, findings);
     let places = read.steps.iter().map(|draft| draft.at).collect();
-    let steps = read.steps.into_iter().filter_map(|draft| tags.step(draft, findings)).collect();
+    let steps = read.steps.into_iter().filter_map(|draft| tags.resolve_step(draft, findings)).collect();
     if findings.errors() == 0 {
-        tags.idle(findings);
+        tags.report_unused(findings);
     }
     let first = part.map_or(1, |part| part.first);
-    let labels = tags.list.into_iter().map(|known| known.label(first)).collect();
+    let labels = tags.list.into_iter().map(|label| label.label(first)).collect();
     Resolved { program: Program { steps, labels }, places }
 }
 
 #[derive(Default)]
 struct Tags<'p> {
     /// Labels in text order.
-    list: Vec<Known>,
+    list: Vec<LabelState>,
     /// Index by lower-case name.
     by_name: HashMap<String, usize>,
     /// Position of each tag definition; tag 0 does not exist.
@@ -47,16 +47,16 @@ struct Tags<'p> {
     part: Option<&'p Part>,
 }
 
-struct Known {
+struct LabelState {
     name: String,
     at: SourceLocation,
     step: usize,
     tag: i32,
-    given: bool,
+    has_explicit_tag: bool,
     used: bool,
 }
 
-impl Known {
+impl LabelState {
     fn label(self, first: usize) -> Label {
         Label { name: self.name, tag: self.tag, step: self.step + first, line: self.at.line }
     }
@@ -64,7 +64,7 @@ impl Known {
 
 impl Tags<'_> {
     /// Collects the labels; each must be unique.
-    fn collect(&mut self, labels: &[Defined], findings: &mut Findings) {
+    fn collect_labels(&mut self, labels: &[LabelDefinition], findings: &mut Findings) {
         for label in labels {
             match self.by_name.entry(label.name.to_lowercase()) {
                 Entry::Occupied(other) => {
@@ -74,51 +74,51 @@ impl Tags<'_> {
                 }
                 Entry::Vacant(free) => free.insert(self.list.len()),
             };
-            self.list.push(Known {
+            self.list.push(LabelState {
                 name: label.name.clone(),
                 at: label.at,
                 step: label.step,
                 tag: label.tag.unwrap_or_default(),
-                given: label.tag.is_some(),
+                has_explicit_tag: label.tag.is_some(),
                 used: false,
             });
         }
     }
 
     /// Numbers the labels without a tag: from 1, without any number in the file.
-    fn number(&mut self, read: &Read, findings: &mut Findings) {
+    fn assign_tags(&mut self, read: &ParsedLines, findings: &mut Findings) {
         let mut taken = vec![false; MOST + 1];
         let uses = read.steps.iter().flat_map(|draft| &draft.tags);
         let named = uses.filter_map(|used| if let Target::Number(tag) = used.target { Some(tag) } else { None });
-        let given = self.list.iter().filter(|known| known.given).map(|known| known.tag);
-        for tag in named.chain(given).chain(self.around().iter().flat_map(|tags| tags.iter().copied())) {
+        let explicit_tags = self.list.iter().filter(|label| label.has_explicit_tag).map(|label| label.tag);
+        for tag in named.chain(explicit_tags).chain(self.outside_tags().iter().flat_map(|tags| tags.iter().copied())) {
             if let Some(taken) = usize::try_from(tag).ok().and_then(|tag| taken.get_mut(tag)) {
                 *taken = true;
             }
         }
         let mut free = (1_i32..).zip(&taken[1..]).filter(|(_, taken)| !**taken).map(|(tag, _)| tag);
-        for known in self.list.iter_mut().filter(|known| !known.given) {
+        for label in self.list.iter_mut().filter(|label| !label.has_explicit_tag) {
             if let Some(tag) = free.next() {
-                known.tag = tag;
+                label.tag = tag;
             } else {
-                let message = format!("no free tag for label {}; all {MOST} are in use", known.name);
-                findings.error(known.at, message, None);
+                let message = format!("no free tag for label {}; all {MOST} are in use", label.name);
+                findings.error(label.at, message, None);
                 return;
             }
         }
     }
 
     /// Collects the positions of the tags; each must be unique.
-    fn places(&mut self, steps: &[Draft], findings: &mut Findings) {
+    fn collect_positions(&mut self, steps: &[Draft], findings: &mut Findings) {
         self.defined = vec![None; MOST + 1];
         for draft in steps.iter().filter(|draft| draft.instruction.op == Op::Tag) {
             let Some(used) = draft.tags.first() else { continue };
-            let Some(tag) = self.tag(&used.target) else { continue };
+            let Some(tag) = self.tag_of(&used.target) else { continue };
             // A duplicate label was reported before.
-            if self.known(&used.target).is_some_and(|known| known.at != draft.at) {
+            if self.label_of(&used.target).is_some_and(|label| label.at != draft.at) {
                 continue;
             }
-            if self.around().is_some_and(|tags| tags.contains(&tag)) {
+            if self.outside_tags().is_some_and(|tags| tags.contains(&tag)) {
                 let message = format!("tag {tag:03} already exists in a step before or after these");
                 findings.error(used.at, message, Some("a controller stops with error A2".to_owned()));
             }
@@ -134,20 +134,20 @@ impl Tags<'_> {
     }
 
     /// Inserts the tags of a step. Reports an undefined label.
-    fn step(&mut self, draft: Draft, findings: &mut Findings) -> Option<Step> {
+    fn resolve_step(&mut self, draft: Draft, findings: &mut Findings) -> Option<Step> {
         let Draft { instruction, mut values, tags, at } = draft;
         for used in tags {
-            let Some(tag) = self.tag(&used.target) else {
+            let Some(tag) = self.tag_of(&used.target) else {
                 if let Target::Label(name) = &used.target {
-                    let known = self.list.iter().map(|known| known.name.as_str());
-                    let near = if findings.is_full() { None } else { nearest(name, known) };
+                    let names = self.list.iter().map(|label| label.name.as_str());
+                    let near = if findings.is_full() { None } else { nearest(name, names) };
                     let hint = near.map(|near| format!("did you mean {near}?"));
                     findings.error(used.at, format!("unknown label '{name}'"), hint);
                 }
                 continue;
             };
             if instruction.op != Op::Tag {
-                self.jump(tag, &used.target, used.at, findings);
+                self.check_jump(tag, &used.target, used.at, findings);
             }
             if let Some(value) = values.get_mut(used.index) {
                 *value = Value::Number(tag);
@@ -157,7 +157,7 @@ impl Tags<'_> {
     }
 
     /// A jump uses a label, or needs an existing tag number.
-    fn jump(&mut self, tag: i32, target: &Target, at: SourceLocation, findings: &mut Findings) {
+    fn check_jump(&mut self, tag: i32, target: &Target, at: SourceLocation, findings: &mut Findings) {
         match target {
             Target::Label(name) => {
                 if let Some(index) = self.by_name.get(&name.to_lowercase()) {
@@ -166,8 +166,9 @@ impl Tags<'_> {
             }
             Target::Number(_) => {
                 let place = usize::try_from(tag).ok().and_then(|tag| self.defined.get(tag));
-                let is_around = self.part.is_some_and(|part| part.tags.as_ref().is_none_or(|tags| tags.contains(&tag)));
-                if !place.is_some_and(Option::is_some) && !is_around {
+                let is_outside =
+                    self.part.is_some_and(|part| part.tags.as_ref().is_none_or(|tags| tags.contains(&tag)));
+                if !place.is_some_and(Option::is_some) && !is_outside {
                     let hint = Some("a controller stops with error A1".to_owned());
                     findings.error(at, format!("the program has no tag {tag:03}"), hint);
                 }
@@ -176,27 +177,27 @@ impl Tags<'_> {
     }
 
     /// The tags outside a part, if known.
-    fn around(&self) -> Option<&BTreeSet<i32>> {
+    fn outside_tags(&self) -> Option<&BTreeSet<i32>> {
         self.part.and_then(|part| part.tags.as_ref())
     }
 
-    fn tag(&self, target: &Target) -> Option<i32> {
+    fn tag_of(&self, target: &Target) -> Option<i32> {
         match target {
             Target::Number(tag) => Some(*tag),
-            Target::Label(_) => self.known(target).map(|known| known.tag),
+            Target::Label(_) => self.label_of(target).map(|label| label.tag),
         }
     }
 
-    fn known(&self, target: &Target) -> Option<&Known> {
+    fn label_of(&self, target: &Target) -> Option<&LabelState> {
         let Target::Label(name) = target else { return None };
         self.by_name.get(&name.to_lowercase()).map(|index| &self.list[*index])
     }
 
     /// Reports unused labels. A label with an explicit number may be used from elsewhere.
-    fn idle(&self, findings: &mut Findings) {
-        for known in self.list.iter().filter(|known| !known.used && !known.given) {
-            let hint = format!("if another program uses its tag, write the tag: {}=10:", known.name);
-            findings.warning(known.at, format!("no step jumps to label {}", known.name), Some(hint));
+    fn report_unused(&self, findings: &mut Findings) {
+        for label in self.list.iter().filter(|label| !label.used && !label.has_explicit_tag) {
+            let hint = format!("if another program uses its tag, write the tag: {}=10:", label.name);
+            findings.warning(label.at, format!("no step jumps to label {}", label.name), Some(hint));
         }
     }
 }

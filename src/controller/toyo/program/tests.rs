@@ -158,8 +158,8 @@ fn errors_have_a_position_and_a_suggestion() {
 #[test]
 fn all_errors_are_reported_in_text_order() {
     let text = "JMP TAG=nowhere\nACC A=21\nMOV a X=9000 Y=0 Z=0 R=0 Q V=11 POST\nEMD\n";
-    let found = findings(text);
-    let places: Vec<_> = found.iter().map(|finding| finding.split(": ").next().unwrap().to_owned()).collect();
+    let messages = findings(text);
+    let places: Vec<_> = messages.iter().map(|finding| finding.split(": ").next().unwrap().to_owned()).collect();
     assert_eq!(
         places,
         [
@@ -170,7 +170,7 @@ fn all_errors_are_reported_in_text_order() {
             "line 3, column 30",
             "line 4, column 1"
         ],
-        "{found:?}"
+        "{messages:?}"
     );
     assert!(check(text.as_bytes(), 10).program.is_none());
     let endless = findings("EMD\n".repeat(1000));
@@ -206,17 +206,17 @@ fn suspicious_text_is_a_warning() {
 #[test]
 fn a_program_must_fit_its_task() {
     let text = "NOP\nHOME\nhere: END\n";
-    let found = |room| {
+    let messages_for = |room| {
         let checked = check(text.as_bytes(), room);
         checked.errors().map(ToString::to_string).collect::<Vec<_>>()
     };
-    assert_eq!(found(4), [] as [&str; 0]);
+    assert_eq!(messages_for(4), [] as [&str; 0]);
     assert_eq!(
-        found(3),
+        messages_for(3),
         ["line 3, column 7: error: step 4 does not fit: the task has at most 3 steps (the machine parameter E22 \
           (task-steps) sets this number)",]
     );
-    assert_eq!(found(0).len(), 1);
+    assert_eq!(messages_for(0).len(), 1);
     let much = check("NOP\n".repeat(20_000).as_bytes(), usize::MAX);
     assert_eq!(much.errors().count(), 1);
 }
@@ -355,23 +355,23 @@ fn a_part_is_checked_with_the_tags_outside_it() {
     let texts: Vec<_> = program.steps.iter().map(Step::text).collect();
     assert_eq!(texts, ["TAG TAG=003", "CAL TAG=005", "JMP TAG=003"]);
     assert_eq!((program.labels[0].tag, program.labels[0].step), (3, 100));
-    let told = |checked: Checked| checked.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
+    let messages = |checked: Checked| checked.findings.iter().map(ToString::to_string).collect::<Vec<_>>();
     assert_eq!(
-        told(part(text, Some(&[]))),
+        messages(part(text, Some(&[]))),
         ["line 1, column 15: error: the program has no tag 005 (a controller stops with error A1)"]
     );
     assert_eq!(
-        told(part("TAG TAG=5", Some(&[5]))),
+        messages(part("TAG TAG=5", Some(&[5]))),
         ["line 1, column 9: error: tag 005 already exists in a step before or after these (a controller stops with \
           error A2)"]
     );
     assert!(part("JMP TAG=7\nTAG TAG=8", None).program.is_some(), "any tag may be around");
     assert_eq!(
-        told(check_part(b"0100 NOP\n0101 NOP", 1, &around(None))),
+        messages(check_part(b"0100 NOP\n0101 NOP", 1, &around(None))),
         ["line 2, column 6: error: step 101 does not fit: the task has at most 100 steps (the machine parameter E22 \
           (task-steps) sets this number)"]
     );
-    assert!(told(part("0001 NOP", None))[0].ends_with("its first instruction becomes step 100"));
+    assert!(messages(part("0001 NOP", None))[0].ends_with("its first instruction becomes step 100"));
 }
 
 #[test]

@@ -18,8 +18,8 @@ fn sent(text: &str, is_repeatable: bool) -> LineSession {
     line
 }
 
-fn answered(block: &str) -> Step<Ended> {
-    Step::Done(Ended::Answered(block.to_owned()))
+fn answered(block: &str) -> Step<ExchangeResult> {
+    Step::Done(ExchangeResult::Answered(block.to_owned()))
 }
 
 #[test]
@@ -48,11 +48,11 @@ fn reads_are_repeated_and_orders_are_not() {
         assert_eq!(line.poll(deadline), Step::Send(b"@MTSK\r\n".to_vec()));
     }
     let deadline = waits(&mut line, ms(1));
-    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+    assert_eq!(line.poll(deadline), Step::Done(ExchangeResult::NoAnswer));
 
     let mut line = sent("@HOME", false);
     let deadline = waits(&mut line, ms(1));
-    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+    assert_eq!(line.poll(deadline), Step::Done(ExchangeResult::NoAnswer));
     assert_eq!(line.counters().sent, 1);
 }
 
@@ -62,11 +62,14 @@ fn ok_and_ng_together_are_not_an_answer() {
         let mut line = sent("@HOME", false);
         line.handle(ms(20), answers.as_bytes());
         let ended = line.poll(ms(20));
-        assert!(matches!(&ended, Step::Done(Ended::Unfitting { why, .. }) if why.contains("both")), "{ended:?}");
+        assert!(
+            matches!(&ended, Step::Done(ExchangeResult::InvalidAnswer { why, .. }) if why.contains("both")),
+            "{ended:?}"
+        );
     }
     let mut line = sent("@HOME", false);
     line.handle(ms(20), b"@OK\r\n@OK\r\n");
-    assert_eq!(line.poll(ms(20) + QUIET), answered("@OK"));
+    assert_eq!(line.poll(ms(20) + QUIET_TIME), answered("@OK"));
 }
 
 #[test]
@@ -74,10 +77,13 @@ fn an_ng_during_the_next_read_refutes_an_ok() {
     for text in ["@HOME", "@SVON", "@MINT PR=0"] {
         let mut line = sent(text, false);
         line.handle(ms(20), b"@OK\r\n");
-        assert_eq!(line.poll(ms(20)), Step::Wait(ms(20) + QUIET), "nothing is read back of {text}");
+        assert_eq!(line.poll(ms(20)), Step::Wait(ms(20) + QUIET_TIME), "nothing is read back of {text}");
         line.handle(ms(60), b"@NG\r\n");
         let ended = line.poll(ms(60));
-        assert!(matches!(&ended, Step::Done(Ended::Unfitting { why, .. }) if why.contains("both")), "{ended:?}");
+        assert!(
+            matches!(&ended, Step::Done(ExchangeResult::InvalidAnswer { why, .. }) if why.contains("both")),
+            "{ended:?}"
+        );
     }
     // After a program start the status is read without delay.
     let mut line = sent("@SPST 0001", false);
@@ -98,7 +104,7 @@ fn an_ng_before_the_next_answer_refutes_an_ok() {
         line.begin(&request("@STAS SNO=0"), true);
         assert_eq!(line.poll(ms(70)), Step::Send(b"@STAS SNO=0\r\n".to_vec()));
         line.handle(ms(80), b"@NG\r\n");
-        assert_eq!(line.poll(ms(80)), Step::Wait(ms(80) + BEHIND_A_NO), "the question may still be answered");
+        assert_eq!(line.poll(ms(80)), Step::Wait(ms(80) + LATE_ANSWER_WAIT), "the question may still be answered");
         line
     };
     let mut line = accepted();
@@ -106,11 +112,11 @@ fn an_ng_before_the_next_answer_refutes_an_ok() {
     assert_eq!(line.poll(ms(100)), answered("@STAS SNO=0 ST1=22 ST2=00"));
     let (order, ended) = line.take_refuted().unwrap();
     assert_eq!(order.text(), "@HOME");
-    assert!(matches!(ended, Ended::Unfitting { why, .. } if why.contains("both")));
-    assert!(line.take_refuted().is_none(), "it is told once");
+    assert!(matches!(ended, ExchangeResult::InvalidAnswer { why, .. } if why.contains("both")));
+    assert!(line.take_refuted().is_none(), "it is reported once");
     // Nothing follows: the read was refused, as by a busy controller.
     let mut line = accepted();
-    assert_eq!(line.poll(ms(80) + BEHIND_A_NO), answered("@NG"));
+    assert_eq!(line.poll(ms(80) + LATE_ANSWER_WAIT), answered("@NG"));
     assert!(line.take_refuted().is_none());
 }
 
@@ -121,7 +127,7 @@ fn an_order_is_open_until_a_read_is_answered() {
             let order = example(row);
             let mut line = sent(&order, false);
             line.handle(ms(20), format!("{first}\r\n").as_bytes());
-            let now = ms(20) + QUIET;
+            let now = ms(20) + QUIET_TIME;
             assert_eq!(line.poll(now), answered(first), "{order}");
             assert!(line.is_open());
             // The state holds for any time without a poll.
@@ -157,7 +163,7 @@ fn example(row: &Row) -> String {
 fn a_late_ok_is_not_the_answer_to_the_next_order() {
     let mut line = sent("@MAUT", false);
     let deadline = waits(&mut line, ms(1));
-    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+    assert_eq!(line.poll(deadline), Step::Done(ExchangeResult::NoAnswer));
     line.begin(&request("@SVON"), false);
     let settled = waits(&mut line, deadline);
     assert_eq!(settled, deadline + SECOND);
@@ -184,7 +190,7 @@ fn the_answer_of_an_abandoned_exchange_is_discarded() {
 fn an_urgent_stop_does_not_wait_for_pending_answers() {
     let mut line = sent("@SPST 0001", false);
     // The answer to the start is pending or lost: the stop is sent at once, and both answers are discarded.
-    assert_eq!(line.urgent(ms(5), &request("@STOP")), Some(b"@STOP\r\n".to_vec()));
+    assert_eq!(line.begin_urgent(ms(5), &request("@STOP")), Some(b"@STOP\r\n".to_vec()));
     line.begin(&request("@STOP"), true);
     assert!(matches!(line.poll(ms(5)), Step::Wait(_)), "the line settles first");
     line.handle(ms(30), b"@OK\r\n");
@@ -198,10 +204,10 @@ fn an_urgent_stop_does_not_wait_for_pending_answers() {
 #[test]
 fn without_a_pending_answer_urgent_sends_nothing() {
     let mut line = LineSession::new(POLICY);
-    assert_eq!(line.urgent(Now::ZERO, &request("@STOP")), None);
+    assert_eq!(line.begin_urgent(Now::ZERO, &request("@STOP")), None);
     let mut line = sent("@SPST 0001", false);
     line.handle(ms(9), b"@OK\r\n");
-    assert_eq!(line.urgent(ms(10), &request("@STOP")), None, "nothing is owed");
+    assert_eq!(line.begin_urgent(ms(10), &request("@STOP")), None, "nothing is pending_answers");
 }
 
 #[test]
@@ -238,7 +244,7 @@ fn a_garbled_answer_leaves_an_order_open() {
     let mut line = sent("@SVON", false);
     line.handle(ms(10), b"@O\x80\r\n");
     let deadline = waits(&mut line, ms(10));
-    assert!(matches!(line.poll(deadline), Step::Done(Ended::Unfitting { .. })));
+    assert!(matches!(line.poll(deadline), Step::Done(ExchangeResult::InvalidAnswer { .. })));
 }
 
 #[test]
@@ -252,7 +258,7 @@ fn an_echo_is_not_an_answer() {
     assert!(matches!(line.poll(ms(6)), Step::Send(_)));
     line.handle(ms(7), b"@TYPE AX1 RTYP=000001\r\n");
     let deadline = waits(&mut line, ms(7));
-    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+    assert_eq!(line.poll(deadline), Step::Done(ExchangeResult::NoAnswer));
 }
 
 #[test]
@@ -270,7 +276,7 @@ fn ten_thousand_characters_without_line_end_use_bounded_memory() {
     line.handle(ms(10), b"@");
     line.handle(ms(10), &[b'A'; 10_000]);
     let deadline = waits(&mut line, ms(10));
-    assert_eq!(line.poll(deadline), Step::Done(Ended::NoAnswer));
+    assert_eq!(line.poll(deadline), Step::Done(ExchangeResult::NoAnswer));
     assert!(line.counters().noise >= 10_000);
 }
 

@@ -28,7 +28,7 @@ pub(super) struct Press {
 pub(super) struct Arm {
     goal: Coordinates,
     segments: Vec<Segment>,
-    held: Vec<Held>,
+    interrupted: Vec<InterruptedMoves>,
     walls: [Option<Wall>; AXES],
     changes: u64,
     /// Owning task of each axis.
@@ -59,15 +59,15 @@ struct Wall {
 
 /// Interrupted moves of an owner.
 #[derive(Debug, Clone)]
-struct Held {
+struct InterruptedMoves {
     owner: usize,
-    rests: Vec<Rest>,
+    remaining: Vec<RemainingMove>,
     /// Their target.
-    aim: Coordinates,
+    target: Coordinates,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Rest {
+struct RemainingMove {
     path: Path,
     done: f64,
     drive: Drive,
@@ -76,7 +76,7 @@ struct Rest {
 impl Arm {
     /// Commanded position.
     pub(super) fn commanded(&self, now: Now) -> Coordinates {
-        self.segments.iter().fold(self.goal, |place, segment| plus(&place, &segment.rest(now)))
+        self.segments.iter().fold(self.goal, |place, segment| plus(&place, &segment.remaining_displacement(now)))
     }
 
     /// Actual position.
@@ -94,15 +94,15 @@ impl Arm {
     }
 
     /// Sets the position of the axes at rest.
-    pub(super) fn put(&mut self, place: Coordinates) {
+    pub(super) fn set_position(&mut self, place: Coordinates) {
         self.touch();
         self.segments.clear();
-        self.held.clear();
+        self.interrupted.clear();
         self.goal = place;
     }
 
     /// Assigns another coordinate to the current position of an axis.
-    pub(super) fn rename(&mut self, axis: usize, coordinate: f64) {
+    pub(super) fn set_coordinate(&mut self, axis: usize, coordinate: f64) {
         self.touch();
         if let Some(wall) = &mut self.walls[axis] {
             wall.at += coordinate - self.goal[axis];
@@ -153,7 +153,7 @@ impl Arm {
     /// Adds a move. It begins where the last move of the owner ends.
     pub(super) fn begin(&mut self, segment: &Segment) {
         self.touch();
-        self.goal = plus(&self.goal, &segment.way());
+        self.goal = plus(&self.goal, &segment.displacement());
         self.segments.push(*segment);
     }
 
@@ -167,53 +167,59 @@ impl Arm {
 
     /// Decelerates all moves; an axis at an obstacle stops at once. [`Arm::resume`] continues the rest.
     pub(super) fn brake(&mut self, now: Now) {
-        (0..=HOST).for_each(|owner| self.brake_one(owner, now));
+        (0..=HOST).for_each(|owner| self.brake_owner(owner, now));
     }
 
     /// Decelerates the moves of one owner.
-    pub(super) fn brake_one(&mut self, owner: usize, now: Now) {
-        let pushes = (0..AXES).any(|axis| self.belongs(axis, owner) && self.push(axis, now) > 0.0);
+    pub(super) fn brake_owner(&mut self, owner: usize, now: Now) {
+        let pushes = (0..AXES).any(|axis| self.belongs_to(axis, owner) && self.push(axis, now) > 0.0);
         self.halt(owner, now, !pushes);
     }
 
     /// Stops all moves at once. [`Arm::resume`] continues the rest.
     pub(super) fn freeze(&mut self, now: Now) {
-        (0..=HOST).for_each(|owner| self.freeze_one(owner, now));
+        (0..=HOST).for_each(|owner| self.freeze_owner(owner, now));
     }
 
     /// Stops the moves of one owner at once.
-    pub(super) fn freeze_one(&mut self, owner: usize, now: Now) {
+    pub(super) fn freeze_owner(&mut self, owner: usize, now: Now) {
         self.halt(owner, now, false);
     }
 
     /// Whether interrupted moves of the owner exist.
-    pub(super) fn is_held(&self, owner: usize) -> bool {
-        self.held.iter().any(|held| held.owner == owner)
+    pub(super) fn has_interrupted_moves(&self, owner: usize) -> bool {
+        self.interrupted.iter().any(|interrupted| interrupted.owner == owner)
     }
 
     /// Discards the interrupted moves of an owner.
-    pub(super) fn drop_held(&mut self, owner: usize) {
-        self.held.retain(|held| held.owner != owner);
+    pub(super) fn discard_interrupted(&mut self, owner: usize) {
+        self.interrupted.retain(|interrupted| interrupted.owner != owner);
     }
 
     /// Continues the interrupted moves of an owner. If the axes were moved since, they go straight to the target.
     pub(super) fn resume(&mut self, owner: usize, now: Now) {
-        let Some(index) = self.held.iter().position(|held| held.owner == owner) else { return };
-        let held = self.held.remove(index);
-        let left = |axis: usize| {
-            held.rests.iter().map(|rest| rest.path.end()[axis] - rest.path.at(rest.done)[axis]).sum::<f64>()
+        let Some(index) = self.interrupted.iter().position(|interrupted| interrupted.owner == owner) else { return };
+        let interrupted = self.interrupted.remove(index);
+        let remaining_distance = |axis: usize| {
+            interrupted
+                .remaining
+                .iter()
+                .map(|remaining_move| {
+                    remaining_move.path.end()[axis] - remaining_move.path.at(remaining_move.done)[axis]
+                })
+                .sum::<f64>()
         };
-        let fits = |axis: usize| (self.goal[axis] + left(axis) - held.aim[axis]).abs() < SAME;
-        if (0..AXES).all(|axis| !self.belongs(axis, owner) || fits(axis)) {
-            for rest in held.rests {
-                self.begin(&Segment::new(owner, rest.path, rest.done, rest.drive, now));
+        let fits = |axis: usize| (self.goal[axis] + remaining_distance(axis) - interrupted.target[axis]).abs() < SAME;
+        if (0..AXES).all(|axis| !self.belongs_to(axis, owner) || fits(axis)) {
+            for remaining_move in interrupted.remaining {
+                self.begin(&Segment::new(owner, remaining_move.path, remaining_move.done, remaining_move.drive, now));
             }
             return;
         }
-        let Some(last) = held.rests.last() else { return };
+        let Some(last) = interrupted.remaining.last() else { return };
         let mut to = self.goal;
-        for axis in (0..AXES).filter(|&axis| self.belongs(axis, owner)) {
-            to[axis] = held.aim[axis];
+        for axis in (0..AXES).filter(|&axis| self.belongs_to(axis, owner)) {
+            to[axis] = interrupted.target[axis];
         }
         let length = minus(&to, &self.goal).into_iter().map(f64::abs).fold(0.0, f64::max);
         self.begin(&Segment::new(owner, Path::line(self.goal, to, length), 0.0, last.drive, now));
@@ -222,16 +228,17 @@ impl Arm {
     /// The next time at which the result of `test` for an axis changes.
     pub(super) fn crossing(&self, axis: usize, test: impl Fn(f64) -> bool, now: Now) -> Option<Now> {
         let is = |at: Now| test(self.commanded(at)[axis]);
-        let before = is(now);
-        let mut bends: Vec<Now> = self.segments.iter().flat_map(Segment::bends).filter(|&at| at > now).collect();
-        bends.sort_unstable();
+        let result_now = is(now);
+        let mut phase_times: Vec<Now> =
+            self.segments.iter().flat_map(Segment::phase_times).filter(|&at| at > now).collect();
+        phase_times.sort_unstable();
         let mut from = now;
-        for to in bends {
+        for to in phase_times {
             let piece = to.saturating_sub(from) / PIECES;
             for part in 1..=PIECES {
                 let (begin, end) = (from + piece * (part - 1), if part == PIECES { to } else { from + piece * part });
-                if is(end) != before {
-                    return Some(narrow(begin, end, |at| is(at) != before));
+                if is(end) != result_now {
+                    return Some(narrow(begin, end, |at| is(at) != result_now));
                 }
             }
             from = to;
@@ -239,43 +246,43 @@ impl Arm {
         None
     }
 
-    fn belongs(&self, axis: usize, owner: usize) -> bool {
+    fn belongs_to(&self, axis: usize, owner: usize) -> bool {
         owner == HOST || self.owners[axis] == owner
     }
 
     /// Ends the moves of an owner, with or without a ramp. Their end becomes the goal.
     fn halt(&mut self, owner: usize, now: Now, ramp: bool) {
         self.touch();
-        let (position, aim) = (self.position(now), self.goal);
-        let mut rests = Vec::new();
+        let (position, target) = (self.position(now), self.goal);
+        let mut remaining = Vec::new();
         for segment in std::mem::take(&mut self.segments) {
             if segment.owner != owner || segment.ends() <= now {
                 self.segments.push(segment);
                 continue;
             }
             let braked = segment.braked(now);
-            let done = if ramp && !segment.is_to_come(now) {
+            let done = if ramp && !segment.is_in_future(now) {
                 self.goal = plus(&self.goal, &minus(&braked.end(), &segment.end()));
                 self.segments.push(braked);
                 braked.done(braked.ends())
             } else {
-                self.goal = plus(&self.goal, &segment.rest(now));
+                self.goal = plus(&self.goal, &segment.remaining_displacement(now));
                 segment.done(now)
             };
-            rests.push(Rest { path: segment.path, done, drive: segment.drive });
+            remaining.push(RemainingMove { path: segment.path, done, drive: segment.drive });
         }
         if !ramp {
             // An axis at an obstacle stays there.
             let commanded = self.commanded(now);
             for axis in 0..AXES {
-                if self.belongs(axis, owner) {
+                if self.belongs_to(axis, owner) {
                     self.goal[axis] += position[axis] - commanded[axis];
                 }
             }
         }
-        if !rests.is_empty() {
-            self.drop_held(owner);
-            self.held.push(Held { owner, rests, aim });
+        if !remaining.is_empty() {
+            self.discard_interrupted(owner);
+            self.interrupted.push(InterruptedMoves { owner, remaining, target });
         }
     }
 }
@@ -287,14 +294,14 @@ impl Wall {
     }
 }
 
-/// Finds the time between two at which `so` becomes true.
-fn narrow(mut before: Now, mut after: Now, so: impl Fn(Now) -> bool) -> Now {
+/// Finds the time between two at which `condition` becomes true.
+fn narrow(mut before: Now, mut after: Now, condition: impl Fn(Now) -> bool) -> Now {
     for _ in 0..HALVINGS {
         let middle = before + after.saturating_sub(before) / 2;
         if middle == before {
             break;
         }
-        if so(middle) { after = middle } else { before = middle }
+        if condition(middle) { after = middle } else { before = middle }
     }
     after
 }

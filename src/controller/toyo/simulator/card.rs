@@ -73,7 +73,7 @@ impl Card {
     }
 
     /// Aborts a transfer.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn abort(&mut self) {
         if self.is_writing() {
             self.content = None;
         }
@@ -85,7 +85,7 @@ impl World {
     /// Inserts or removes the card. Removal during a transfer is an error.
     pub(super) fn insert_card(&mut self, inserted: bool) {
         if !inserted && self.card.is_busy() {
-            self.card.forget();
+            self.card.abort();
             self.fail(code::CARD);
         }
         self.card.inserted = inserted;

@@ -10,7 +10,7 @@ use crate::toyo::table::Command;
 /// Executes a block and returns the answer, without line end.
 pub(super) fn answer(world: &mut World, block: &str) -> String {
     let reply = parse(block).and_then(|request| {
-        let reply = carry_out(world, &request)?;
+        let reply = execute(world, &request)?;
         Ok(match reply {
             Reply::Done => "@OK".to_owned(),
             Reply::Data(form, values) => {
@@ -31,20 +31,20 @@ fn parse(block: &str) -> Result<Request, String> {
     let text = |error: BlockError| error.to_string();
     let request = Request::parse(block).map_err(text)?;
     request.check().map_err(text)?;
-    let given = block.trim_end_matches(' ').replacen("@HTSK", "@CTSK", 1);
+    let received = block.trim_end_matches(' ').replacen("@HTSK", "@CTSK", 1);
     let content = request.content().map_err(text)?.map(|content| content.written());
-    if request.text() != given || content.is_some_and(|content| !given.ends_with(&content)) {
+    if request.text() != received || content.is_some_and(|content| !received.ends_with(&content)) {
         return Err(format!("wrong format: the correct format is {}", request.text()));
     }
     Ok(request)
 }
 
-fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
+fn execute(world: &mut World, request: &Request) -> Result<Reply, String> {
     let row = request.row();
     if row.needs_host && !world.switches.host {
         return Err("the host is off".to_owned());
     }
-    if !world.has(row.only_on) {
+    if !world.supports(row.only_on) {
         return Err(format!("a {} does not have this command", world.model));
     }
     let refused = |refusal: Refusal| refusal.to_owned();
@@ -56,11 +56,11 @@ fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
     match row.command {
         Command::Hson => world.host(true).map(done).map_err(refused),
         Command::Hsof => world.host(false).map(done).map_err(refused),
-        Command::Mpro => world.choose_mode(Mode::Program).map(done).map_err(refused),
-        Command::Mstp => world.choose_mode(Mode::Step).map(done).map_err(refused),
-        Command::Maut => world.choose_mode(Mode::Automatic).map(done).map_err(refused),
-        Command::Mseq => world.choose_kind(false).map(done).map_err(refused),
-        Command::Mple => world.choose_kind(true).map(done).map_err(refused),
+        Command::Mpro => world.select_run_mode(Mode::Program).map(done).map_err(refused),
+        Command::Mstp => world.select_run_mode(Mode::Step).map(done).map_err(refused),
+        Command::Maut => world.select_run_mode(Mode::Automatic).map(done).map_err(refused),
+        Command::Mseq => world.select_program_kind(false).map(done).map_err(refused),
+        Command::Mple => world.select_program_kind(true).map(done).map_err(refused),
         Command::Home => world.home().map(done).map_err(refused),
         Command::Spst => world.start_sequential(fields.index("step")).map(done).map_err(refused),
         Command::Ppst => world.start_palletizing().map(done).map_err(refused),
@@ -103,7 +103,7 @@ fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
         }
         Command::Mrss => {
             let place = ["x", "y", "z", "r"].map(|axis| f64::from(fields.number(axis)) / 100.0);
-            world.supply(fields.index("task") - 1, place, fields.number("speed")).map(done).map_err(refused)
+            world.store_coordinates(fields.index("task") - 1, place, fields.number("speed")).map(done).map_err(refused)
         }
         Command::Mcst => {
             world.counters[fields.index("counter")] = u16::try_from(fields.number("count")).unwrap_or_default();
@@ -113,7 +113,7 @@ fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
             world.idle().map_err(refused)?;
             Ok(robot_type(world, fields.index("axis") - 1, fields.number("robot_type")))
         }
-        command if row.writes_eeprom || command == Command::Sstg => super::edit::carry_out(world, request),
+        command if row.writes_eeprom || command == Command::Sstg => super::edit::execute(world, request),
         _ => super::monitor::answer(world, request),
     }
 }
@@ -123,7 +123,7 @@ fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
     if world.robot_types.contains(&robot_type) {
         world.memory.set_robot_type(axis, robot_type);
         world.switches.machine_changed = true;
-        world.memory_changed();
+        world.apply_memory_changes();
     }
     let number = i32::try_from(axis + 1).unwrap_or_default();
     Reply::Data(0, vec![Value::Number(number), Value::Number(world.memory.content.robot_types[axis])])

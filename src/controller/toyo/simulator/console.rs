@@ -100,7 +100,7 @@ impl ConsoleLine {
     }
 
     /// Executes the line and returns the output.
-    pub(super) fn carry_out(self, world: &mut World) -> Result<String, String> {
+    pub(super) fn execute(self, world: &mut World) -> Result<String, String> {
         match self {
             Self::Help => return Ok(console::help(HELP)),
             Self::State => return Ok(console::table(&state(world))),
@@ -132,7 +132,7 @@ impl ConsoleLine {
 }
 
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
-    ConsoleLine::parse(line)?.carry_out(world)
+    ConsoleLine::parse(line)?.execute(world)
 }
 
 /// Parses `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
@@ -193,18 +193,18 @@ fn host_off(world: &World) -> Result<(), String> {
 
 /// Sets an input port. Edges of the servo input switch servo power (M21).
 fn set_input(world: &mut World, port: Port, mask: Mask) -> Result<(), String> {
-    let before = world.ports.is_on(world.settings.servo_on);
+    let previous_inputs = world.ports.is_on(world.settings.servo_on);
     world.ports.set_input(port, mask);
     let servo = world.ports.is_on(world.settings.servo_on);
-    if servo == before { Ok(()) } else { world.servo(servo).map_err(str::to_owned) }
+    if servo == previous_inputs { Ok(()) } else { world.servo(servo).map_err(str::to_owned) }
 }
 
 /// Sets bits of SY01. A button that cannot act now is ignored; `why` shows the reason.
 fn set_system(world: &mut World, mask: u8, on: bool) {
-    let before = world.ports.system;
-    world.ports.system = if on { before | mask } else { before & !mask };
-    let risen = world.ports.system & !before;
-    for (_, button) in BUTTONS.iter().filter(|(bit, _)| risen & bit != 0) {
+    let previous_inputs = world.ports.system;
+    world.ports.system = if on { previous_inputs | mask } else { previous_inputs & !mask };
+    let switched_on = world.ports.system & !previous_inputs;
+    for (_, button) in BUTTONS.iter().filter(|(bit, _)| switched_on & bit != 0) {
         if let Err(why) = press(world, *button) {
             world.refusal = Some((format!("{button:?}").to_lowercase(), why));
         }
@@ -258,8 +258,8 @@ fn state(world: &World) -> Vec<(String, String)> {
             (true, true) => "stands",
             (false, _) => "is idle",
         };
-        let told = format!("{what}, step {:04} {}", task.step, step.unwrap_or_default());
-        rows.push((format!("task {}", index + 1), told));
+        let state_text = format!("{what}, step {:04} {}", task.step, step.unwrap_or_default());
+        rows.push((format!("task {}", index + 1), state_text));
     }
     for (port, bits) in world.ports.outputs().filter(|(_, bits)| *bits != 0) {
         rows.push((format!("output {}/{:02}", port.station, port.port), format!("{bits:08b}")));

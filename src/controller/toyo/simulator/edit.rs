@@ -7,7 +7,7 @@ use crate::toyo::layout::Record;
 use crate::toyo::request::Request;
 use crate::toyo::table::{Command, Group, Instruction, Pallet};
 
-pub(super) fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
+pub(super) fn execute(world: &mut World, request: &Request) -> Result<Reply, String> {
     let fields = Fields(request.record());
     let task = world.current;
     let no_room = |NoRoom| "no such memory address".to_owned();
@@ -45,7 +45,7 @@ pub(super) fn carry_out(world: &mut World, request: &Request) -> Result<Reply, S
         Command::Sstg => world.search_tag(fields.index("tag"))?,
         other => return Err(format!("{other:?} changes nothing that is stored")),
     }
-    world.memory_changed();
+    world.apply_memory_changes();
     Ok(Reply::Done)
 }
 
@@ -57,7 +57,7 @@ fn content(request: &Request) -> Result<Record, String> {
 
 fn write_parameter(world: &mut World, request: &Request) -> Result<(), String> {
     let parameter = request.parameter().ok_or("no such parameter")?;
-    if !world.has(parameter.only_on) {
+    if !world.supports(parameter.only_on) {
         return Err(format!("a {} does not have {}", world.model, parameter.id));
     }
     let record = content(request)?;
@@ -69,7 +69,7 @@ fn write_parameter(world: &mut World, request: &Request) -> Result<(), String> {
 
 pub(super) fn write_step(world: &mut World, step: usize, record: Record) -> Result<(), String> {
     let name = record.layout().text.split(' ').next().unwrap_or_default();
-    if !Instruction::named(name).is_some_and(|row| world.has(row.only_on)) {
+    if !Instruction::named(name).is_some_and(|row| world.supports(row.only_on)) {
         return Err(format!("a {} does not have {name}", world.model));
     }
     let task = world.current;

@@ -70,18 +70,18 @@ impl World {
         }
         self.arm.homing = None;
         for axis in (0..AXES).filter(|&axis| homing.axes[axis]) {
-            self.arm.rename(axis, self.settings.origin[axis]);
+            self.arm.set_coordinate(axis, self.settings.origin[axis]);
             self.arm.sensors[axis] = self.settings.origin[axis];
             self.arm.known[axis] = true;
         }
         self.synchronized |= homing.together;
-        self.note(What::Origin);
+        self.record_event(What::Origin);
     }
 
     /// Aborts a return to origin, which cannot be continued. A task that continues repeats it.
-    pub(super) fn leave_homing(&mut self, owner: usize) {
+    pub(super) fn abort_homing(&mut self, owner: usize) {
         if self.arm.homing.take_if(|homing| homing.owner == owner).is_some() {
-            self.arm.drop_held(owner);
+            self.arm.discard_interrupted(owner);
             if let Some(task) = self.tasks.get_mut(owner) {
                 task.wait = Wait::Ready(self.now);
             }
@@ -121,8 +121,8 @@ impl World {
     /// Decelerates a JOG.
     pub(super) fn end_jog(&mut self) {
         if self.jog.take().is_some() {
-            self.arm.brake_one(HOST, self.now);
-            self.arm.drop_held(HOST);
+            self.arm.brake_owner(HOST, self.now);
+            self.arm.discard_interrupted(HOST);
         }
     }
 

@@ -72,7 +72,7 @@ impl Wear {
     }
 
     /// Resets all counts.
-    pub(super) fn forget(&mut self) {
+    pub(super) fn reset(&mut self) {
         *self = Self::new(self.limit);
     }
 
@@ -354,10 +354,10 @@ impl Memory {
 
     pub(super) fn set_step(&mut self, task: usize, step: usize, record: Record) -> Result<(), NoRoom> {
         let new = Step::new(record).ok_or(NoRoom)?;
-        self.put(task, step, new)
+        self.store_step(task, step, new)
     }
 
-    fn put(&mut self, task: usize, step: usize, new: Step) -> Result<(), NoRoom> {
+    fn store_step(&mut self, task: usize, step: usize, new: Step) -> Result<(), NoRoom> {
         let place = step.checked_sub(1).and_then(|place| self.content.steps[task].get_mut(place)).ok_or(NoRoom)?;
         if self.wear.write(Cell::Step { task: task + 1, step }) {
             *place = new;
@@ -403,7 +403,7 @@ impl Memory {
     fn replace(&mut self, task: usize, top: usize, steps: Vec<Step>) -> Result<(), NoRoom> {
         for (number, step) in (top..).zip(steps) {
             if self.step(task, number) != Some(&step.record) {
-                self.put(task, number, step)?;
+                self.store_step(task, number, step)?;
             }
         }
         Ok(())

@@ -197,7 +197,7 @@ impl Simulator {
             self.incoming = IncomingBlock::default();
             self.answers.clear();
         }
-        let answer = line.carry_out(&mut self.world);
+        let answer = line.execute(&mut self.world);
         self.advance(now);
         answer
     }

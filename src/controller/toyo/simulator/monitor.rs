@@ -97,7 +97,7 @@ fn system(world: &World) -> Vec<Value> {
 
 fn parameter(world: &World, request: &Request) -> Result<Record, String> {
     let parameter = request.parameter().ok_or("no such parameter")?;
-    if !world.has(parameter.only_on) {
+    if !world.supports(parameter.only_on) {
         return Err(format!("a {} does not have {}", world.model, parameter.id));
     }
     let key = request.content().map_err(|error| error.to_string())?.ok_or("it contains no parameter")?;

@@ -177,7 +177,7 @@ impl Path {
             Self::Line { .. } => 0.0,
             Self::Arc(arc) => {
                 let along = (arc.to[axis] - arc.from[axis]).abs() / (arc.radius * arc.angle);
-                if axis < SPACE { arc.reach(axis) / arc.radius } else { along }
+                if axis < SPACE { arc.extent(axis) / arc.radius } else { along }
             }
         }
     }
@@ -187,7 +187,12 @@ impl Arc {
     /// An arc through `via` to `to`; `None` if the points lie on a line.
     ///
     /// `round` selects the axes of the circle: the first two or three in it.
-    pub(super) fn through(from: Coordinates, via: Coordinates, to: Coordinates, round: &[usize]) -> Option<Self> {
+    pub(super) fn through_points(
+        from: Coordinates,
+        via: Coordinates,
+        to: Coordinates,
+        round: &[usize],
+    ) -> Option<Self> {
         let flat =
             |place: Coordinates| std::array::from_fn(|axis| if round.contains(&axis) { place[axis] } else { 0.0 });
         let (p0, p1, p2): (Coordinates, Coordinates, Coordinates) = (flat(from), flat(via), flat(to));
@@ -200,12 +205,12 @@ impl Arc {
         let (aa, bb) = (dot(&a, &a), dot(&b, &b));
         let center_offset = cross(&std::array::from_fn(|axis| aa * b[axis] - bb * a[axis]), &normal);
         let center: Coordinates = std::array::from_fn(|axis| p2[axis] + center_offset[axis] / (2.0 * area));
-        let spoke = minus(&p0, &center);
-        let radius = dot(&spoke, &spoke).sqrt();
+        let start_vector = minus(&p0, &center);
+        let radius = dot(&start_vector, &start_vector).sqrt();
         // The plane is oriented so that the way through the middle point turns in the positive sense.
         let axis = cross(&minus(&p1, &p0), &minus(&p2, &p1));
         let size = dot(&axis, &axis).sqrt();
-        let first = spoke.map(|part| part / radius);
+        let first = start_vector.map(|part| part / radius);
         let second = cross(&axis.map(|part| part / size), &first);
         let last = minus(&p2, &center);
         let angle = dot(&last, &second).atan2(dot(&last, &first)).rem_euclid(TAU);
@@ -220,7 +225,7 @@ impl Arc {
         let (sin, cos) = (self.angle * share).sin_cos();
         let along = blend(&self.from, &self.to, share);
         std::array::from_fn(|axis| {
-            if self.reach(axis) > 0.0 && share < 1.0 {
+            if self.extent(axis) > 0.0 && share < 1.0 {
                 self.center[axis] + self.radius * (cos * self.basis[0][axis] + sin * self.basis[1][axis])
             } else {
                 along[axis]
@@ -229,19 +234,19 @@ impl Arc {
     }
 
     /// Maximum distance of an axis from the center.
-    fn reach(&self, axis: usize) -> f64 {
+    fn extent(&self, axis: usize) -> f64 {
         self.radius * self.basis[0][axis].hypot(self.basis[1][axis])
     }
 
     fn range(&self, axis: usize) -> (f64, f64) {
         let (mut least, mut most) = (self.from[axis].min(self.to[axis]), self.from[axis].max(self.to[axis]));
         let top = self.basis[1][axis].atan2(self.basis[0][axis]).rem_euclid(TAU);
-        if self.reach(axis) > 0.0 {
+        if self.extent(axis) > 0.0 {
             if top < self.angle {
-                most = most.max(self.center[axis] + self.reach(axis));
+                most = most.max(self.center[axis] + self.extent(axis));
             }
             if (top + TAU / 2.0).rem_euclid(TAU) < self.angle {
-                least = least.min(self.center[axis] - self.reach(axis));
+                least = least.min(self.center[axis] - self.extent(axis));
             }
         }
         (least, most)
@@ -260,13 +265,13 @@ impl Segment {
     }
 
     /// Time during the deceleration at which a share of that ramp is left.
-    pub(super) fn hands_over(&self, share: f64) -> Now {
+    pub(super) fn handover_time(&self, share: f64) -> Now {
         let ramp = self.profile.seconds() - self.profile.steady();
         self.began.saturating_add(duration(self.profile.seconds() - share * ramp))
     }
 
     /// Remaining way.
-    pub(super) fn rest(&self, now: Now) -> Coordinates {
+    pub(super) fn remaining_displacement(&self, now: Now) -> Coordinates {
         if now >= self.ends() {
             return [0.0; AXES];
         }
@@ -278,7 +283,7 @@ impl Segment {
     }
 
     /// Way from start to end.
-    pub(super) fn way(&self) -> Coordinates {
+    pub(super) fn displacement(&self) -> Coordinates {
         minus(&self.end, &self.path.at(self.skip))
     }
 
@@ -299,12 +304,12 @@ impl Segment {
     }
 
     /// Times at which the acceleration changes.
-    pub(super) fn bends(&self) -> [Now; 4] {
+    pub(super) fn phase_times(&self) -> [Now; 4] {
         let [up, run, down] = self.profile.phases.map(|phase| phase.seconds);
         [0.0, up, up + run, up + run + down].map(|seconds| self.began.saturating_add(duration(seconds)))
     }
 
-    pub(super) fn is_to_come(&self, now: Now) -> bool {
+    pub(super) fn is_in_future(&self, now: Now) -> bool {
         now < self.began
     }
 
@@ -376,7 +381,7 @@ mod tests {
     #[test]
     fn a_quarter_of_a_circle_keeps_its_radius() {
         let half = 50.0 * 2f64.sqrt();
-        let arc = Arc::through([100.0, 0.0, 5.0, 0.0], [half, half, 0.0, 0.0], [0.0, 100.0, 15.0, 0.0], &[0, 1]);
+        let arc = Arc::through_points([100.0, 0.0, 5.0, 0.0], [half, half, 0.0, 0.0], [0.0, 100.0, 15.0, 0.0], &[0, 1]);
         let arc = arc.unwrap();
         assert!(near(arc.radius(), 100.0));
         let path = Path::Arc(arc);
@@ -391,7 +396,8 @@ mod tests {
     #[test]
     fn the_range_of_an_arc_exceeds_its_points() {
         // Three quarters of a circle around the origin, clockwise.
-        let arc = Arc::through([0.0, 10.0, 0.0, 0.0], [10.0, 0.0, 0.0, 0.0], [-10.0, 0.0, 0.0, 0.0], &[0, 1]).unwrap();
+        let arc =
+            Arc::through_points([0.0, 10.0, 0.0, 0.0], [10.0, 0.0, 0.0, 0.0], [-10.0, 0.0, 0.0, 0.0], &[0, 1]).unwrap();
         let path = Path::Arc(arc);
         assert!(near(path.length(), 10.0 * TAU * 0.75));
         assert!(near(path.range(1).0, -10.0));
@@ -400,7 +406,7 @@ mod tests {
 
     #[test]
     fn points_on_a_line_give_no_arc() {
-        assert_eq!(Arc::through([0.0; 4], [1.0, 1.0, 0.0, 0.0], [2.0, 2.0, 0.0, 0.0], &[0, 1]), None);
+        assert_eq!(Arc::through_points([0.0; 4], [1.0, 1.0, 0.0, 0.0], [2.0, 2.0, 0.0, 0.0], &[0, 1]), None);
     }
 
     #[test]
@@ -412,8 +418,8 @@ mod tests {
         let braked = segment.braked(now);
         assert!(near(braked.end()[0], 80.0));
         assert_eq!(braked.ends(), Duration::from_millis(2100));
-        assert!(near(braked.rest(now)[0], -20.0));
-        assert!(near(segment.rest(now)[0], -140.0));
-        assert_eq!(segment.hands_over(1.0), segment.bends()[2]);
+        assert!(near(braked.remaining_displacement(now)[0], -20.0));
+        assert!(near(segment.remaining_displacement(now)[0], -140.0));
+        assert_eq!(segment.handover_time(1.0), segment.phase_times()[2]);
     }
 }

@@ -14,7 +14,7 @@ const MOST_RADIUS: f64 = 8000.0;
 
 impl World {
     /// Begins a move; the task continues with step `next` after it.
-    pub(super) fn move_then(&mut self, index: usize, order: Move, next: usize) -> Result<Flow, u8> {
+    pub(super) fn begin_move(&mut self, index: usize, order: Move, next: usize) -> Result<Flow, u8> {
         let order = match (order.to, self.tasks[index].supplied) {
             (Target::Host, None) => return Ok(Flow::Wait(Wait::Host(order), next)),
             (Target::Host, Some((place, row))) => {
@@ -29,42 +29,42 @@ impl World {
             return Ok(Flow::To(next));
         }
         let axes = self.machine.tasks[index].axes.clone();
-        self.may_move(&axes)?;
+        self.check_motion_allowed(&axes)?;
         let from = self.arm.goal();
-        let (base, to) = self.aim(index, &order, &from)?;
+        let (base, to) = self.resolve_target(index, &order, &from)?;
         self.within(&axes, &self.line(index, from, base, order.line), code::target)?;
         let path = self.line(index, from, to, order.line);
         self.within(&axes, &path, code::beyond)?;
-        Ok(self.drive_then(index, path, &order, next))
+        Ok(self.begin_path(index, path, &order, next))
     }
 
     /// Begins an arc through the position of this step to that of the next.
-    pub(super) fn arc_then(&mut self, index: usize, step: usize, first: Move) -> Result<Flow, u8> {
+    pub(super) fn begin_arc(&mut self, index: usize, step: usize, first: Move) -> Result<Flow, u8> {
         let Some(super::action::Action::Arc(second)) = self.memory.action(index, step + 1) else {
             return Err(code::ARC_DATA);
         };
         let axes = self.machine.tasks[index].clone();
-        self.may_move(&axes.axes)?;
+        self.check_motion_allowed(&axes.axes)?;
         if axes.space < 2 {
             return Err(code::ARC_DATA);
         }
         let from = self.arm.goal();
-        let (via_base, via) = self.aim(index, &first, &from)?;
-        let (to_base, to) = self.aim(index, &second, &via)?;
+        let (via_base, via) = self.resolve_target(index, &first, &from)?;
+        let (to_base, to) = self.resolve_target(index, &second, &via)?;
         let round = &axes.axes[..axes.space];
         let arc = |via: Coordinates, to: Coordinates| {
-            Arc::through(from, via, to, round).filter(|arc| arc.radius() <= MOST_RADIUS).map(Path::Arc)
+            Arc::through_points(from, via, to, round).filter(|arc| arc.radius() <= MOST_RADIUS).map(Path::Arc)
         };
         if let Some(base) = arc(via_base, to_base) {
             self.within(&axes.axes, &base, code::target)?;
         }
         let path = arc(via, to).ok_or(code::ARC_RADIUS)?;
         self.within(&axes.axes, &path, code::beyond)?;
-        Ok(self.drive_then(index, path, &Move { pass: second.pass, ..first }, step + 2))
+        Ok(self.begin_path(index, path, &Move { pass: second.pass, ..first }, step + 2))
     }
 
     /// Whether axes can move in a program.
-    pub(super) fn may_move(&self, axes: &[usize]) -> Result<(), u8> {
+    pub(super) fn check_motion_allowed(&self, axes: &[usize]) -> Result<(), u8> {
         if axes.is_empty() {
             return Err(code::COMMAND);
         }
@@ -97,7 +97,7 @@ impl World {
     }
 
     /// Targets of a move without and with the offset. Axes of other tasks stay.
-    fn aim(&self, index: usize, order: &Move, from: &Coordinates) -> Result<(Coordinates, Coordinates), u8> {
+    fn resolve_target(&self, index: usize, order: &Move, from: &Coordinates) -> Result<(Coordinates, Coordinates), u8> {
         let axes = &self.machine.tasks[index].axes;
         if !axes.iter().all(|&axis| self.arm.known[axis]) {
             return Err(code::ORIGIN_INCOMPLETE);
@@ -133,7 +133,7 @@ impl World {
     }
 
     /// Starts the motion along a path.
-    fn drive_then(&mut self, index: usize, path: Path, order: &Move, next: usize) -> Flow {
+    fn begin_path(&mut self, index: usize, path: Path, order: &Move, next: usize) -> Flow {
         let task = &mut self.tasks[index];
         task.from = Some(path.at(0.0));
         if path.length() < NEAR {
@@ -145,7 +145,7 @@ impl World {
         let share = task.pass;
         let drive = self.drive(index, order.speed, &path);
         let segment = Segment::new(index, path, 0.0, drive, self.now);
-        let wait = if order.pass { Wait::Pass(segment.hands_over(share)) } else { Wait::Motion };
+        let wait = if order.pass { Wait::Pass(segment.handover_time(share)) } else { Wait::Motion };
         self.arm.begin(&segment);
         Flow::Wait(wait, next)
     }

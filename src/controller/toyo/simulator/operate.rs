@@ -21,7 +21,7 @@ impl World {
         if self.card.is_busy() { Err("the memory card is in use") } else { Ok(()) }
     }
 
-    fn startable(&self) -> Result<(), Refusal> {
+    fn check_startable(&self) -> Result<(), Refusal> {
         self.idle()?;
         self.unchanged()?;
         if self.errors.current().is_some() { Err("an error is active: cancel it first") } else { Ok(()) }
@@ -37,7 +37,7 @@ impl World {
     }
 
     fn of_kind(&self, kind: Kind, what: Refusal) -> Result<(), Refusal> {
-        self.startable()?;
+        self.check_startable()?;
         if self.switches.mode == Mode::Program {
             return Err("programs do not run in program mode");
         }
@@ -58,11 +58,11 @@ impl World {
             self.tasks[0].start(step, self.now);
         } else if self.stopped {
             self.stopped = false;
-            self.go_on();
+            self.continue_programs();
         } else {
             let step = self.tasks[0].step;
             // An interrupted move is completed first.
-            if self.arm.is_held(0) {
+            if self.arm.has_interrupted_moves(0) {
                 self.tasks[0].running = true;
                 self.resume_task(0);
             } else {
@@ -77,7 +77,7 @@ impl World {
     pub(super) fn start_palletizing(&mut self) -> Result<(), Refusal> {
         self.of_kind(Kind::Palletizing, "the controller is not in palletizing mode")?;
         self.powered_axes()?;
-        if self.goes_on() {
+        if self.take_stopped() {
             return Ok(());
         }
         match self.chosen_pallet() {
@@ -94,7 +94,7 @@ impl World {
     pub(super) fn start_easy(&mut self) -> Result<(), Refusal> {
         self.of_kind(Kind::Easy, "easy mode is not selected (M10)")?;
         self.powered_axes()?;
-        if self.goes_on() {
+        if self.take_stopped() {
             return Ok(());
         }
         match Routine::easy(self.easy, self.memory.content.easy(self.easy)) {
@@ -112,12 +112,12 @@ impl World {
         Ok(())
     }
 
-    fn goes_on(&mut self) -> bool {
-        let stood = std::mem::take(&mut self.stopped);
-        if stood {
-            self.go_on();
+    fn take_stopped(&mut self) -> bool {
+        let was_stopped = std::mem::take(&mut self.stopped);
+        if was_stopped {
+            self.continue_programs();
         }
-        stood
+        was_stopped
     }
 
     fn start_routine(&mut self, task: usize, routine: Routine) {
@@ -130,7 +130,7 @@ impl World {
 
     /// Starts the return to origin of all axes, and resets programs.
     pub(super) fn home(&mut self) -> Result<(), Refusal> {
-        self.startable()?;
+        self.check_startable()?;
         self.powered_axes()?;
         self.reset_program();
         self.jog_ready = false;
@@ -141,7 +141,7 @@ impl World {
 
     /// Searches the origin of synchronized axes.
     pub(super) fn search_origin(&mut self, drive: usize) -> Result<(), Refusal> {
-        self.startable()?;
+        self.check_startable()?;
         self.powered_axes()?;
         if !self.machine.driver.contains(&Some(drive)) {
             return Err("that axis has no driven axis (E26)");
@@ -170,7 +170,7 @@ impl World {
         if self.jog.is_some_and(|jog| jog.axis == axis && jog.word == *word && !word.ends_with('C')) {
             return Ok(());
         }
-        self.startable()?;
+        self.check_startable()?;
         if !self.jog_ready {
             return Err("JOG was not reset (RS)");
         }
@@ -248,7 +248,7 @@ impl World {
     }
 
     /// Selects sequential or palletizing mode, unless M10 selects a different mode.
-    pub(super) fn choose_kind(&mut self, palletizing: bool) -> Result<(), Refusal> {
+    pub(super) fn select_program_kind(&mut self, palletizing: bool) -> Result<(), Refusal> {
         self.idle()?;
         if self.settings.special != Special::None {
             return Err("M10 selects easy or external point mode");
@@ -260,14 +260,14 @@ impl World {
         Ok(())
     }
 
-    pub(super) fn choose_mode(&mut self, mode: Mode) -> Result<(), Refusal> {
+    pub(super) fn select_run_mode(&mut self, mode: Mode) -> Result<(), Refusal> {
         self.idle()?;
         self.switches.mode = mode;
         Ok(())
     }
 
     /// Stores coordinates for a move of a task; only one set can wait.
-    pub(super) fn supply(&mut self, task: usize, place: [f64; 4], speed: i32) -> Result<(), Refusal> {
+    pub(super) fn store_coordinates(&mut self, task: usize, place: [f64; 4], speed: i32) -> Result<(), Refusal> {
         let slot = &mut self.tasks[task].supplied;
         if slot.is_some() {
             return Err("earlier coordinates are still waiting");
@@ -281,22 +281,22 @@ impl World {
         self.idle()?;
         let task = self.current;
         let step = self.memory.search(task, tag).ok_or("no such tag")?;
-        self.arm.drop_held(task);
+        self.arm.discard_interrupted(task);
         let now = self.now;
-        let found = &mut self.tasks[task];
-        found.step = step;
-        found.stack.clear();
-        found.wait = super::task::Wait::Ready(now);
+        let task_state = &mut self.tasks[task];
+        task_state.step = step;
+        task_state.stack.clear();
+        task_state.wait = super::task::Wait::Ready(now);
         Ok(())
     }
 
     /// Applies changes of the memory: settings, and programs that no longer fit.
-    pub(super) fn memory_changed(&mut self) {
+    pub(super) fn apply_memory_changes(&mut self) {
         self.settings = super::settings::Settings::from_content(&self.memory.content);
         for index in 0..TASKS {
             debug_assert!(self.memory.size(index) <= MOST_STEPS);
             if self.tasks[index].step > self.memory.size(index).max(1) {
-                self.arm.drop_held(index);
+                self.arm.discard_interrupted(index);
                 self.tasks[index].reset();
             }
         }

@@ -112,7 +112,7 @@ impl World {
         match order {
             Ok(RoutineStep::Done) => self.end(index),
             Ok(RoutineStep::Move(order)) => {
-                let flow = self.move_then(index, order, step);
+                let flow = self.begin_move(index, order, step);
                 self.apply(index, flow);
             }
             Ok(RoutineStep::Call(tag)) => {

@@ -42,19 +42,19 @@ impl World {
                 continue;
             }
             match task.wait {
-                Wait::Test(test) => match self.test(test) {
+                Wait::Test(test) => match self.is_met(test) {
                     Ok(true) => self.end_wait(index),
                     Ok(false) => {}
                     Err(code) => self.fail(code),
                 },
                 Wait::Host(order) if task.supplied.is_some() => {
-                    let flow = self.move_then(index, order, task.next);
+                    let flow = self.begin_move(index, order, task.next);
                     self.apply(index, flow);
                 }
                 Wait::Motion if task.escape && self.ports.is_on(self.settings.escape) => {
                     self.tasks[index].escape = false;
-                    self.arm.brake_one(index, self.now);
-                    self.arm.drop_held(index);
+                    self.arm.brake_owner(index, self.now);
+                    self.arm.discard_interrupted(index);
                 }
                 _ => {}
             }
@@ -99,7 +99,7 @@ impl World {
         }
         let step = self.tasks[index].step;
         let Some(action) = self.memory.action(index, step) else { return self.fail(code::STEP) };
-        self.note(What::Step { task: index + 1, step });
+        self.record_event(What::Step { task: index + 1, step });
         if index == 0 {
             self.allowance = self.allowance.map(|left| left.saturating_sub(1));
         }
@@ -148,7 +148,7 @@ impl World {
         if again {
             task.start(1, at);
         }
-        self.note(What::Ended(index + 1));
+        self.record_event(What::Ended(index + 1));
     }
 
     fn perform(&mut self, index: usize, step: usize, action: Action) -> Result<Flow, u8> {
@@ -161,26 +161,26 @@ impl World {
             Action::Return => return self.return_from(index),
             Action::Select => return self.select(index, step),
             Action::Jump { tag, when } => {
-                return if self.test(when)? { self.find(index, tag).map(Flow::To) } else { Ok(Flow::Next) };
+                return if self.is_met(when)? { self.find(index, tag).map(Flow::To) } else { Ok(Flow::Next) };
             }
             Action::Call { tag, when } => {
-                return if self.test(when)? { self.call(index, step, tag) } else { Ok(Flow::Next) };
+                return if self.is_met(when)? { self.call(index, step, tag) } else { Ok(Flow::Next) };
             }
             Action::Branch { counter, offset } => {
                 return self.find(index, usize::from(self.counters[counter]) + offset).map(Flow::To);
             }
             Action::Wait(test) => {
-                return Ok(if self.test(test)? { Flow::Next } else { Flow::Wait(Wait::Test(test), step + 1) });
+                return Ok(if self.is_met(test)? { Flow::Next } else { Flow::Wait(Wait::Test(test), step + 1) });
             }
             Action::Delay(time) => return Ok(Flow::Wait(Wait::Until(self.now.saturating_add(time)), step + 1)),
             Action::Home => {
                 let axes = self.machine.tasks[index].axes.clone();
-                self.may_move(&axes)?;
+                self.check_motion_allowed(&axes)?;
                 self.begin_homing(index, &axes);
                 return Ok(Flow::Wait(Wait::Motion, step + 1));
             }
-            Action::Move(order) => return self.move_then(index, order, step + 1),
-            Action::Arc(order) => return self.arc_then(index, step, order),
+            Action::Move(order) => return self.begin_move(index, order, step + 1),
+            Action::Arc(order) => return self.begin_arc(index, step, order),
             Action::Loop { group, more, done } => {
                 let tag = if self.next_of_group(group) { more } else { done };
                 return self.find(index, tag).map(Flow::To);
@@ -190,7 +190,7 @@ impl World {
             Action::Count { counter, change } => self.count(counter, change)?,
             Action::ClearCounters => self.counters.fill(0),
             Action::StartTimer { timer, tenths } => self.timers[timer] = Some((self.now, tenths)),
-            Action::Choose(choice) => self.choose(index, choice),
+            Action::Choose(choice) => self.select_setting(index, choice),
             Action::Output { port, mask, time } => self.output(port, mask, time)?,
             Action::OutputCounter { port, counter } => {
                 let bits = u8::try_from(self.counters[counter]).map_err(|_| code::CALCULATION)?;
@@ -228,7 +228,7 @@ impl World {
     }
 
     /// Evaluates a condition; an error if its port does not exist.
-    pub(super) fn test(&self, test: Test) -> Result<bool, u8> {
+    pub(super) fn is_met(&self, test: Test) -> Result<bool, u8> {
         let matches = |bits: u8, mask: Mask, any: bool| {
             // Without relevant bits the condition is true.
             if any && mask.care != 0 { !(bits ^ mask.bits) & mask.care != 0 } else { mask.matches(bits) }
@@ -298,7 +298,7 @@ impl World {
         Ok(())
     }
 
-    fn choose(&mut self, index: usize, choice: Choice) {
+    fn select_setting(&mut self, index: usize, choice: Choice) {
         let task = &mut self.tasks[index];
         match choice {
             Choice::Speed(row) => task.speed = row,
@@ -323,7 +323,7 @@ impl World {
 
     fn switch_servo(&mut self, index: usize, axis: Option<usize>, on: bool) -> Result<(), u8> {
         let own = &self.machine.tasks[index].axes;
-        let chosen = match axis {
+        let selected_axes = match axis {
             Some(axis) if own.contains(&axis) => vec![axis],
             None if !own.is_empty() => own.clone(),
             _ => return Err(code::COMMAND),
@@ -332,10 +332,10 @@ impl World {
             return Err(code::UNEXECUTABLE);
         }
         if !on {
-            self.arm.freeze_one(index, self.now);
-            self.arm.drop_held(index);
+            self.arm.freeze_owner(index, self.now);
+            self.arm.discard_interrupted(index);
         }
-        for axis in chosen {
+        for axis in selected_axes {
             self.switches.servo[axis] = on;
         }
         Ok(())
@@ -353,8 +353,8 @@ impl World {
             TaskOrder::Stop => {
                 self.tasks[other].stopped = self.tasks[other].running;
                 if other != index {
-                    self.arm.brake_one(other, self.now);
-                    self.leave_homing(other);
+                    self.arm.brake_owner(other, self.now);
+                    self.abort_homing(other);
                 }
             }
             TaskOrder::GoOn => {
@@ -363,11 +363,11 @@ impl World {
                 }
             }
             TaskOrder::Cancel => {
-                self.arm.brake_one(other, self.now);
-                self.arm.drop_held(other);
-                self.leave_homing(other);
+                self.arm.brake_owner(other, self.now);
+                self.arm.discard_interrupted(other);
+                self.abort_homing(other);
                 if self.tasks[other].running && other != index {
-                    self.note(What::Ended(other + 1));
+                    self.record_event(What::Ended(other + 1));
                 }
                 self.tasks[other].reset();
             }

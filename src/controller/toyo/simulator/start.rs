@@ -116,7 +116,7 @@ impl Start {
 
     /// Treats the content as written before power on.
     fn stored(mut self) -> Self {
-        self.world.memory.wear.forget();
+        self.world.memory.wear.reset();
         self.world.load();
         self.world.settle();
         self
@@ -285,7 +285,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     }
     let mut arm = Arm::default();
     // Without a known origin an axis counts from its position.
-    arm.put(if entries.origin { position } else { [0.0; AXES] });
+    arm.set_position(if entries.origin { position } else { [0.0; AXES] });
     arm.sensors = if entries.origin { [0.0; AXES] } else { position.map(|place| -place) };
     arm.known = [entries.origin; AXES];
     let content = Content::new(axes, types[0]);
@@ -414,7 +414,7 @@ fn write(world: &mut World, command: &str) -> Result<(), String> {
     if !matches!(request.command(), Command::Wpar | Command::Wstx | Command::Wplt | Command::Wesy) {
         return Err("only WPAR, WSTX, WPLT and WESY are possible".to_owned());
     }
-    edit::carry_out(world, &request).map(|_| ())
+    edit::execute(world, &request).map(|_| ())
 }
 
 fn errors(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {

@@ -19,7 +19,7 @@ const OVERLOAD_AFTER: Duration = Duration::from_secs(1);
 
 impl World {
     /// Records an event, if the trace is on.
-    pub(super) fn note(&mut self, what: What) {
+    pub(super) fn record_event(&mut self, what: What) {
         if self.trace.is_watched() {
             self.trace.record(self.now, self.arm.position(self.now), what);
         }
@@ -70,7 +70,7 @@ impl World {
         }
         for axis in 0..AXES {
             if self.presses[axis].is_some_and(|press| press.due.is_some_and(|due| due <= self.now)) {
-                self.judge(axis);
+                self.judge_contact(axis);
             }
         }
     }
@@ -105,7 +105,7 @@ impl World {
         }
     }
 
-    fn judge(&mut self, axis: usize) {
+    fn judge_contact(&mut self, axis: usize) {
         if self.arm.push(axis, self.now) <= 0.0 {
             self.presses[axis] = None;
             return;
@@ -118,8 +118,8 @@ impl World {
         };
         self.presses[axis] = Some(Press { due: None, locked: true });
         if torque.torque_end || torque.lock_end {
-            self.arm.freeze_one(owner, self.now);
-            self.arm.drop_held(owner);
+            self.arm.freeze_owner(owner, self.now);
+            self.arm.discard_interrupted(owner);
             self.end_wait(owner);
         }
     }

@@ -126,7 +126,7 @@ impl World {
     pub(super) fn advance(&mut self, to: Now) {
         while let Some(at) = self.next().filter(|&at| at <= to) {
             self.now = self.now.max(at);
-            self.happen();
+            self.handle_due_events();
         }
         self.now = self.now.max(to);
     }
@@ -143,11 +143,11 @@ impl World {
     }
 
     /// Handles the events that are due.
-    fn happen(&mut self) {
+    fn handle_due_events(&mut self) {
         while let Some(line) = self.events.take(self.now) {
             // An impossible line is ignored; `why` and the trace report it.
             if let Err(why) = console::execute(self, &line) {
-                self.note(What::Console(format!("{line}: {why}")));
+                self.record_event(What::Console(format!("{line}: {why}")));
                 self.refusal = Some((line, why));
             }
         }
@@ -172,17 +172,17 @@ impl World {
     pub(super) fn power_cycle(&mut self) {
         self.arm.freeze(self.now);
         self.errors.power_cut();
-        self.card.forget();
+        self.card.abort();
         if !self.machine.absolute {
             // Incremental encoders count from the position at power on.
             let place = self.arm.position(self.now);
             self.arm.known = [false; AXES];
             for (axis, counted) in place.into_iter().enumerate() {
                 self.arm.sensors[axis] -= counted;
-                self.arm.rename(axis, 0.0);
+                self.arm.set_coordinate(axis, 0.0);
             }
         }
-        self.arm.put(self.arm.position(self.now));
+        self.arm.set_position(self.arm.position(self.now));
         self.ports.clear_outputs();
         self.ports.internal.fill(0);
         self.counters.fill(0);
@@ -230,7 +230,7 @@ impl World {
     /// Stops everything after an error.
     pub(super) fn fail(&mut self, code: u8) {
         self.errors.raise(code, self.powered());
-        self.note(What::Error(code));
+        self.record_event(What::Error(code));
         if code::takes_power(code) {
             self.arm.freeze(self.now);
             self.switches.servo.fill(false);
@@ -247,7 +247,7 @@ impl World {
                 task.running = false;
             } else {
                 task.reset();
-                self.arm.drop_held(index);
+                self.arm.discard_interrupted(index);
             }
         }
         self.stopped = false;
@@ -261,12 +261,12 @@ impl World {
         self.end_host_motion();
         if self.is_running() && !self.stopped {
             self.stopped = true;
-            self.note(What::Stopped);
+            self.record_event(What::Stopped);
         }
     }
 
     /// Continues stopped programs.
-    pub(super) fn go_on(&mut self) {
+    pub(super) fn continue_programs(&mut self) {
         for index in 0..TASKS {
             if self.tasks[index].running && !self.tasks[index].stopped {
                 self.resume_task(index);
@@ -285,17 +285,17 @@ impl World {
 
     /// Ends motion without a program: JOG and return to origin.
     pub(super) fn end_host_motion(&mut self) {
-        self.arm.drop_held(HOST);
+        self.arm.discard_interrupted(HOST);
         self.jog = None;
         if let Some(homing) = self.arm.homing {
-            self.leave_homing(homing.owner);
+            self.abort_homing(homing.owner);
         }
     }
 
     /// Discards all programs; the next start is at the first step.
     pub(super) fn reset_program(&mut self) {
         self.tasks.iter_mut().for_each(Task::reset);
-        (0..TASKS).for_each(|task| self.arm.drop_held(task));
+        (0..TASKS).for_each(|task| self.arm.discard_interrupted(task));
         self.stopped = false;
         self.pausing = false;
         self.allowance = None;
@@ -332,7 +332,7 @@ impl World {
     }
 
     /// Whether this controller supports a feature of some models.
-    pub(super) fn has(&self, only_on: Models) -> bool {
+    pub(super) fn supports(&self, only_on: Models) -> bool {
         only_on.is_empty()
             || only_on.contains(&self.model.as_str())
             || (only_on == FROM_3_36 && self.version >= VERSION_3_36)
@@ -440,7 +440,7 @@ impl World {
         } else if !on && self.pausing {
             self.pausing = false;
             if !self.stopped {
-                self.go_on();
+                self.continue_programs();
             }
         }
     }

@@ -67,9 +67,9 @@ impl Parameter {
     pub fn from_text(text: &str) -> Option<&'static Self> {
         PARAMETERS.iter().find(|row| {
             let id = row.key.text.split(" {}").next().and_then(|text| text.split("{}").next()).unwrap_or_default();
-            let mut given = text.split(' ').filter(|word| !word.is_empty());
+            let mut words = text.split(' ').filter(|word| !word.is_empty());
             // `T2 V` and similar ids end in letters followed directly by a number, or in a key.
-            id.split(' ').all(|word| given.next().is_some_and(|given| given == word || is_key(word, given)))
+            id.split(' ').all(|word| words.next().is_some_and(|words| words == word || is_key(word, words)))
         })
     }
 
@@ -101,8 +101,8 @@ impl Parameter {
     }
 }
 
-fn is_key(word: &str, given: &str) -> bool {
-    (word.ends_with('=') || matches!(word, "V" | "A" | "LIM")) && given.starts_with(word)
+fn is_key(word: &str, text: &str) -> bool {
+    (word.ends_with('=') || matches!(word, "V" | "A" | "LIM")) && text.starts_with(word)
 }
 
 const fn single(

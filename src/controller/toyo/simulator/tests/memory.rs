@@ -131,7 +131,7 @@ fn left(bench: &mut Bench) -> [bool; 8] {
 #[test]
 fn memory_is_cleared_in_part_or_completely() {
     assert_eq!(left(&mut Bench::ready(FULL)), [true; 8]);
-    for (what, gone) in [
+    for (what, erased) in [
         ("0", vec![0, 1, 2, 3, 4, 5, 6, 7]),
         ("1", vec![0]),
         ("2", vec![4]),
@@ -141,7 +141,7 @@ fn memory_is_cleared_in_part_or_completely() {
     ] {
         let mut bench = Bench::ready(FULL);
         bench.ok(&format!("@MINT PR={what}"));
-        let expected: [bool; 8] = std::array::from_fn(|place| !gone.contains(&place));
+        let expected: [bool; 8] = std::array::from_fn(|place| !erased.contains(&place));
         // Clearing everything resets E22, so task 2 has no steps.
         assert_eq!(left(&mut bench), expected, "PR={what}");
     }

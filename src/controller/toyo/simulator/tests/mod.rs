@@ -61,8 +61,8 @@ impl Bench {
     #[track_caller]
     fn ng(&mut self, block: &str, why: &str) {
         assert_eq!(self.ask(block), "@NG", "{block}");
-        let told = self.sim.console(self.now, "why").unwrap();
-        assert!(told.contains(why), "{block}: {told}");
+        let shown_reason = self.sim.console(self.now, "why").unwrap();
+        assert!(shown_reason.contains(why), "{block}: {shown_reason}");
     }
 
     #[track_caller]

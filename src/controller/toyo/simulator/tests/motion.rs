@@ -357,15 +357,15 @@ fn a_jog_needs_a_reset_and_moves_one_axis() {
 
 #[test]
 fn a_jog_stops_when_the_host_goes_off() {
-    for gone in ["@HSOF", "pendant on", "@STOP"] {
+    for action in ["@HSOF", "pendant on", "@STOP"] {
         let mut bench = Bench::ready("");
         bench.ok("@JGST X=RS Y=RS Z=RS R=RS");
         bench.ok("@JGST X=+L Y=SP Z=SP R=SP");
         bench.pass(1000);
-        if gone.starts_with('@') {
-            bench.ok(gone);
+        if action.starts_with('@') {
+            bench.ok(action);
         } else {
-            bench.console(gone);
+            bench.console(action);
         }
         bench.pass(5000);
         bench.at([10.0, 0.0, 0.0, 0.0]);

@@ -60,10 +60,10 @@ fn every_printed_request_is_answered_as_printed() {
         }
         let answer = bench.ask(&tx);
         let why = bench.console("why");
-        let (printed, given) = (request.answer(&rx).unwrap(), request.answer(&answer).unwrap());
-        match (&printed, &given) {
+        let (printed, received) = (request.answer(&rx).unwrap(), request.answer(&answer).unwrap());
+        match (&printed, &received) {
             (Answer::Done, Answer::Done) => {}
-            (Answer::Data(printed), Answer::Data(given)) => assert_eq!(given.layout(), printed.layout(), "{tx}"),
+            (Answer::Data(printed), Answer::Data(received)) => assert_eq!(received.layout(), printed.layout(), "{tx}"),
             _ => panic!("{tx}: {answer}, not {rx}: {why}"),
         }
         // The manual prints E22 with another value than was written (ambiguity R15), and RSMV with POST (R4).
