@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use armctl::command::leaves::leaves;
+use armctl::command::leaf_commands::leaves;
 use armctl::controller::Risk;
 use armctl::output::csv::{RowsOf, Sheet};
 use serde_json::Value;

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use armctl::command::leaves::leaves;
+use armctl::command::leaf_commands::leaves;
 
 use crate::support::simulator::Simulator;
 

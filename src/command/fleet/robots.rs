@@ -18,8 +18,8 @@ use crate::command::ValueKind;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::view::{Table, View};
-use crate::settings::inventory::{Entry, fits};
-use crate::settings::model::ToldModels;
+use crate::settings::inventory::{Entry, matches_pattern};
+use crate::settings::model::ModelCache;
 use crate::settings::{Origin, Robot, Setting, duration};
 
 /// Commands for the inventory.
@@ -96,7 +96,7 @@ impl Robots {
 impl Show {
     fn run(&self, run: &Run) -> Result<(), RunError> {
         let entry = known(&run.sources.inventory, &self.name)?;
-        let robot = run.sources.resolved(entry, None)?;
+        let robot = run.sources.resolve(entry, None)?;
         let mut settings = vec![row("target", &robot.target, ToString::to_string)];
         if robot.family.has_model() {
             settings.push(row("model", &robot.model, ToString::to_string));
@@ -126,7 +126,7 @@ fn told_model(robot: &Robot) -> Option<Value> {
     if robot.model.value.named().is_some() {
         return None;
     }
-    let told = ToldModels::of_user()?.find(&robot.target.value.address())?;
+    let told = ModelCache::of_user()?.find(&robot.target.value.address())?;
     let origin = format!("controller, {} ago", duration::display(Duration::from_secs(told.age().as_secs() / 60 * 60)));
     Some(Value { name: "told_model", value: format!("{} ({})", told.model(), told.software()), origin })
 }
@@ -169,7 +169,7 @@ impl List {
         let is_chosen = |robot: &&Entry| {
             let is_named = selection.from_environment
                 || selection.robots.is_empty()
-                || selection.robots.iter().any(|pattern| fits(pattern, &robot.name));
+                || selection.robots.iter().any(|pattern| matches_pattern(pattern, &robot.name));
             is_named && selection.tags.iter().all(|tag| robot.tags.contains(tag))
         };
         let robots: Vec<&Entry> = inventory.robots.iter().filter(is_chosen).collect();

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tokio::time::sleep;
 
 use super::poll::{Event, RobotId};
-use crate::command::frame::repeats::{Line, Repeats};
+use crate::command::frame::repeat_limiter::{Line, RepeatLimiter};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::log::Level;
@@ -95,7 +95,7 @@ fn unreached(error: &io::Error) -> Failure {
 #[derive(Debug)]
 struct Log {
     screen: Screen,
-    repeats: RefCell<Repeats>,
+    repeats: RefCell<RepeatLimiter>,
     #[cfg(unix)]
     journal: Option<Journal>,
 }
@@ -171,23 +171,23 @@ impl News {
     fn note(&mut self, log: &Log, event: &Event) {
         match event {
             Event::Appeared(robot) => {
-                self.answers.insert(RobotId::of(robot), None);
+                self.answers.insert(RobotId::for_robot(robot), None);
                 if self.has_begun {
                     say(log, Level::Notice, robot, "is polled from now on");
                 }
             }
             Event::Gone(robot) => {
-                self.answers.remove(&RobotId::of(robot));
+                self.answers.remove(&RobotId::for_robot(robot));
                 say(log, Level::Notice, robot, "is no longer polled");
             }
-            Event::Looked(look) => {
-                if self.answers.insert(RobotId::of(&look.robot), Some(true)) == Some(Some(false)) {
+            Event::Polled(look) => {
+                if self.answers.insert(RobotId::for_robot(&look.robot), Some(true)) == Some(Some(false)) {
                     say(log, Level::Notice, &look.robot, "answers again");
                 }
                 self.unread(log, 1, look.unexplained.as_ref());
             }
             Event::Failed { robot, failure, .. } => {
-                if self.answers.insert(RobotId::of(robot), Some(false)) != Some(Some(false)) {
+                if self.answers.insert(RobotId::for_robot(robot), Some(false)) != Some(Some(false)) {
                     failed(log, robot, failure);
                 }
             }

@@ -7,14 +7,14 @@ use super::robots::entry::{NewRobot, check_new};
 use super::robots::file;
 use crate::command::face::layers;
 use crate::command::families::{self, FAMILIES};
-use crate::command::frame::asking::answered;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
+use crate::command::frame::prompt::ask;
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Access, ConnectMode};
 use crate::failure::{Failure, Kind};
 use crate::output::render;
 use crate::output::view::View;
-use crate::settings::target::{Family, Given, Target};
+use crate::settings::target::{Family, Target, TargetArgument};
 
 /// Asks for address, name and access rights, checks the connection, and writes robots.toml.
 #[derive(Debug, Args)]
@@ -71,17 +71,17 @@ fn unanswered(failure: Failure) -> Failure {
 
 async fn line(run: &Run, question: impl Into<String>, usual: Option<&str>) -> Result<String, Failure> {
     let (screen, question, usual) = (run.screen, question.into(), usual.map(ToOwned::to_owned));
-    answered(screen, move || screen.ask_line(&question, usual.as_deref())).await
+    ask(screen, move || screen.ask_line(&question, usual.as_deref())).await
 }
 
 async fn choice(run: &Run, question: &'static str, options: Vec<String>) -> Result<usize, Failure> {
     let screen = run.screen;
-    answered(screen, move || screen.ask_choice(question, &options)).await
+    ask(screen, move || screen.ask_choice(question, &options)).await
 }
 
 async fn yes(run: &Run, question: impl Into<String>, usual: bool) -> Result<bool, Failure> {
     let (screen, question) = (run.screen, question.into());
-    answered(screen, move || screen.ask_yes(&question, usual)).await
+    ask(screen, move || screen.ask_yes(&question, usual)).await
 }
 
 /// Asks for an address until its check succeeds or the user accepts it.
@@ -130,7 +130,7 @@ async fn typed(run: &Run) -> Result<Found, Failure> {
 }
 
 /// Searches for controllers, and lets the user choose one; `None` if it is not listed.
-async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
+async fn look(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, Failure> {
     let found = interruptible(Discover::usual()?.find(run)).await??;
     let mut places = found.places();
     let shown = places.iter().map(|(target, _, device)| format!("{target}  {device}"));
@@ -151,16 +151,16 @@ async fn simulator(run: &Run) -> Result<Found, Failure> {
 }
 
 /// Asks for what the address does not contain.
-async fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Found, Failure> {
+async fn complete(run: &Run, given: &TargetArgument, known: Option<Family>) -> Result<Found, Failure> {
     let told = match given {
-        Given::Url(target) => target.family(),
-        Given::Bare(_) => None,
+        TargetArgument::Url(target) => target.family(),
+        TargetArgument::Bare(_) => None,
     };
     let family = match known.or(told) {
         Some(family) => family,
         None => family(run).await?,
     };
-    let target = given.of(Some(family))?;
+    let target = given.resolve(Some(family))?;
     target.check(family).map_err(Failure::usage)?;
     Ok(Found { family, target })
 }

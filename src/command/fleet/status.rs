@@ -8,7 +8,7 @@ use crate::command::families;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Plan;
 use crate::command::frame::script_line::Line;
-use crate::command::frame::share::{is_to_share, shared};
+use crate::command::frame::share::{can_share, open_shared_session};
 use crate::command::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -49,13 +49,13 @@ impl Link {
             Self::Absent(again) => absent.failure = again.failure,
             Self::Open(face, connection) => {
                 let driver = face.driver();
-                if !is_to_share(driver, &robot) {
+                if !can_share(driver, &robot) {
                     *self = Self::Open(face, connection);
                     return Ok(());
                 }
                 // Other commands share its link, as they do from the start of a watch.
                 connection.close(screen).await?;
-                let robot = shared(driver, &robot).await?;
+                let robot = open_shared_session(driver, &robot).await?;
                 *self = Fleet::connect(&robot, access, screen).await?;
             }
         }
@@ -161,7 +161,7 @@ impl Command for Overview {
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
     let overview = Overview {};
     let access = Access::reading(overview.connect_mode());
-    let access = line.connecting(robot, access, screen).await?;
+    let access = line.connect(robot, access, screen).await?;
     let mut connection = Fleet::connect(robot, access, screen).await?;
     let authority = Authority::reading(screen, robot);
     let context = Context { robot, link: &mut connection, screen, several: false, authority };

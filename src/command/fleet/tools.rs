@@ -159,7 +159,7 @@ impl<W: Word> FromArgMatches for OfFamily<W> {
     }
 
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
-        let (family, mut matches) = families::named(matches)?;
+        let (family, mut matches) = families::by_name(matches)?;
         Ok(Self { family, task: (Self::tool(family).read)(&mut matches)?, word: PhantomData })
     }
 

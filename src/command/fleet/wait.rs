@@ -49,7 +49,7 @@ impl Wait {
     /// If the condition is not valid.
     pub fn repeat(&self, given: &Repeat) -> Result<Repeat, Failure> {
         let until = match self.item()? {
-            Some(comparison) => Condition::of_item(&self.condition, &comparison)?,
+            Some(comparison) => Condition::item_of_noun(&self.condition, &comparison)?,
             None => Condition::new(&self.condition)?,
         };
         let every = given.every.or(Some(EVERY));

@@ -8,11 +8,11 @@ use super::explain::told;
 use super::link::Link;
 use super::link::Toyo;
 use super::waiting::{becomes, status_page};
-use crate::command::face::shared::Alike;
+use crate::command::face::shared_commands::CommonReport;
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
-use crate::command::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, Besides, Nothing, Row, Source};
+use crate::command::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Nothing, Row, Source};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -93,7 +93,7 @@ pub struct Axis {
     alarm: Option<String>,
 }
 
-impl Besides for Axis {
+impl ExtraColumns for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         // The text already names the cause.
         Vec::new()
@@ -194,7 +194,7 @@ impl Command for Reset {
         let words = left
             .as_ref()
             .map_or_else(|| "the alarm has ended".to_owned(), |left| format!("still there: {}", left.line()));
-        let new = New::of("fault_code", left.as_ref().and_then(|left| left.code.clone()), words);
+        let new = NewValue::of("fault_code", left.as_ref().and_then(|left| left.code.clone()), words);
         Ok(Cancelled { done: new.replaces(old), alarms: left.into_iter().collect() })
     }
 }
@@ -208,7 +208,7 @@ pub struct Cancelled {
     alarms: Vec<Told>,
 }
 
-impl Alike for Cancelled {
+impl CommonReport for Cancelled {
     type Core = Done;
 
     fn core(&self) -> Done {

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::testing::{Bench, Fault, ReceivedBlocks, gated, plan, text};
 use crate::command::CommandSet as _;
-use crate::command::frame::testing::{QUIET, all_frames};
+use crate::command::frame::testing::{QUIET, complete_frames};
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::commands::Row;
@@ -189,7 +189,7 @@ fn a_dry_run_is_what_is_sent() {
                 continue;
             }
         };
-        let planned = all_frames(&report);
+        let planned = complete_frames(&report);
         if !planned.iter().any(|frame| risk(&text(frame)) == *risk_of_it) {
             wrong.push(format!("{line}: no frame of its own risk in {planned:?}"));
         }

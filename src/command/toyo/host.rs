@@ -5,7 +5,7 @@ use clap::Args;
 use super::link::Toyo;
 use super::orders::not_so;
 use super::waiting::becomes;
-use crate::command::frame::orders::{Done, New, Old, Switch};
+use crate::command::frame::settings_report::{Done, NewValue, Old, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -44,7 +44,7 @@ impl Command for Host {
         )?;
         context.link.choose_host(is_on);
         if becomes(context.link, (2, "whether the host has switched"), |status| status.host_on() == is_on).await? {
-            return Ok(New::of("host_on", is_on, done).replaces(old));
+            return Ok(NewValue::of("host_on", is_on, done).replaces(old));
         }
         Err(not_so("the host").hint("`toyo status` shows whether the host is ON"))
     }

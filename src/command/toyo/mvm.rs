@@ -11,7 +11,7 @@ use super::rows::{Listed, WRITING, texts};
 use super::stores::{parameter_cell, parameter_sketch};
 use super::values::{Changes, word};
 use crate::command::frame::store::{
-    Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids, table_commands,
+    Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, table_commands,
 };
 use crate::controller::Risk;
 use crate::controller::toyo::field::{self, Value};
@@ -140,7 +140,7 @@ impl Store for Groups {
     type More = Listed;
     type Options = Single;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["group", "groups"],
         placeholder: "GROUP",
         range: "Groups of the MVM table, 1 to 32: 5, 1-3",
@@ -228,7 +228,12 @@ impl Writable for Groups {
         Ok(sheets)
     }
 
-    fn whole(&self, group: i32, draft: &Vec<Changes>, old: Option<&Vec<Record>>) -> Result<Vec<Record>, Failure> {
+    fn complete_draft(
+        &self,
+        group: i32,
+        draft: &Vec<Changes>,
+        old: Option<&Vec<Record>>,
+    ) -> Result<Vec<Record>, Failure> {
         let record = |(index, changes): (usize, &Changes)| {
             let values = match (changes.whole(), old) {
                 (Some(values), _) => values,

@@ -9,7 +9,7 @@ use super::link::Link;
 use super::values;
 use crate::client::toyo::Letters;
 use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::orders::unwritten;
+use crate::command::frame::settings_report::nothing_written;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{LayoutProblem, Record};
 use crate::controller::toyo::request::Request;
@@ -135,7 +135,7 @@ pub async fn look(link: &mut Link, screen: &Screen, stores: &mut [Store]) -> Res
         }
         Ok(())
     });
-    looked.await.and_then(|looked| looked).map_err(unwritten)
+    looked.await.and_then(|looked| looked).map_err(nothing_written)
 }
 
 async fn found(link: &mut Link, store: &Store) -> Result<CellState, Failure> {

@@ -13,7 +13,7 @@ use super::numbers::within;
 use super::orders::usage;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::robot::alarm::{self, Alarms, Row};
 use crate::command::{Command, Context, commands};
@@ -75,7 +75,7 @@ impl Command for List {
             alarms.push(Row::new(slot.into(), format!("alarm slot {slot}"), outcome));
         }
         let report = Alarms { alarms, standing: WithTexts { with_texts: texts }, asked: SLOTS.into() };
-        items::nothing(report.asked, report.errors())?;
+        items::all_failed(report.asked, report.errors())?;
         Ok(report)
     }
 }
@@ -165,7 +165,7 @@ impl Command for History {
             }
         }
         let report = Alarms { alarms, standing: WithTexts { with_texts: texts }, asked };
-        items::nothing(asked, report.errors())?;
+        items::all_failed(asked, report.errors())?;
         Ok(report)
     }
 }
@@ -185,7 +185,7 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
                 if failure.kind == Kind::NoAnswer {
                     return Err(failure);
                 }
-                let text = format!("slot {slot}: {}", items::brief(&failure));
+                let text = format!("slot {slot}: {}", items::shorten(&failure));
                 alarms.push(alarm::Alarm {
                     text: Some(text),
                     kind: Some(alarm::Kind::Alarm),
@@ -259,7 +259,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 context.link.ask(&$query).await?;
-                Ok(New::of($set, $new, $done).replaces(Old::UNREAD))
+                Ok(NewValue::of($set, $new, $done).replaces(Old::UNREAD))
             }
         }
     };

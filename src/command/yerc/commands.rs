@@ -4,7 +4,7 @@ use super::link::Yerc;
 use super::{
     alarm, axes, file, hours, info, io, job, moves, names, orders, position, raw, register, status, teach, var,
 };
-use crate::command::backup::words::{Backup, Diff, Restore};
+use crate::command::backup::family_backup::{Backup, Diff, Restore};
 use crate::command::{Subcommands, commands};
 
 commands! {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::command::ValueKind;
 use crate::command::face::explain::{self as face, Codes, Known};
-use crate::command::robot::alarm::{Alarm, Besides, Kind, Source};
+use crate::command::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
 use crate::controller::yerc::status;
 use crate::failure::Failure;
 use crate::settings::alarms::{Alarms, Origin};
@@ -53,7 +53,7 @@ pub struct Listed {
     models: Vec<String>,
 }
 
-impl Besides for Listed {
+impl ExtraColumns for Listed {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         vec![("listed for", Some(self.models.join(", ")).filter(|models| !models.is_empty()))]
     }

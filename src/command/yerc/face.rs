@@ -10,14 +10,14 @@ use super::orders::Hold;
 use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview, panel};
-use crate::command::backup::words::Backups;
-use crate::command::backup::{BackedUp, Making, Restored, Restoring};
+use crate::command::backup::family_backup::Backups;
+use crate::command::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use crate::command::face::HeldLink;
-use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::face::panel::Panel;
+use crate::command::face::registration::Declaration;
 use crate::command::face::sample::Traffic;
+use crate::command::face::teach_panel::Panel;
 use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Context};
 use crate::controller::yerc::{passing, simulator, status};
@@ -86,11 +86,11 @@ impl Declaration for Yerc {
 impl Backups for Yerc {
     const IDS: [&'static str; 3] = ["yerc.backup", "yerc.restore", "yerc.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
         Restore::of(restoring).run(context).await
     }
 }

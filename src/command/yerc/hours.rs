@@ -83,7 +83,7 @@ impl Command for Hours {
             Time::new(counter, outcome.map_err(Failure::from), encoding)
         };
         let report = Times { times: outcomes.into_iter().map(time).collect() };
-        items::nothing(report.times.len(), report.errors())?;
+        items::all_failed(report.times.len(), report.errors())?;
         Ok(report)
     }
 }

@@ -20,7 +20,7 @@ use super::numbers::within;
 use super::orders::refuse_controls;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::yerc::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -310,7 +310,7 @@ impl Command for Select {
             (None, 0) => format!("{name} is selected"),
             (None, first) => format!("{name} is selected, start line {first}"),
         };
-        let new = New::of("program", name, words).with("program", name);
+        let new = NewValue::of("program", name, words).with("program", name);
         Ok(Selected {
             done: new.replaces(Old::read(was)),
             line: self.task.is_none().then_some(self.line),

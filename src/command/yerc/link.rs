@@ -16,8 +16,8 @@ use crate::client::yerc::{Cause, Client, Event, Totals, TransferError};
 pub use crate::client::yerc::{Error, Refusal, RefusedRequest};
 use crate::command::face::sample::Traffic;
 use crate::command::frame::dry_run::{Known as _, Plan};
-use crate::command::frame::orders::{BEFORE, unwritten};
-use crate::command::frame::trace::locked;
+use crate::command::frame::settings_report::{OLD_VALUE, nothing_written};
+use crate::command::frame::trace::lock_writer;
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -28,7 +28,7 @@ use crate::controller::yerc::session::{DownloadEnd, Reply, UploadEnd};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::model::ToldModel;
+use crate::settings::model::ReportedModel;
 use crate::settings::target;
 use crate::transport::tap::Direction;
 
@@ -94,7 +94,7 @@ impl Family for Yerc {
         let [sent, received] = [totals.sent, totals.received];
         let exchanges = format!("{} exchanges in {:.1?}", totals.exchanges, totals.waited);
         screen.detail(1, &format!("{exchanges}: {sent} frames sent, {received} received"));
-        locked(&trace).finish()
+        lock_writer(&trace).finish()
     }
 }
 
@@ -141,7 +141,7 @@ impl Link {
     /// Stores the model that the controller reported, if it is new.
     fn keep_model(&mut self) {
         if let (Some(identity), Some(software)) = (self.client.identity(), self.told_software()) {
-            let news = identity.model.map(|model| ToldModel::now(model, software));
+            let news = identity.model.map(|model| ReportedModel::now(model, software));
             self.told.keep(news, &self.screen, &self.label);
         }
     }
@@ -164,7 +164,7 @@ impl Link {
     /// Reads the value that a write replaces; none if the controller refuses, and in a dry run, which notes the
     /// request. A lost connection is a failure: nothing was written.
     pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
-        let answer = self.for_purpose(BEFORE).try_ask(question).await.known().map_err(unwritten)?;
+        let answer = self.for_purpose(OLD_VALUE).try_ask(question).await.known().map_err(nothing_written)?;
         Ok(answer.and_then(Result::ok))
     }
 
@@ -273,7 +273,7 @@ struct Onlooker {
 
 impl Watcher<Event> for Onlooker {
     fn frame(&mut self, direction: Direction, ends: crate::client::Ends, bytes: &[u8]) {
-        locked(&self.trace).record(direction, ends, bytes);
+        lock_writer(&self.trace).record(direction, ends, bytes);
     }
 
     fn event(&mut self, event: Event) {

@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::link::Yerc;
 use super::status::cycle_name;
-use crate::command::frame::orders::{Done, New, Old, Switch};
+use crate::command::frame::settings_report::{Done, NewValue, Old, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yerc::payload::{ControllerStatus, CycleMode};
@@ -55,7 +55,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 let ($this, Context { link, authority, .. }) = (self, context);
-                let new = New::of($set, $new, $done);
+                let new = NewValue::of($set, $new, $done);
                 let old = Old::UNREAD;
                 // A stop must not be delayed by a read.
                 $(let old = if self.is_stop() {
@@ -180,7 +180,7 @@ impl Command for Say {
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
         let words = if self.text.is_empty() { "the message is cleared" } else { "the pendant shows the message" };
-        Ok(New::of("pendant_message", self.text.as_str(), words).replaces(Old::UNREAD))
+        Ok(NewValue::of("pendant_message", self.text.as_str(), words).replaces(Old::UNREAD))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::command::face::panel::{Panel, Step, System, words};
+use crate::command::face::teach_panel::{Panel, Step, System, words};
 
 const COORDINATES: [(&str, &str); 6] =
     [("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("Rx", "deg"), ("Ry", "deg"), ("Rz", "deg")];

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::serve::{self, Started, address, cannot_listen};
+use crate::command::serve::{self, Started, address, bind_failure};
 use crate::command::yerc::simulated::{self, Simulated};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::Simulator;
@@ -76,12 +76,12 @@ impl serve::Serve for Serve {
         let file_port = self.file_port.unwrap_or(if robot.port() == 0 { 0 } else { robot.port().saturating_add(1) });
         let file = SocketAddr::new(robot.ip(), file_port);
         let bound = Server::bind([robot, file], self.fault.map(Faults::pair)).await;
-        let server = bound.map_err(|error| cannot_listen(&format!("UDP {robot} and {}", file.port()), &error))?;
+        let server = bound.map_err(|error| bind_failure(&format!("UDP {robot} and {}", file.port()), &error))?;
         let local = |channel| server.local(channel).context("socket");
         let (robot, file) = (local(0)?, local(1)?);
         let target = format!("udp://{robot}?file_port={}&model={model}", file.port());
         Ok(Started {
-            reach: serve::reach("yerc", &target),
+            reach: serve::connect_hint("yerc", &target),
             report: Serving { family: "yerc", model: model.name(), target },
             server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
             address: Some(robot),
@@ -98,7 +98,7 @@ pub struct Yerc {
 }
 
 impl serve::Server for Yerc {
-    async fn turn(&mut self) -> io::Result<()> {
+    async fn run_until_change(&mut self) -> io::Result<()> {
         self.server.turn(&mut self.simulated).await
     }
 

@@ -3,15 +3,15 @@
 use crate::client::yerc::Client;
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::model::{ToldModel, ToldModels};
+use crate::settings::model::{ModelCache, ReportedModel};
 use crate::settings::target::Address;
 
 /// Location and content of the stored model.
 #[derive(Debug)]
 pub(super) struct Told {
-    store: Option<ToldModels>,
+    store: Option<ModelCache>,
     address: Address,
-    kept: Option<ToldModel>,
+    kept: Option<ReportedModel>,
 }
 
 impl Told {
@@ -20,7 +20,7 @@ impl Told {
     pub(super) fn recall(robot: &Robot, client: &mut Client) -> Self {
         let target = &robot.target.value;
         let address = target.address();
-        let store = if target.is_simulated() { None } else { ToldModels::of_user() };
+        let store = if target.is_simulated() { None } else { ModelCache::of_user() };
         let is_open = client.known_model().is_none();
         let kept = store.as_ref().filter(|_| is_open).and_then(|store| store.find(&address));
         if let Some(kept) = kept.as_ref().filter(|kept| kept.is_fresh() || client.is_dry()) {
@@ -31,7 +31,7 @@ impl Told {
 
     /// Stores the model that the controller reported, unless it is already stored and recent. `news` is `None` if its
     /// software belongs to no known model: then the stored model is wrong.
-    pub(super) fn keep(&mut self, news: Option<ToldModel>, screen: &Screen, label: &str) {
+    pub(super) fn keep(&mut self, news: Option<ReportedModel>, screen: &Screen, label: &str) {
         let Some(store) = &self.store else { return };
         let Some(news) = news else {
             if self.kept.take().is_some()
@@ -41,14 +41,14 @@ impl Told {
             }
             return;
         };
-        let is_same = |kept: &ToldModel| kept.is_fresh() && kept.says(&news);
+        let is_same = |kept: &ReportedModel| kept.is_fresh() && kept.is_same_as(&news);
         if self.kept.as_ref().is_some_and(is_same) {
             return;
         }
         let (model, software) = (news.model(), news.software());
         let unproven = model.unproven().map(|what| format!("; unproven: {what}")).unwrap_or_default();
         screen.detail(1, &format!("{label}: {model}, from software {software}; stored for one day{unproven}"));
-        if let Err(error) = store.keep(&self.address, news.clone()) {
+        if let Err(error) = store.store(&self.address, news.clone()) {
             screen.detail(1, &format!("{label}: the model could not be stored and is read each time: {error}"));
         }
         self.kept = Some(news);

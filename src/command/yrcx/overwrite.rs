@@ -14,7 +14,7 @@ use super::several::{check_echo, is_about_commands};
 use crate::client::yrcx;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::orders::Old;
+use crate::command::frame::settings_report::Old;
 use crate::command::robot::item::{Item, Written, WrittenItems};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::{Draft, Order};
@@ -429,5 +429,5 @@ pub fn stored(words: impl Into<String>, given: &Done) -> Stored {
     let [old, now] = data.map(|data| Some(data).filter(|data| !data.is_null()));
     let words = if is_there { format!("{what}: {new} already; nothing was written") } else { words.into() };
     let item = Item::with(kind, name, of, Ok(now));
-    WrittenItems::said(words, vec![Written::new(item, old, !is_there)])
+    WrittenItems::describe(words, vec![Written::new(item, old, !is_there)])
 }

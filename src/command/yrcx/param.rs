@@ -90,11 +90,11 @@ impl Command for Get {
             let of_axis = axis.map_or_else(|| "-".into(), Cell::from);
             let cells = |value: &i32| vec![of_axis.clone(), (*value).into(), Cell::maybe(unit), meaning.into()];
             let item = Item::with("parameter", name, more, value);
-            if item.ok { item.shown(cells) } else { Item { cells: vec![of_axis], ..item } }
+            if item.ok { item.with_cells(cells) } else { Item { cells: vec![of_axis], ..item } }
         });
         let columns =
             Columns { name: "parameter", values: vec!["axis", "value", "unit", "meaning"], empty: "no parameters" };
-        Items::new(columns, items.collect()).asked(answers.asked).or_only_failure()
+        Items::new(columns, items.collect()).asked(answers.asked).single_failure()
     }
 }
 

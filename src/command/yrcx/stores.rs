@@ -13,7 +13,7 @@ use super::numbers::{Numbers, named};
 use super::several::{ask_each, is_undefined};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::store::{self, Answers, Differing, Field, Ids, Single, Store, Words, Writable};
+use crate::command::frame::store::{self, Answers, Differing, Field, Ids, Single, Store, TableWords, Writable};
 use crate::command::robot::item::Plain;
 use crate::controller::Risk;
 use crate::controller::names::Kind as Label;
@@ -27,7 +27,7 @@ pub trait Kind: Debug + Send + Sync + 'static {
     /// Value of a row in reports.
     type Value: Debug + Clone + Serialize + JsonSchema;
     /// Texts of the table.
-    const WORDS: Words;
+    const WORDS: TableWords;
     /// Names of the reports.
     const IDS: Ids;
     /// Commands and fields of a row, shared with backups.
@@ -91,7 +91,7 @@ impl<K: Kind> Store for Numbered<K> {
     type More = Plain;
     type Options = Single;
 
-    const WORDS: Words = K::WORDS;
+    const WORDS: TableWords = K::WORDS;
     const IDS: Ids = K::IDS;
     const LABELS: Option<Label> = K::LABELS;
     const COMPLETE: ValueKind = K::COMPLETE;
@@ -176,7 +176,7 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(draft)
     }
 
-    fn whole(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
+    fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
         let kept = |(at, text): (usize, &Option<String>)| match (text, old) {
             (Some(text), _) => Ok(text.clone()),
             (None, Some(old)) => Ok(old.texts[at].clone()),

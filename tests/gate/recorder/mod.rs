@@ -9,7 +9,7 @@ mod yrcx;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use armctl::command::leaves::leaves;
+use armctl::command::leaf_commands::leaves;
 use armctl::controller::Risk;
 
 use super::desk::{Came, Desk, came};

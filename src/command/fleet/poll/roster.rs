@@ -81,7 +81,7 @@ impl Roster {
         let inventory = Inventory::load(&Location::Named(path.to_owned()))?;
         if let Some(sources) = &mut self.sources {
             let now = Sources { inventory, ..sources.clone() };
-            self.robots = now.robots_left()?;
+            self.robots = now.remaining_robots()?;
             *sources = now;
         }
         Ok(())

@@ -78,8 +78,8 @@ async fn told(events: &mut Subscription, count: usize, looks: bool) -> Vec<Strin
     while all.len() < count {
         match events.next().await.expect("it goes on") {
             Event::Appeared(robot) => all.push(format!("appeared {}", robot.name)),
-            Event::Looked(look) if looks => all.push(format!("looked {}", look.robot.name)),
-            Event::Looked(_) => {}
+            Event::Polled(look) if looks => all.push(format!("looked {}", look.robot.name)),
+            Event::Polled(_) => {}
             Event::Failed { robot, pause, .. } => all.push(format!("failed {} {}", robot.name, pause.as_secs())),
             Event::Gone(robot) => all.push(format!("gone {}", robot.name)),
             Event::Inventory(read) => all.push(match read {
@@ -100,12 +100,12 @@ async fn every_family_is_looked_at_in_a_line_with_its_axes_and_in_full() {
     {
         let plant = fleet();
         let poll = plant.all();
-        let id = whole.map(|at: usize| RobotId::of(&poll.robots()[at]));
+        let id = whole.map(|at: usize| RobotId::for_robot(&poll.robots()[at]));
         let wish = Wish { detail, whole: id, ..Wish::every(EVERY) };
         let samples = watched(poll, wish, async |events: &mut Subscription| {
             let mut samples: BTreeMap<String, Vec<Sample>> = BTreeMap::new();
             while samples.len() < 3 || samples.values().any(|samples| samples.len() < 3) {
-                if let Event::Looked(look) = events.next().await.expect("it goes on") {
+                if let Event::Polled(look) = events.next().await.expect("it goes on") {
                     samples.entry(look.robot.name.clone()).or_default().push(look.sample.clone());
                 }
             }
@@ -116,8 +116,8 @@ async fn every_family_is_looked_at_in_a_line_with_its_axes_and_in_full() {
             let sample = samples[*name].last().unwrap();
             assert!(sample.line.state.mode.is_some() && sample.line.state.position.is_some());
             let full = detail == Detail::Full || whole == Some(at);
-            assert_eq!(sample.whole.is_some(), detail > Detail::Summary || full, "{name} {detail:?}");
-            if let Some(found) = &sample.whole {
+            assert_eq!(sample.full.is_some(), detail > Detail::Summary || full, "{name} {detail:?}");
+            if let Some(found) = &sample.full {
                 assert!(found.indicators.len() > 8 && found.axes.len() >= 4, "{found:?}");
                 assert_eq!(found.axes.iter().any(|axis| axis.torque.is_some()), *name != "c", "{name}: {found:?}");
                 assert_eq!(found.banks.len(), if full { 2 } else { 0 }, "{name}: {found:?}");
@@ -141,7 +141,7 @@ async fn a_robot_that_is_gone_holds_up_no_other() {
         let mut counts = BTreeMap::new();
         loop {
             match events.next().await.expect("it goes on") {
-                Event::Looked(look) => {
+                Event::Polled(look) => {
                     *counts.entry(look.robot.name.clone()).or_insert(0_u128) += 1;
                     // An in-process YRCX has no network.
                     let Traffic { sent, received, disturbances } = look.traffic;
@@ -178,7 +178,7 @@ async fn a_slow_line_is_asked_at_its_own_pace() {
     let looks = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
         let mut looks = Vec::new();
         while looks.len() < 3 {
-            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+            if let Event::Polled(look) = events.next().await.expect("it goes on") {
                 if look.robot.name == "slow" {
                     looks.push((look.took, look.missed));
                 } else {
@@ -206,9 +206,9 @@ async fn who_wants_to_know_is_told_of_the_same_look_and_the_shortest_interval_co
         let mut looks = 0;
         while looks < 30 {
             match (one.next().await.unwrap(), other.next().await.unwrap()) {
-                (Event::Looked(one), Event::Looked(other)) => {
+                (Event::Polled(one), Event::Polled(other)) => {
                     assert!(Arc::ptr_eq(&one, &other), "asked once, for both");
-                    assert!(one.sample.whole.is_some(), "with all that any of them wants");
+                    assert!(one.sample.full.is_some(), "with all that any of them wants");
                     looks += 1;
                 }
                 (Event::Appeared(one), Event::Appeared(other)) => assert!(Arc::ptr_eq(&one, &other)),
@@ -221,7 +221,7 @@ async fn who_wants_to_know_is_told_of_the_same_look_and_the_shortest_interval_co
         drop(other);
         let mut last = BTreeMap::new();
         for _ in 0..12 {
-            if let Event::Looked(look) = one.next().await.unwrap() {
+            if let Event::Polled(look) = one.next().await.unwrap() {
                 last.insert(look.robot.name.clone(), Instant::now());
             }
         }
@@ -240,7 +240,7 @@ async fn command_lines_are_asked_along_with_the_looks_of_their_family() {
     let extras = watched(plant.all(), wish, async |events: &mut Subscription| {
         let mut extras = BTreeMap::new();
         while extras.len() < 3 {
-            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+            if let Event::Polled(look) = events.next().await.expect("it goes on") {
                 let told = look.extras.iter().map(|(text, told)| (text.to_string(), told.clone()));
                 extras.insert(look.robot.name.clone(), told.collect::<Vec<_>>());
             }
@@ -271,7 +271,7 @@ async fn a_name_in_a_command_line_is_that_of_each_robot() {
     let told = watched(plant.all(), wish, async |events: &mut Subscription| {
         let mut told = BTreeMap::new();
         while told.len() < 3 {
-            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+            if let Event::Polled(look) = events.next().await.expect("it goes on") {
                 told.insert(look.robot.name.clone(), look.extras[0].1.clone());
             }
         }
@@ -297,7 +297,7 @@ async fn robots_come_and_go_as_the_inventory_says() {
         all.extend(told(events, 1, false).await);
         let later = Instant::now() + Duration::from_secs(10);
         while Instant::now() < later {
-            assert!(matches!(events.next().await, Some(Event::Looked(_))), "those that are known are looked at");
+            assert!(matches!(events.next().await, Some(Event::Polled(_))), "those that are known are looked at");
         }
         plant.write(&[("a", "yerc", "sim:?fault=delay%3D1ms")]);
         all.extend(told(events, 5, false).await);
@@ -346,7 +346,7 @@ async fn a_file_that_is_being_written_is_not_read() {
             let later = Instant::now() + Duration::from_millis(700);
             while Instant::now() < later {
                 match events.next().await {
-                    Some(Event::Looked(_)) => {}
+                    Some(Event::Polled(_)) => {}
                     told => all.push(format!("{told:?}")),
                 }
             }

@@ -57,7 +57,7 @@ use self::topic::Levels;
 use crate::command::fleet::poll::{Event, Poll, RobotId, Subscription, Wish};
 use crate::command::fleet::service::{END, Service};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::local::state_folder;
+use crate::command::frame::local_names::state_folder;
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Report, SchemaEntry};
 use crate::failure::Failure;
@@ -261,7 +261,7 @@ impl Publish {
         for robot in poll.robots() {
             levels.of(robot)?;
         }
-        let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::of).collect();
+        let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::for_robot).collect();
         let service = Service::begin(run.screen)?;
         let (outbox, folder) = self.outbox(&node)?;
         let speech = self.speech((&node, levels), &also, folder.as_deref());
@@ -426,9 +426,9 @@ impl Looks {
         }
         let event = events.next().await?;
         let looked = match &event {
-            Event::Looked(look) => Some((RobotId::of(&look.robot), 1)),
-            Event::Failed { robot, .. } => Some((RobotId::of(robot), 1)),
-            Event::Gone(robot) => Some((RobotId::of(robot), u64::MAX)),
+            Event::Polled(look) => Some((RobotId::for_robot(&look.robot), 1)),
+            Event::Failed { robot, .. } => Some((RobotId::for_robot(robot), 1)),
+            Event::Gone(robot) => Some((RobotId::for_robot(robot), u64::MAX)),
             Event::Appeared(_) | Event::Inventory(_) => None,
         };
         if let Some((id, looks)) = looked

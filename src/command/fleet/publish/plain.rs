@@ -18,7 +18,7 @@ use super::speech::{Reaction, Speech};
 use super::topic::Levels;
 use super::uplink::{Message, Will};
 use crate::command::face::overview::OverviewReport;
-use crate::command::fleet::poll::{Event, Look, RobotId};
+use crate::command::fleet::poll::{Event, PollResult, RobotId};
 use crate::command::robot::alarm::Alarm;
 use crate::command::robot::state::PositionMm;
 use crate::failure::Failure;
@@ -86,7 +86,7 @@ impl Plain {
     /// Records for data that has changed or is due again.
     fn changed(&mut self, robot: &Robot, envelopes: Vec<(String, Envelope)>, now_ms: u64) -> Vec<Record> {
         let Ok(level) = self.levels.of(robot) else { return Vec::new() };
-        let told = self.told.entry(RobotId::of(robot)).or_default();
+        let told = self.told.entry(RobotId::for_robot(robot)).or_default();
         let mut records = Vec::new();
         for (kind, envelope) in envelopes {
             let Ok(what) = serde_json::to_vec(&envelope) else { continue };
@@ -105,7 +105,7 @@ impl Plain {
         records
     }
 
-    fn looked(&mut self, look: &Look, now_ms: u64) -> Vec<Record> {
+    fn looked(&mut self, look: &PollResult, now_ms: u64) -> Vec<Record> {
         let robot = &look.robot;
         let mut line = OverviewReport { family: robot.family.name(), ..look.sample.line.clone() };
         let at = (line.state.position, line.not_asked);
@@ -148,7 +148,7 @@ impl Plain {
 
     /// The robot was removed: clears its retained messages.
     fn gone(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
-        let told = self.told.remove(&RobotId::of(robot)).unwrap_or_default();
+        let told = self.told.remove(&RobotId::for_robot(robot)).unwrap_or_default();
         let Ok(level) = self.levels.of(robot) else { return Vec::new() };
         let empty = |kind: String| Record {
             kind: 0,
@@ -187,7 +187,7 @@ impl Speech for Plain {
 
     fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
         match event {
-            Event::Looked(look) => self.looked(look, now_ms),
+            Event::Polled(look) => self.looked(look, now_ms),
             Event::Failed { robot, failure, .. } => self.failed(robot, failure, now_ms),
             Event::Gone(robot) => self.gone(robot, now_ms),
             Event::Appeared(_) | Event::Inventory(_) => Vec::new(),

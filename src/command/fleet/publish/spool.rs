@@ -59,7 +59,7 @@ pub struct Spool {
     /// Records of the segment that is being read.
     read: VecDeque<Record>,
     damaged: u64,
-    _lock: files::Claim,
+    _lock: files::FolderLock,
 }
 
 impl Spool {
@@ -69,7 +69,7 @@ impl Spool {
     /// [`ErrorKind::WouldBlock`] if another process uses the folder.
     pub fn open(folder: &Path, most: u64) -> io::Result<Self> {
         make_folder(folder)?;
-        let lock = files::claim(folder)?;
+        let lock = files::claim_folder(folder)?;
         let mut segments = Vec::new();
         for entry in fs::read_dir(folder)? {
             let entry = entry?;

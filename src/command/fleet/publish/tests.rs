@@ -20,7 +20,7 @@ use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version,
 use super::{Also, Kind, Speech};
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::sample::{Sample, Traffic};
-use crate::command::fleet::poll::{Event as Found, Look};
+use crate::command::fleet::poll::{Event as Found, PollResult};
 use crate::command::fleet::service::END;
 use crate::command::robot::alarm::Alarm;
 use crate::command::robot::state::{Mode, PositionMm, State};
@@ -50,7 +50,7 @@ pub fn look(robot: &Arc<Robot>, x_mm: f64, alarms: &[&str]) -> Found {
     };
     let line = OverviewReport { state, ..OverviewReport::default() };
     let sample = Sample { line, alarms: alarms.iter().map(alarm).collect(), ..Sample::default() };
-    Found::Looked(Arc::new(Look::new(Arc::clone(robot), sample)))
+    Found::Polled(Arc::new(PollResult::new(Arc::clone(robot), sample)))
 }
 
 pub fn silence(robot: &Arc<Robot>) -> Found {

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::file;
 use crate::command::Report;
-use crate::command::frame::edited::open_editor;
+use crate::command::frame::editor_session::open_editor;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::files;

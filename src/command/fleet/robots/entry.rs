@@ -17,7 +17,7 @@ use crate::output::view::{self, Cell, View};
 use crate::settings::duration;
 use crate::settings::inventory::{Entry, Inventory, is_name, named};
 use crate::settings::model::ModelSetting;
-use crate::settings::target::{Family, Given, Target};
+use crate::settings::target::{Family, Target, TargetArgument};
 
 /// Arguments of `robots add`.
 #[derive(Debug, Args)]
@@ -26,7 +26,7 @@ pub struct Add {
     name: String,
     /// Its URL, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
     #[arg(add = ValueKind::Url)]
-    url: Given,
+    url: TargetArgument,
     /// Its family, if armctl cannot infer it from the URL
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
@@ -92,7 +92,7 @@ impl NewRobot {
 impl Add {
     pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
         check_new(&run.sources.inventory, &self.name)?;
-        let target = self.url.of(self.family)?;
+        let target = self.url.resolve(self.family)?;
         let Some(family) = self.family.or(target.family()) else {
             let failure = Failure::usage(format!("armctl cannot infer the family from '{target}'"));
             return Err(failure.hint("add --family yerc or --family toyo").into());
@@ -141,7 +141,7 @@ type Parse = fn(&str, Family) -> Result<Value, Failure>;
 /// Settings of an entry: key, description, parser.
 const SETTINGS: [(&str, &str, Parse); 10] = [
     ("target", "target URL", |text, family| {
-        let target = text.parse::<Given>()?.of(Some(family))?;
+        let target = text.parse::<TargetArgument>()?.resolve(Some(family))?;
         Ok(target.url().into())
     }),
     ("family", "yerc, yrcx or toyo", |text, _| Ok(parsed::<Family>(text)?.name().into())),
@@ -177,7 +177,7 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
 ];
 
 fn candidates() -> Vec<Candidate> {
-    let keys = SETTINGS.iter().map(|(key, about, _)| Candidate::new(format!("{key}="), *about).begun());
+    let keys = SETTINGS.iter().map(|(key, about, _)| Candidate::new(format!("{key}="), *about).incomplete());
     let models = Model::ALL.map(Model::name).into_iter().chain([ModelSetting::AUTO]);
     keys.chain(models.map(|model| Candidate::new(format!("model={model}"), "model of a yerc robot"))).collect()
 }

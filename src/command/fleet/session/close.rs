@@ -8,9 +8,9 @@ use super::list::locations;
 use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::families;
-use crate::command::frame::asking::answered;
-use crate::command::frame::attach::{identify, no_place, refused};
+use crate::command::frame::attach::{attach_failure, folder_failure, identify};
 use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::prompt::ask;
 use crate::command::frame::run::{Run, RunError};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
@@ -62,7 +62,7 @@ async fn choose(run: &Run) -> Result<Option<String>, Failure> {
     let screen = run.screen;
     let question = "session to close (type to search, Enter selects, Esc cancels)";
     catch_interrupts();
-    let at = answered(screen, move || screen.ask_one_of(question, &options, false)).await?;
+    let at = ask(screen, move || screen.ask_one_of(question, &options, false)).await?;
     let robot = open.into_iter().nth(at).map(|info| info.robot);
     if let Some(robot) = &robot {
         screen.note(&format!("the same command without the question: armctl session close {robot}"));
@@ -92,7 +92,8 @@ impl Close {
             let _ = identify(&run.sources, families::of(robot.family).driver(), robot, false);
         }
         let is_named = |info: &Info, name: &str| {
-            let is_meant = |robot: &Robot| info.target.parse::<Target>().is_ok_and(|held| robot.is_at(&held.address()));
+            let is_meant =
+                |robot: &Robot| info.target.parse::<Target>().is_ok_and(|held| robot.has_address(&held.address()));
             is_named(info, name) || target.as_deref() == Some(name) && meant.iter().any(is_meant)
         };
         let found: Vec<(SessionPath, Info)> =
@@ -115,7 +116,7 @@ impl Close {
                 let became = match close(&location, self.force).await {
                     Ok(true) => "closed",
                     Ok(false) => {
-                        location.clear().map_err(|error| no_place(&error))?;
+                        location.clear().map_err(|error| folder_failure(&error))?;
                         "forgotten"
                     }
                     Err(error) => {
@@ -145,7 +146,7 @@ fn still_open(label: &str, error: &AttachError) -> Failure {
                 "wait for the end of the motion, or stop it; with --force the session closes now, and the controller \
                  stops the motion",
             ),
-        _ => refused(label, error),
+        _ => attach_failure(label, error),
     }
 }
 

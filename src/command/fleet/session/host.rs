@@ -15,8 +15,8 @@ use super::watched_entry::WatchedEntry;
 use crate::command::Access;
 use crate::command::face::HeldLink;
 use crate::command::families;
-use crate::command::frame::attach::{in_use, info, key_of, no_place};
-use crate::command::frame::session_manager::{By, ManagerRequest, SessionManager};
+use crate::command::frame::attach::{folder_failure, in_use, info, session_key};
+use crate::command::frame::session_manager::{HeldBy, ManagerRequest, SessionManager};
 use crate::failure::Failure;
 use crate::guardian::{self, HolderGuardian};
 use crate::output::Screen;
@@ -54,15 +54,15 @@ impl SessionHost {
     ) -> Result<Attempt, Failure> {
         let place = match SessionFolder::create() {
             Ok(place) => place,
-            Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
+            Err(error) => return Ok(Attempt::NoPlace(folder_failure(&error))),
         };
-        let key = key_of(robot);
+        let key = session_key(robot);
         let location = place.location(&key);
         let claim = match location.lock_soon(&info(robot, access)).await {
             Ok(LockResult::Locked(claim)) => claim,
             Ok(LockResult::Session) => return Ok(Attempt::Taken),
             Ok(LockResult::Busy) => return Err(in_use(robot, &location)),
-            Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
+            Err(error) => return Ok(Attempt::NoPlace(folder_failure(&error))),
         };
         let info = info(robot, access);
         let face = families::of(robot.family);
@@ -169,12 +169,12 @@ async fn hold(
     robot: Robot,
     access: Access,
     screen: Screen,
-    mut done: oneshot::Sender<Result<By, Failure>>,
+    mut done: oneshot::Sender<Result<HeldBy, Failure>>,
     held: Rc<RefCell<BTreeSet<String>>>,
     say: Say,
     mut ended: watch::Receiver<bool>,
 ) {
-    let key = key_of(&robot);
+    let key = session_key(&robot);
     let label = robot.label();
     let tell = {
         let (say, label) = (Arc::clone(&say), label.clone());
@@ -199,10 +199,10 @@ async fn hold(
         () = done.closed() => return,
     };
     let (by, holding) = match attempt {
-        Ok(None) => (Ok(By::This { records }), None),
-        Ok(Some(Attempt::SharedLink(holding))) => (Ok(By::This { records }), Some(holding)),
-        Ok(Some(Attempt::Taken)) => (Ok(By::Another), None),
-        Ok(Some(Attempt::NoPlace(why))) => (Ok(By::Nobody(why)), None),
+        Ok(None) => (Ok(HeldBy::ThisProcess { records }), None),
+        Ok(Some(Attempt::SharedLink(holding))) => (Ok(HeldBy::ThisProcess { records }), Some(holding)),
+        Ok(Some(Attempt::Taken)) => (Ok(HeldBy::OtherProcess), None),
+        Ok(Some(Attempt::NoPlace(why))) => (Ok(HeldBy::None(why)), None),
         Err(failure) => (Err(failure), None),
     };
     // The caller can be interrupted already. The link is there for the next line.

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::frame::attach::no_place;
+use crate::command::frame::attach::folder_failure;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -35,7 +35,7 @@ impl List {
 pub fn locations() -> Result<Vec<SessionPath>, Failure> {
     match SessionFolder::find().and_then(|place| place.map_or(Ok(Vec::new()), |place| place.locations())) {
         Ok(locations) => Ok(locations),
-        Err(error) => Err(no_place(&error)),
+        Err(error) => Err(folder_failure(&error)),
     }
 }
 

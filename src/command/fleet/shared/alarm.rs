@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use super::Shared;
 use super::line::SharedLine;
-use crate::command::face::shared::SharedVerb;
+use crate::command::face::shared_commands::SharedVerb;
 use crate::command::fleet::status::{Fleet, Link};
-use crate::command::frame::orders::Done;
+use crate::command::frame::settings_report::Done;
 use crate::command::frame::watch::Changes;
 use crate::command::robot::alarm::AllAlarms;
 use crate::command::{AnyCommand, Command, ConnectMode, Context, Report, SchemaEntry};
@@ -123,6 +123,6 @@ pub struct Present {
 
 impl Report for Present {
     fn view(&self) -> View {
-        if self.several { self.alarms.view() } else { self.alarms.of_one() }
+        if self.several { self.alarms.view() } else { self.alarms.for_robot() }
     }
 }

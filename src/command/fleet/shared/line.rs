@@ -13,7 +13,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::PerRobot;
-use crate::command::face::words::{Typed, Wish};
+use crate::command::face::family_command::{FamilyLine, ParsedCommand};
 use crate::command::families;
 use crate::command::frame::command::AnyContext;
 use crate::command::frame::items::ItemError;
@@ -56,8 +56,10 @@ impl SharedLine {
     }
 
     fn first_of(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self, Failure> {
-        let usual: Vec<(Family, Parsed)> =
-            Family::ALL.into_iter().map(|family| (family, names::asking(|| parse_first(family, &lines)).0)).collect();
+        let usual: Vec<(Family, Parsed)> = Family::ALL
+            .into_iter()
+            .map(|family| (family, names::detect_names(|| parse_first(family, &lines)).0))
+            .collect();
         match usual.iter().find(|_| usual.iter().all(|(_, parsed)| parsed.is_err())) {
             Some((_, Err(failure))) => Err(failure.clone()),
             _ => Ok(Self { id, lines, is_reduced, usual, own: RefCell::default() }),
@@ -72,7 +74,7 @@ impl SharedLine {
     fn of(&self, robot: &Robot) -> Rc<Parsed> {
         let parsed = || {
             let known = slice::from_ref(robot);
-            Rc::new(names::known(robot.family, known, || parse_first(robot.family, &self.lines)))
+            Rc::new(names::with_names(robot.family, known, || parse_first(robot.family, &self.lines)))
         };
         Rc::clone(self.own.borrow_mut().entry(robot.name.clone()).or_insert_with(parsed))
     }
@@ -203,7 +205,7 @@ fn parse(family: Family, words: &[String]) -> Parsed {
     let face = families::of(family);
     let parser = face.augment(clap::Command::new(family.name())).no_binary_name(true).disable_help_flag(true);
     match parser.try_get_matches_from(words).and_then(|mut matches| face.read(&mut matches)) {
-        Ok(Typed { wish: Wish::Command(command), .. }) => Ok(command),
+        Ok(FamilyLine { command: ParsedCommand::Command(command), .. }) => Ok(command),
         Ok(_) => Err(Failure::local("internal error: a shared line is a command of each family")),
         Err(error) => {
             let told = error.render().to_string();

@@ -6,10 +6,10 @@ pub mod line;
 
 use futures_util::future::LocalBoxFuture;
 
-use crate::command::face::shared::SharedVerb;
+use crate::command::face::shared_commands::SharedVerb;
 use crate::command::families::{self, FAMILIES};
 use crate::command::frame::command::AnyContext;
-use crate::command::frame::orders::Done;
+use crate::command::frame::settings_report::Done;
 use crate::command::robot::position::AllPositions;
 use crate::command::{Access, AnyCommand, ConnectMode, Connection, Driver, Entry, Outcome, SchemaEntry};
 use crate::failure::Failure;

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use serde_json::Value;
 
 use super::keys::KeyAction;
-use crate::command::face::panel::{Panel, System};
+use crate::command::face::teach_panel::{Panel, System};
 use crate::failure::{Failure, Kind};
 
 /// Number of past commands kept.

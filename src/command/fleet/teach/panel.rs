@@ -13,10 +13,10 @@ use super::keys::order;
 use super::model::{Model, Wish};
 use super::view::{Robot as Shown, draw};
 use super::{Teach, Types};
-use crate::command::face::panel::{Panel, SmallStep, Step};
+use crate::command::face::teach_panel::{Panel, SmallStep, Step};
 use crate::command::fleet::poll::{Poll, RobotId, Subscription, Wish as Looks};
 use crate::command::fleet::top;
-use crate::command::frame::interrupt::asked_to_end;
+use crate::command::frame::interrupt::termination_request;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::fullscreen::{Event, Fullscreen, Keys};
@@ -54,7 +54,7 @@ pub async fn show(
         let sizes = (0..model.system().axes.len()).map(|axis| size(&told, axis)).collect::<Option<Vec<f64>>>();
         model.scale_by(sizes.ok_or_else(|| Failure::local("internal error: no small step for the axes"))?);
     }
-    let looks = Looks { whole: Some(RobotId::of(robot)), longest_pause: LONGEST_PAUSE, ..Looks::every(EVERY) };
+    let looks = Looks { whole: Some(RobotId::for_robot(robot)), longest_pause: LONGEST_PAUSE, ..Looks::every(EVERY) };
     let mut poll = Poll::of(robot.clone(), screen.silenced());
     let mut updates = poll.subscribe(looks);
     let mut polled = poll.run().boxed_local();
@@ -115,7 +115,7 @@ impl<'a, L: Types> Show<'a, L> {
                 },
                 Some(done) = running.next(), if !running.is_empty() => self.take(done),
                 // Commands in progress also receive the interrupt, and stop the robot.
-                how = asked_to_end(), if self.leaving.is_none() => {
+                how = termination_request(), if self.leaving.is_none() => {
                     self.leave(Err(Failure::new(Kind::Interrupted, how)));
                 }
                 Some(told) = updates.next() => {

@@ -169,7 +169,7 @@ impl View<'_> {
         let now = self.start.elapsed();
         match told {
             poll::Event::Appeared(robot) => self.model.appear(&robot),
-            poll::Event::Gone(robot) => self.model.leave(&RobotId::of(&robot)),
+            poll::Event::Gone(robot) => self.model.leave(&RobotId::for_robot(&robot)),
             told => return self.model.hear(now, told),
         }
         // Another robot can be open now.

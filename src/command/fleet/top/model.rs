@@ -164,7 +164,7 @@ impl Model {
 
     /// Selects an axis by name, if it exists.
     pub fn choose_axis(&mut self, name: &str) {
-        let axes = self.chosen().and_then(Seen::sample).and_then(|sample| sample.whole.as_ref());
+        let axes = self.chosen().and_then(Seen::sample).and_then(|sample| sample.full.as_ref());
         let found = axes.and_then(|whole| whole.axes.iter().position(|axis| axis.name.eq_ignore_ascii_case(name)));
         self.axis = found.unwrap_or(self.axis);
     }
@@ -172,12 +172,12 @@ impl Model {
     /// Handles a poller event of a robot. Returns whether anything is new.
     pub fn hear(&mut self, now: Moment, told: Event) -> bool {
         let (robot, looked) = match told {
-            Event::Looked(look) => {
+            Event::Polled(look) => {
                 // The user can correct an unreadable text file, so show its error.
                 let looked = look.unexplained.clone().map_or_else(|| Ok(look.sample.clone()), Err);
-                (RobotId::of(&look.robot), looked)
+                (RobotId::for_robot(&look.robot), looked)
             }
-            Event::Failed { robot, failure, .. } => (RobotId::of(&robot), Err(failure)),
+            Event::Failed { robot, failure, .. } => (RobotId::for_robot(&robot), Err(failure)),
             Event::Appeared(_) | Event::Gone(_) | Event::Inventory(_) => return false,
         };
         let at = self.robots.iter().position(|seen| seen.id() == robot);
@@ -189,7 +189,7 @@ impl Model {
 
     /// A robot was added or changed.
     pub fn appear(&mut self, robot: &Robot) {
-        if !self.robots.iter().any(|seen| seen.id() == RobotId::of(robot)) {
+        if !self.robots.iter().any(|seen| seen.id() == RobotId::for_robot(robot)) {
             self.robots.push(Seen::new(robot));
         }
     }
@@ -361,7 +361,7 @@ impl Seen {
             }
             self.answers.push_back(answered_in);
         }
-        if let Some(whole) = &sample.whole {
+        if let Some(whole) = &sample.full {
             if !Track::fit(&self.tracks, &whole.axes) {
                 self.tracks = whole.axes.iter().map(Track::new).collect();
             }
@@ -369,8 +369,8 @@ impl Seen {
                 track.push(now, every, axis);
             }
         }
-        let whole = sample.whole.or_else(|| self.last.take().and_then(|(_, last)| last.whole));
-        self.last = Some((now, Sample { whole, ..sample }));
+        let whole = sample.full.or_else(|| self.last.take().and_then(|(_, last)| last.full));
+        self.last = Some((now, Sample { full: whole, ..sample }));
     }
 
     /// Newest sample, while the robot answers.
@@ -409,7 +409,7 @@ impl Seen {
             return (in_short(failure.kind).to_owned(), Tone::Bad);
         }
         let Some(sample) = self.sample() else { return ("waiting".to_owned(), Tone::Plain) };
-        sample.line.trouble().map_or_else(Default::default, |told| (told, Tone::Bad))
+        sample.line.fault_text().map_or_else(Default::default, |told| (told, Tone::Bad))
     }
 }
 
@@ -538,19 +538,19 @@ mod tests {
         model.obey(NOW, KeyAction::Open);
         model.appear(&robots[0]);
         assert_eq!(names(&model), ["cell1", "cell2", "cell3"], "one that is known is not there twice");
-        model.leave(&RobotId::of(&robots[0]));
+        model.leave(&RobotId::for_robot(&robots[0]));
         assert_eq!((names(&model), model.cursor, model.is_open), (vec!["cell2", "cell3"], 1, true));
         model.appear(&robots[3]);
         assert_eq!(model.chosen().map(|seen| seen.name.as_str()), Some("cell3"));
         // A pause shows old data. After it, the same robot is selected.
         model.obey(NOW, KeyAction::Pause);
-        model.leave(&RobotId::of(&robots[1]));
+        model.leave(&RobotId::for_robot(&robots[1]));
         assert_eq!(names(&model), ["cell2", "cell3", "cell4"]);
         model.obey(NOW, KeyAction::Pause);
         assert_eq!((names(&model), model.cursor, model.is_open), (vec!["cell3", "cell4"], 0, true));
-        model.leave(&RobotId::of(&robots[2]));
+        model.leave(&RobotId::for_robot(&robots[2]));
         assert_eq!((names(&model), model.is_open), (vec!["cell4"], false), "nothing is shown of one that has gone");
-        model.leave(&RobotId::of(&robots[3]));
+        model.leave(&RobotId::for_robot(&robots[3]));
         assert!(model.chosen().is_none() && model.open().is_none());
     }
 

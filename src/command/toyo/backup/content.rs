@@ -210,9 +210,9 @@ impl Content {
     /// Reads and checks the file of a part.
     pub fn load(part: Part, folder: &Path, screen: &Screen) -> Result<Self, Failure> {
         let path = folder.join(part.file());
-        let (name, bytes) = (files::shown(&path), files::read(&path)?);
+        let (name, bytes) = (files::display_path(&path), files::read(&path)?);
         let settings = |read: Vec<(Setting, usize)>| read.into_iter().map(|(setting, _)| setting).collect();
-        let faulty = |errors: Vec<_>| files::faulty(&name, &errors);
+        let faulty = |errors: Vec<_>| files::file_failure(&name, &errors);
         Ok(match part {
             Part::Parameters => Self::Parameters(parameters::read(&bytes).map(settings).map_err(faulty)?),
             Part::Points(_) => Self::Points(points::read(&bytes, point::AXES).map(settings).map_err(faulty)?),

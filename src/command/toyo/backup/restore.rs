@@ -5,13 +5,13 @@ use clap::Args;
 use super::content::{self, Content};
 use super::manifest::{Controller, Manifest};
 use super::parts::Part;
+use crate::command::backup::arguments::RestoreOptions;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{LeftOut, MANIFEST, Saved};
-use crate::command::backup::options::RestoreOptions;
-use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Only, Restored, Restoring, would_leave, would_write};
+use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreSelection, Restored, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::local::own_folder;
+use crate::command::frame::local_names::private_folder;
 use crate::command::robot::file::{FileItem, State};
 use crate::command::toyo::eeprom::{Cell, Cells};
 use crate::command::toyo::link::Toyo;
@@ -48,7 +48,7 @@ pub struct Restore {
 
 /// What is asked for of a restore.
 struct Asked {
-    restoring: Restoring,
+    restoring: RestoreSelection,
     resume: Option<Part>,
 }
 
@@ -86,13 +86,13 @@ impl Command for Restore {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
         let restoring = self.options.restoring();
-        let folder = own_folder(&restoring.folder, &context.robot.name, context.several);
-        Asked { restoring: Restoring { folder, ..restoring }, resume: self.resume }.run(context).await
+        let folder = private_folder(&restoring.folder, &context.robot.name, context.several);
+        Asked { restoring: RestoreSelection { folder, ..restoring }, resume: self.resume }.run(context).await
     }
 }
 
 /// Writes back what a backup holds.
-pub async fn restore(context: Context<'_, Toyo>, restoring: &Restoring) -> Result<Restored, Failure> {
+pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
     Asked { restoring: restoring.clone(), resume: None }.run(context).await
 }
 
@@ -100,9 +100,9 @@ impl Asked {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, authority, .. } = context;
         let folder = &self.restoring.folder;
-        let manifest: Manifest = manifest::existing(folder)?;
+        let manifest: Manifest = manifest::open_existing(folder)?;
         // Whether robot and address are those of the backup; the machine itself is asked later.
-        manifest::check_origin(&manifest::existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
+        manifest::check_origin(&manifest::open_existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
         let parts = self.chosen(&manifest)?;
         if self.restoring.machine && !parts.contains(&Part::Parameters) {
             return Err(Failure::usage("--machine needs the parameters, which --only excludes")
@@ -167,7 +167,7 @@ impl Asked {
             identify(backup, &found, self.restoring.machine)?;
         }
         let folder = &self.restoring.folder;
-        let pending = |job: &Job| FileItem::values(job.part).of_copy(folder, &job.saved);
+        let pending = |job: &Job| FileItem::values(job.part).from_copy(folder, &job.saved);
         let mut results: Vec<FileItem> = jobs.iter().map(pending).collect();
         let mut machine = self.machine_stores(jobs)?;
         stores::look(link, screen, &mut machine).await?;

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::client::toyo::Event;
 use crate::client::{Ends, Watcher};
-use crate::command::frame::trace::locked;
+use crate::command::frame::trace::lock_writer;
 use crate::command::toyo::chosen::Chosen;
 use crate::command::toyo::debts::{Debts, Left};
 use crate::command::toyo::failure::not_put_back;
@@ -55,11 +55,11 @@ pub(super) struct Watching(pub(super) Arc<Mutex<Onlooker>>);
 
 impl Watcher<Event> for Watching {
     fn frame(&mut self, direction: Direction, _: Ends, bytes: &[u8]) {
-        locked(&self.0).trace.record(direction, bytes);
+        lock_writer(&self.0).trace.record(direction, bytes);
     }
 
     fn event(&mut self, event: Event) {
-        let mut onlooker = locked(&self.0);
+        let mut onlooker = lock_writer(&self.0);
         match event {
             Event::Moves(moving) => onlooker.debts.moving(moving),
             Event::TakesHost(is_taken) => onlooker.debts.host(is_taken),

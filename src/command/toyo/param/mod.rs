@@ -22,7 +22,7 @@ use super::values::{self, Shown};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::commands;
-use crate::command::frame::store::{Answers, Differing, Field, Get, Ids, List, Set, Single, Store, Words, ids};
+use crate::command::frame::store::{Answers, Differing, Field, Get, Ids, List, Set, Single, Store, TableWords, ids};
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{Layout, Record};
@@ -166,7 +166,7 @@ impl Store for Parameters {
     type More = About;
     type Options = Single;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["parameter", "parameters"],
         placeholder: "NAME",
         range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, machine, special",

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{About, Key, Parameters};
-use crate::command::frame::store::{Work, write};
+use crate::command::frame::store::{TableWrite, write};
 use crate::command::robot::item::WrittenItems;
 use crate::command::toyo::files;
 use crate::command::toyo::link::Toyo;
@@ -68,9 +68,9 @@ impl Command for Restore {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Self::Report, Failure> {
         let Context { robot, link, screen, authority, .. } = context;
-        let name = files::shown(&self.file);
+        let name = files::display_path(&self.file);
         let read = parameters::read(&files::read(&self.file)?);
-        let settings = read.map_err(|errors| files::faulty(&name, &errors))?;
+        let settings = read.map_err(|errors| files::file_failure(&name, &errors))?;
         let settings = settings.into_iter().map(|(setting, _)| setting);
         let (mut chosen, left): (Vec<Setting>, Vec<Setting>) =
             settings.partition(|setting| self.place(setting).is_some());
@@ -90,7 +90,7 @@ impl Command for Restore {
             (Key { parameter: setting.parameter, row: setting.row() }, Changes::of(values))
         };
         let rows = chosen.into_iter().map(row).collect();
-        write(Work { table: Parameters, robot, link, screen, authority }, rows).await
+        write(TableWrite { table: Parameters, robot, link, screen, authority }, rows).await
     }
 }
 

@@ -59,12 +59,12 @@ impl OfflineCommand for Check {
         let room = usize::from(self.room).min(MOST_STEPS);
         let names = Names::new(self.name.clone());
         let points = self.points.as_ref().map(|path| {
-            let name = files::shown(path);
-            points::numbers(&files::read(path)?).map_err(|errors| files::faulty(&name, &errors))
+            let name = files::display_path(path);
+            points::numbers(&files::read(path)?).map_err(|errors| files::file_failure(&name, &errors))
         });
         let known = Known { points: points.transpose()?.map(|points| points.into_iter().collect()) };
         let verdict = |path: &PathBuf| {
-            let (bytes, name) = (files::read(path)?, files::shown(path));
+            let (bytes, name) = (files::read(path)?, files::display_path(path));
             let mut checked = program::check_known(&bytes, room, None, &names, &known);
             if let Some(program) = &checked.program {
                 let stop = sim::rehearse(&name, program, self.points.as_deref())?;

@@ -198,8 +198,9 @@ impl Run {
             list.extend(written.into_iter().map(toml::Value::String));
         }
         for (task, path) in &self.points {
-            let name = files::shown(path);
-            let read = bulk::points::read(&files::read(path)?, AXES).map_err(|errors| files::faulty(&name, &errors))?;
+            let name = files::display_path(path);
+            let read =
+                bulk::points::read(&files::read(path)?, AXES).map_err(|errors| files::file_failure(&name, &errors))?;
             for (point, _) in read {
                 place(&mut document, *task, &point);
             }
@@ -267,8 +268,8 @@ impl Run {
 
 /// Commands that write the settings of a file, without `@`.
 fn writes(path: &Path, read: Result<Vec<Placed>, Vec<Finding>>) -> Result<Vec<String>, Failure> {
-    let name = files::shown(path);
-    let settings = read.map_err(|errors| files::faulty(&name, &errors))?;
+    let name = files::display_path(path);
+    let settings = read.map_err(|errors| files::file_failure(&name, &errors))?;
     let mut start = Start::default();
     let mut commands = Vec::with_capacity(settings.len());
     for (setting, line) in settings {
@@ -302,7 +303,7 @@ fn place(state: &mut toml::Table, task: usize, point: &Setting) {
 
 /// The program in a file.
 fn source(screen: &Screen, names: &Names, task: usize, file: &Path) -> Result<Source, Failure> {
-    let name = files::shown(file);
+    let name = files::display_path(file);
     let bytes = files::read(file)?;
     Ok(Source {
         task,

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::robot::alarm::{Alarm, AlarmEntry, Besides, Kind, Standing};
+use crate::command::robot::alarm::{Alarm, AlarmEntry, AlarmState, ExtraColumns, Kind};
 use crate::command::yerc::link::Link;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -20,7 +20,7 @@ pub struct WithTexts {
     pub with_texts: bool,
 }
 
-impl Standing for WithTexts {}
+impl AlarmState for WithTexts {}
 
 /// Family-specific fields of an alarm.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -107,7 +107,7 @@ pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
     Alarm { text: Some(text), ..alarm }
 }
 
-impl Besides for Own {
+impl ExtraColumns for Own {
     // The type is only in JSON, because a column for it would leave no space for the text.
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         let board = self.board.as_deref().map(str::trim).filter(|board| !board.is_empty());

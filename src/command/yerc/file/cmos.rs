@@ -13,7 +13,7 @@ use clap::Args;
 use super::transfer;
 use crate::command::backup::manifest::Hash;
 use crate::command::frame::dry_run::{Reason, unknown};
-use crate::command::frame::local::{Target, folder_of, make_folder, own_folder};
+use crate::command::frame::local_names::{Target, folder_of, make_folder, private_folder};
 use crate::command::robot::file::{FileItem, Files, State};
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
@@ -60,7 +60,7 @@ impl Command for Cmos {
         let name = file.file_name().ok_or_else(|| {
             Failure::usage(format!("{} is not a file name", file.display())).hint("use a file name, as in cmos.bin")
         })?;
-        let folder = own_folder(&folder_of(file), &robot.name, several);
+        let folder = private_folder(&folder_of(file), &robot.name, several);
         let path = if several { folder.join(name) } else { file.to_owned() };
         let target = Target::new(path, self.force)?;
         if link.is_dry() {
@@ -103,7 +103,7 @@ impl Cmos {
             });
             if came.await?.is_some() {
                 draft.commit()?;
-                return Ok(made(FileItem::pending(NAME).at(target.path()).holding(hash)));
+                return Ok(made(FileItem::pending(NAME).with_path(target.path()).with_content(hash)));
             }
         }
         Err(Failure::new(Kind::Malformed, "the controller created a backup instead of sending the existing one").hint(

@@ -1,7 +1,7 @@
 //! Comparison of a transfer with a local file, block by block, with neither file in memory.
 
 use super::content::Pieces;
-use crate::command::backup::dated::WithoutDate;
+use crate::command::backup::job_date::DateFilter;
 use crate::command::backup::manifest::Hash;
 use crate::failure::Failure;
 
@@ -28,7 +28,7 @@ pub struct Comparer<'a> {
     so_far: Comparison,
     local_ended: bool,
     /// Date filters of both sides.
-    without: Option<[WithoutDate; 2]>,
+    without: Option<[DateFilter; 2]>,
 }
 
 impl<'a> Comparer<'a> {
@@ -90,9 +90,9 @@ impl<'a> Comparer<'a> {
         if let Some([theirs, ours]) = &self.without {
             let Comparison { controller_bytes, local_bytes, first_difference, dates_differ } = &mut self.so_far;
             *dates_differ = theirs.left_out() != ours.left_out();
-            *first_difference = first_difference.map(|at| theirs.in_whole(at));
-            *controller_bytes = controller_bytes.saturating_add(theirs.dropped());
-            *local_bytes = local_bytes.saturating_add(ours.dropped());
+            *first_difference = first_difference.map(|at| theirs.is_complete(at));
+            *controller_bytes = controller_bytes.saturating_add(theirs.is_date_left_out());
+            *local_bytes = local_bytes.saturating_add(ours.is_date_left_out());
         }
         Ok((self.so_far, self.pieces.hash))
     }
@@ -127,7 +127,7 @@ mod tests {
 
     use super::super::content::Content;
     use super::*;
-    use crate::command::backup::dated::aligned;
+    use crate::command::backup::job_date::align_files;
 
     fn compared(local: &[u8], blocks: &[&[u8]]) -> Comparison {
         let mut file = tempfile::NamedTempFile::new().unwrap();
@@ -183,7 +183,7 @@ mod tests {
         let mut comparer = Comparer::new(content.pieces().unwrap(), true);
         comparer.take(theirs).unwrap();
         assert_eq!(comparer.finish().unwrap().0.first_difference, Some(22));
-        let ([old, new], dates_differ) = aligned(theirs.to_vec(), ours.to_vec());
+        let ([old, new], dates_differ) = align_files(theirs.to_vec(), ours.to_vec());
         assert_eq!((&old[..], &new[..], dates_differ), (&theirs[..], &b"/JOB\r\n///DATE 2026\r\nNOW\r\n"[..], true));
     }
 
@@ -191,7 +191,7 @@ mod tests {
     fn the_date_of_a_job_can_be_left_out() {
         let job = |date: &str| format!("/JOB\r\n//INST\r\n{date}///ATTR SC,RW\r\nNOP\r\nEND\r\n///DA").into_bytes();
         let (old, new) = (job("///DATE 2026/03/14 08:00\r\n"), job("///DATE 2026/11/22 11:00\r\n"));
-        assert_eq!(WithoutDate::of(&old), job(""));
+        assert_eq!(DateFilter::align(&old), job(""));
         for (theirs, ours, dates_differ) in
             [(&old, &new, true), (&old, &job(""), true), (&job(""), &new, true), (&old, &old, false)]
         {

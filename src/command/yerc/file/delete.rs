@@ -56,11 +56,11 @@ impl Command for Delete {
                 There::No => Err(transfer::not_listed()),
                 There::Yes | There::Untold => transfer::remove(link, file).await,
             };
-            if !result.settle(outcome.map(|()| None)) {
+            if !result.finish(outcome.map(|()| None)) {
                 break;
             }
         }
-        report(results).or_only_failure()
+        report(results).single_failure()
     }
 }
 

@@ -11,7 +11,7 @@ use super::transfer::{self, Download};
 use crate::command::backup::manifest::Hash;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::local::{Target, folder_of, local_name};
+use crate::command::frame::local_names::{Target, folder_of, local_name};
 use crate::command::yerc::link::Link;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::files::{FileName, FileType};

@@ -11,10 +11,10 @@ use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
 use crate::command::backup::compare::{Compared, State};
-use crate::command::backup::dated::{DATE_LINE, aligned};
+use crate::command::backup::job_date::{DATE_LINE, align_files};
 use crate::command::backup::manifest::Hash;
-use crate::command::backup::text_diff::{self, Change, Ending, MOST_TEXT, TextDifference};
-use crate::command::frame::local::{local_name, own_folder};
+use crate::command::backup::text_diff::{self, Change, Ending, MAX_TEXT, TextDifference};
+use crate::command::frame::local_names::{local_name, private_folder};
 use crate::command::robot::file::{FILES, FileItem};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
@@ -54,7 +54,7 @@ impl Command for Diff {
         let Context { link, screen, robot, several, .. } = context;
         let file = name::typed(link.encoding, &self.name)?;
         let local = self.local.clone().unwrap_or_else(|| {
-            own_folder("".as_ref(), &robot.name, several).join(local_name(link.encoding, file.as_bytes()))
+            private_folder("".as_ref(), &robot.name, several).join(local_name(link.encoding, file.as_bytes()))
         });
         let mut source = Content::open_any(&local)?;
         let shown = Shown::new(link.encoding, file.as_bytes());
@@ -65,18 +65,18 @@ impl Command for Diff {
         transfer::fetch(link, &file, |block| {
             progress.advance(block.len() as u64);
             // One byte more than the limit shows that the file is longer.
-            let room = (MOST_TEXT + 1).saturating_sub(theirs.len());
+            let room = (MAX_TEXT + 1).saturating_sub(theirs.len());
             theirs.extend_from_slice(block.get(..room).unwrap_or(block));
             comparer.take(block)
         })
         .await
-        .map_err(|failure| transfer::about(&shown.name, failure))?;
+        .map_err(|failure| transfer::describe_request(&shown.name, failure))?;
         let (comparison, hash) = comparer.finish()?;
         drop(progress);
-        let text = if comparison.first_difference.is_some() && comparison.local_bytes <= MOST_TEXT as u64 {
+        let text = if comparison.first_difference.is_some() && comparison.local_bytes <= MAX_TEXT as u64 {
             let mut ours = Vec::new();
             let mut pieces = source.pieces()?;
-            while ours.len() <= MOST_TEXT {
+            while ours.len() <= MAX_TEXT {
                 let piece = pieces.next_piece()?;
                 if piece.is_empty() {
                     break;
@@ -84,7 +84,7 @@ impl Command for Diff {
                 ours.extend(piece);
             }
             if without_date {
-                ([theirs, ours], _) = aligned(theirs, ours);
+                ([theirs, ours], _) = align_files(theirs, ours);
             }
             TextDifference::of(link.encoding, &theirs, &ours)
         } else {
@@ -127,7 +127,7 @@ impl Difference {
         compared.ignored.extend(dates_differ.then_some(DATE_LINE));
         let Shown { name, name_hex } = name;
         let more = Sides { name_hex, compared, controller_bytes, first_difference_offset: first_difference };
-        let file = FileItem::new(name, more, Ok(())).at(local).holding(hash);
+        let file = FileItem::new(name, more, Ok(())).with_path(local).with_content(hash);
         Self { equal: first_difference.is_none(), files: [file] }
     }
 

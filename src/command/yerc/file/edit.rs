@@ -8,11 +8,11 @@ use super::content::{Content, JobRules};
 use super::deliver::{Delivery, Manner, deliver};
 use super::name::{self, Shown};
 use super::transfer;
-use crate::command::backup::dated::aligned;
-use crate::command::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MOST_TEXT, TextDifference};
+use crate::command::backup::job_date::align_files;
+use crate::command::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MAX_TEXT, TextDifference};
 use crate::command::frame::dry_run::{Reason, unknown};
-use crate::command::frame::edited::Edited;
-use crate::command::frame::local::local_name;
+use crate::command::frame::editor_session::EditedText;
+use crate::command::frame::local_names::local_name;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::{Command, Context, Report};
@@ -66,13 +66,13 @@ impl Command for Edit {
         let old = fetch(context.link, context.screen, &file).await?;
         let form = TextForm::of(encoding, &old);
         let local = local_name(encoding, file.as_bytes());
-        let mut edited = Edited::new(&local, &form.opened(&old), *context.screen)?;
+        let mut edited = EditedText::new(&local, &form.opened(&old), *context.screen)?;
         match self.put_back(&mut context, &file, (&old, form), &edited).await {
             Ok(report) => {
-                edited.done();
+                edited.mark_stored();
                 Ok(report)
             }
-            Err(failure) => Err(edited.kept(failure, |path| {
+            Err(failure) => Err(edited.keep_file(failure, |path| {
                 format!("your text is in {path}; `yerc file put {path} --as {local} --replace --verify` sends it")
             })),
         }
@@ -85,7 +85,7 @@ impl Edit {
         context: &mut Context<'_, Yerc>,
         file: &FileName,
         (old, form): (&[u8], TextForm),
-        edited: &Edited,
+        edited: &EditedText,
     ) -> Result<EditedJob, Failure> {
         let (link, screen) = (&mut *context.link, context.screen);
         let shown = Shown::new(link.encoding, file.as_bytes());
@@ -111,7 +111,7 @@ impl Edit {
         }
         check_idle(link, file).await?;
         let now = fetch(link, screen, file).await?;
-        let ([before, after], _) = aligned(old.to_vec(), now);
+        let ([before, after], _) = align_files(old.to_vec(), now);
         if before != after {
             return Err(Failure::new(
                 Kind::Rejected,
@@ -181,14 +181,14 @@ async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<
     let fetched = transfer::fetch(link, file, |block| {
         progress.advance(block.len() as u64);
         bytes.extend_from_slice(block);
-        if bytes.len() > MOST_TEXT {
+        if bytes.len() > MAX_TEXT {
             return Err(
                 Failure::usage("the job is too large for this command").hint("download it with `yerc file get`")
             );
         }
         Ok(())
     });
-    fetched.await.map_err(|failure| transfer::about(&name, failure))?;
+    fetched.await.map_err(|failure| transfer::describe_request(&name, failure))?;
     Ok(bytes)
 }
 

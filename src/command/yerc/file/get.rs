@@ -8,7 +8,7 @@ use super::name;
 use super::pattern::{self, Wanted, is_pattern};
 use super::transfer::{self, Download};
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::local::{LocalNames, Target, make_folder, own_folder};
+use crate::command::frame::local_names::{LocalNames, Target, make_folder, private_folder};
 use crate::command::robot::file::{FileItem, Files};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
@@ -47,7 +47,7 @@ impl Command for Get {
         }
         // Paths without a leading `./` are easier to read.
         let dir = if self.dir == Path::new(".") { Path::new("") } else { &self.dir };
-        let folder = own_folder(dir, &robot.name, several);
+        let folder = private_folder(dir, &robot.name, several);
         // All checks that need no list come before the first request.
         let typed: Vec<String> = self.names.iter().filter(|name| !is_pattern(name)).cloned().collect();
         let typed = name::all_typed(link.encoding, &typed)?;
@@ -73,7 +73,7 @@ impl Command for Get {
             };
             let file = name.pending();
             results.push(match &placed {
-                Ok((_, target)) => file.at(target.path()),
+                Ok((_, target)) => file.with_path(target.path()),
                 Err(_) => file,
             });
             work.push(placed);
@@ -89,11 +89,11 @@ impl Command for Get {
                 }
                 Err(failure) => Err(failure),
             };
-            if !result.settle(outcome.map(Some)) {
+            if !result.finish(outcome.map(Some)) {
                 break;
             }
         }
-        Files::new(results, |files| FileItem::transfers(files, "saved")).or_only_failure()
+        Files::new(results, |files| FileItem::transfers(files, "saved")).single_failure()
     }
 }
 
@@ -123,7 +123,7 @@ async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<(), 
     let came = transfer::fetch(link, file, |block| out.take(block)).await;
     // Received bytes are written even after a failure; the exit code reports the failure.
     out.flush()?;
-    came.map(|_| ()).map_err(|failure| transfer::about(&name, failure))
+    came.map(|_| ()).map_err(|failure| transfer::describe_request(&name, failure))
 }
 
 /// Writer of a file to stdout: bytes, or on a terminal escaped text that cannot control the terminal.

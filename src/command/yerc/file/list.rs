@@ -60,11 +60,11 @@ impl Command for List {
                     FileItem::new(name, Listed { name_hex, file_type }, Ok(()))
                 })),
                 // A controller may list jobs but refuse to list parameters.
-                Err(failure) if backup::goes_on(&failure) && filters.len() > 1 => {
+                Err(failure) if backup::continues_after(&failure) && filters.len() > 1 => {
                     let more = Listed { name_hex: None, file_type: kind.map(type_word) };
                     listed.push(FileItem::new(filter, more, Err(failure)));
                 }
-                Err(failure) => return Err(transfer::about(&shown(filter), failure)),
+                Err(failure) => return Err(transfer::describe_request(&shown(filter), failure)),
             }
         }
         Ok(Files::new(listed, table).asked(filters.len()))

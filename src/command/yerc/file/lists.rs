@@ -2,7 +2,7 @@
 //! confirmation.
 
 use super::transfer;
-use crate::command::backup::goes_on;
+use crate::command::backup::continues_after;
 use crate::command::frame::dry_run::Reason;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::{self, FileName, FileType};
@@ -45,8 +45,8 @@ impl Lists {
         for kind in types {
             let names = match transfer::list(link, kind).await {
                 Ok(names) => Some(names),
-                Err(failure) if goes_on(&failure) => None,
-                Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
+                Err(failure) if continues_after(&failure) => None,
+                Err(failure) => return Err(transfer::describe_request(&kind.filter(), failure)),
             };
             lists.0.push((kind, names));
         }

@@ -3,11 +3,11 @@
 
 use super::name::{self, Shown};
 use super::transfer;
-use crate::command::backup::goes_on;
+use crate::command::backup::continues_after;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::{self, FileName, FileType};
 use crate::failure::{Failure, Kind};
-use crate::settings::inventory::fits;
+use crate::settings::inventory::matches_pattern;
 
 /// A requested file, or the reason why there is none.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub fn is_pattern(text: &str) -> bool {
 /// File types that a pattern can match.
 fn types(pattern: &str) -> Vec<FileType> {
     let ending = pattern.rsplit_once('.').map_or("*", |(_, ending)| ending);
-    FileType::ALL.into_iter().filter(|kind| fits(&ending.to_uppercase(), kind.extension())).collect()
+    FileType::ALL.into_iter().filter(|kind| matches_pattern(&ending.to_uppercase(), kind.extension())).collect()
 }
 
 /// Finds the files of arguments: names unchanged, and matches of patterns, without duplicates. `None` in a dry run,
@@ -60,17 +60,17 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<Wanted
     for kind in kinds {
         let listed = match transfer::list(link, kind).await {
             Ok(listed) => listed,
-            Err(failure) if goes_on(&failure) => {
+            Err(failure) if continues_after(&failure) => {
                 refused.push(Wanted { name: shown(kind.filter().as_bytes()), file: Err(failure) });
                 continue;
             }
-            Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
+            Err(failure) => return Err(transfer::describe_request(&kind.filter(), failure)),
         };
         for bytes in listed {
             let name = shown(&bytes);
             let mut fits_one = false;
             for (pattern, fitted) in patterns.iter().zip(&mut fitted) {
-                let fits = fits(pattern, &name.name);
+                let fits = matches_pattern(pattern, &name.name);
                 *fitted |= fits;
                 fits_one |= fits;
             }

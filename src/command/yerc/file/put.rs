@@ -9,7 +9,7 @@ use super::deliver::{self, Delivery, Manner, deliver};
 use super::lists::{Lists, There};
 use super::name::{self, Shown};
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::local::controller_name;
+use crate::command::frame::local_names::controller_name;
 use crate::command::robot::file::{FileItem, Files};
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
@@ -65,7 +65,7 @@ impl Command for Put {
         let mut results: Vec<FileItem> = Vec::with_capacity(deliveries.len());
         for delivery in &deliveries {
             let Delivery { file, content } = delivery;
-            let mut result = Shown::new(link.encoding, file.as_bytes()).pending().at(content.path());
+            let mut result = Shown::new(link.encoding, file.as_bytes()).pending().with_path(content.path());
             if let Some((own, sent)) = delivery.other_name(link.encoding) {
                 screen.note(&format!(
                     "warning: {} has //NAME {own} but is sent as {sent}: a controller may refuse it, or store it as \
@@ -89,11 +89,11 @@ impl Command for Put {
             // An unlisted file was not confirmed, so it is not deleted.
             let replace = manner.replace && lists.tell(&delivery.file) != There::No;
             let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, &mut result.more.notes).await;
-            if !result.settle(outcome.map(Some)) {
+            if !result.finish(outcome.map(Some)) {
                 break;
             }
         }
-        report(results).or_only_failure()
+        report(results).single_failure()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::lists::{Lists, There};
 use super::transfer;
-use crate::command::backup::goes_on;
+use crate::command::backup::continues_after;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::FileName;
 use crate::failure::{Failure, Kind};
@@ -57,8 +57,8 @@ pub async fn read_files(
         match read.await {
             Ok(0) => answers.push(FileReading::Missing),
             Ok(_) => answers.push(FileReading::Read(bytes)),
-            Err(failure) if goes_on(&failure) => answers.push(FileReading::Failed(failure)),
-            Err(failure) => return Err(transfer::about(name, failure)),
+            Err(failure) if continues_after(&failure) => answers.push(FileReading::Failed(failure)),
+            Err(failure) => return Err(transfer::describe_request(name, failure)),
         }
     }
     Ok(Some(answers))

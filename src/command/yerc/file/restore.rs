@@ -13,10 +13,10 @@ use super::transfer;
 use crate::command::Context;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::Entry;
-use crate::command::backup::{NOT_CHOSEN, Only, Restored, Restoring, would_leave, would_write};
+use crate::command::backup::{NOT_CHOSEN, Only, RestoreSelection, Restored, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::local::own_folder;
+use crate::command::frame::local_names::private_folder;
 use crate::command::robot::file::{FileItem, State};
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
@@ -47,8 +47,8 @@ const USUAL: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
 
 impl Restore {
     /// Options from those of the `restore` command of all families.
-    pub fn of(restoring: &Restoring) -> Self {
-        let Restoring { folder, only: patterns, machine, force } = restoring.clone();
+    pub fn of(restoring: &RestoreSelection) -> Self {
+        let RestoreSelection { folder, only: patterns, machine, force } = restoring.clone();
         let mut types = USUAL.to_vec();
         if patterns != Only::default() || machine {
             types.push(FileType::Lst);
@@ -62,9 +62,9 @@ impl Restore {
     /// Sends what differs.
     pub async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several, authority } = context;
-        let folder = own_folder(&self.folder, &robot.name, several);
-        manifest::check_origin(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
-        let manifest: Manifest = manifest::existing(&folder)?;
+        let folder = private_folder(&self.folder, &robot.name, several);
+        manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, robot, self.force)?;
+        let manifest: Manifest = manifest::open_existing(&folder)?;
         let (taken_of, model) = (manifest.controller.taken_of(), link.model().await?);
         if taken_of != model.name() && !link.is_dry() && !self.force {
             let message = format!("the backup is of a {taken_of}, {} is a {model}", robot.label());
@@ -77,7 +77,7 @@ impl Restore {
             let Some(copy) = &entry.copy else { continue };
             copy.check(&folder)?;
             if copy.bytes > 0 {
-                results.push(Shown::new(link.encoding, file.as_bytes()).pending().of_copy(&folder, copy));
+                results.push(Shown::new(link.encoding, file.as_bytes()).pending().from_copy(&folder, copy));
                 deliveries.push(Delivery { file, content: Content::open(&folder.join(&copy.file))? });
             } else {
                 screen.note(&format!("{} is empty and cannot be sent", entry.name));
@@ -106,7 +106,7 @@ impl Restore {
             // An unlisted file was not confirmed, so it is not deleted.
             let replace = lists.tell(&delivery.file) != There::No;
             let outcome = deliver(link, screen, delivery, Manner { replace, ..MANNER }, &mut result.more.notes).await;
-            if !result.settle(outcome.map(Some)) {
+            if !result.finish(outcome.map(Some)) {
                 break;
             }
             sent.advance(1);

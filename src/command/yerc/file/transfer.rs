@@ -6,8 +6,8 @@ use super::compare::Comparer;
 use super::content::Content;
 use crate::command::backup::manifest::Hash;
 use crate::command::frame::dry_run::Reason;
-pub use crate::command::frame::items::about;
-use crate::command::frame::local::Target;
+pub use crate::command::frame::items::describe_request;
+use crate::command::frame::local_names::Target;
 use crate::command::yerc::link::{Link, Refusal};
 use crate::controller::yerc::files::{self, FileName, FileType, split_list};
 use crate::controller::yerc::request::Request;
@@ -229,7 +229,7 @@ pub fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
             Err(Refusal::of_file(service, status).into())
         }
         DownloadEnd::Refused { status, bytes } => {
-            Err(about(&format!("aborted after {bytes} bytes"), Refusal::of_file(service, status).into()))
+            Err(describe_request(&format!("aborted after {bytes} bytes"), Refusal::of_file(service, status).into()))
         }
         DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller reported success but sent nothing")
             .hint("`yerc file list` shows whether the file exists; it may be empty")),
@@ -270,9 +270,10 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
         UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => {
             Err(Refusal::of_file(service::LOAD, status).into())
         }
-        UploadEnd::Refused { status, taken, .. } => {
-            Err(about(&format!("after {taken} of {total} bytes"), Refusal::of_file(service::LOAD, status).into()))
-        }
+        UploadEnd::Refused { status, taken, .. } => Err(describe_request(
+            &format!("after {taken} of {total} bytes"),
+            Refusal::of_file(service::LOAD, status).into(),
+        )),
         UploadEnd::OutcomeUnknown { sent: 0, counters, .. } => {
             let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
             unknown(format!(

@@ -50,7 +50,7 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
         let Context { link, robot, screen, .. } = context;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let signals: Vec<Signal> = once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));
         let groups: Vec<u16> = once(self.groups.iter().flat_map(|groups| groups.0.iter().copied()));
         let wanted: Vec<u16> = signals.iter().map(|signal| signal.group()).chain(groups.iter().copied()).collect();

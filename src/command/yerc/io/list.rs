@@ -28,7 +28,7 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
         let Context { link, robot, screen, .. } = context;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let groups = |model| -> Vec<u16> {
             let all = signal::groups(model).filter(|(_, span)| self.filter.has(kind(span.meaning)));
             all.map(|(group, _)| group).collect()

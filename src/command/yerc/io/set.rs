@@ -97,7 +97,7 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenSignals, Failure> {
         let Context { link, screen, robot, .. } = context;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let changes = self.changes()?;
         let groups: Vec<u16> = changes.keys().copied().collect();
         let model = link.model_for(|model| signal::reads(model, &groups, true)).await?;

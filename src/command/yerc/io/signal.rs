@@ -15,7 +15,9 @@ const ANY: &str = "10010";
 
 /// Parses a single signal: `20010`, `#20010`, or its name.
 pub fn single(text: &str) -> Result<Signal, String> {
-    names::read(&[Kind::Signal], ANY, text, |text| text.parse().map_err(|error: SignalError| error.to_string()))
+    names::parse_or_name(&[Kind::Signal], ANY, text, |text| {
+        text.parse().map_err(|error: SignalError| error.to_string())
+    })
 }
 
 /// A signal or a range of them, as typed.
@@ -25,7 +27,7 @@ pub struct Signals(pub Vec<Signal>);
 impl Signals {
     /// Parses `20010`, `#20010`, `20010..20027` (inclusive), or a name.
     pub fn parse(text: &str) -> Result<Self, String> {
-        names::read(&[Kind::Signal], ANY, text, Self::addresses)
+        names::parse_or_name(&[Kind::Signal], ANY, text, Self::addresses)
     }
 
     fn addresses(text: &str) -> Result<Self, String> {

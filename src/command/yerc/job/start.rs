@@ -11,7 +11,7 @@ use tokio::time::Instant;
 use super::{Select, about, without_suffix};
 use crate::command::frame::cycle::{Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, unknown};
-use crate::command::frame::ending::ProgramEnd;
+use crate::command::frame::wait_arguments::ProgramEnd;
 use crate::command::robot::program::{Program, ProgramState};
 use crate::command::yerc::chosen::Chosen;
 use crate::command::yerc::complete;
@@ -60,7 +60,7 @@ impl Command for Start {
     }
 
     fn intent(&self) -> String {
-        let times = self.repeat.in_words();
+        let times = self.repeat.describe();
         match &self.name {
             Some(name) => format!("select and start job {}{times}", without_suffix(name)),
             None => format!("start the selected job{times}"),
@@ -97,7 +97,7 @@ impl Command for Start {
         let mut runs = Runs::new(self.repeat);
         let mut line = None;
         for _ in 0..self.repeat.count() {
-            let early = |failure| runs.early(failure);
+            let early = |failure| runs.add_to_failure(failure);
             // A job is started again only if its state is the same as before.
             if runs.last_ms().is_some() {
                 chosen.check_again(link).await.map_err(early)?;
@@ -114,7 +114,7 @@ impl Command for Start {
             }
             let what = runs.next().unwrap_or_else(|| "the job is running".to_owned());
             let (elapsed_ms, at) = wait(link, screen, limit, &what, &chosen).await.map_err(early)?;
-            runs.ended(elapsed_ms);
+            runs.add(elapsed_ms);
             line = at;
         }
         let elapsed_ms = runs.last_ms();
@@ -134,7 +134,7 @@ impl Start {
 
     /// Text of the confirmation.
     fn change(&self, chosen: &Chosen, link: &Link) -> Change {
-        let times = self.repeat.in_words();
+        let times = self.repeat.describe();
         let Some(name) = &self.name else { return chosen.change(link.encoding, &times) };
         let from = self.line.filter(|line| *line > 0).map(|line| format!(" from line {line}")).unwrap_or_default();
         let change = Change::new(format!("select and start job {}{from}{times}", without_suffix(name)));

@@ -4,8 +4,8 @@ use std::fmt;
 
 use clap::{Args, ValueEnum};
 
-use crate::command::frame::ending::MotionEnd;
 use crate::command::frame::names;
+use crate::command::frame::wait_arguments::MotionEnd;
 use crate::command::robot::motion;
 use crate::command::yerc::complete;
 use crate::command::yerc::numbers::within;
@@ -108,7 +108,7 @@ impl fmt::Display for Destination {
 }
 
 fn typed(text: &str) -> Result<Typed, String> {
-    names::read(&[Kind::Variable], "P0", text, coordinates_or_variable)
+    names::parse_or_name(&[Kind::Variable], "P0", text, coordinates_or_variable)
 }
 
 fn coordinates_or_variable(text: &str) -> Result<Typed, String> {

@@ -56,7 +56,7 @@ impl Motion<'_> {
         };
         let per_degree = context.link.pulses_per_degree(self.target.mover.group).to_vec();
         let target = position::taught(self.target.mover.group, &value, &per_degree);
-        let called = name.map(|variable| called(names::of(context.robot, context.screen), variable));
+        let called = name.map(|variable| called(names::of_robot(context.robot, context.screen), variable));
         let mut report = match value {
             Value::Position(position) if position.kind.is_cartesian() => {
                 let question = self.question(called.as_deref(), &value);

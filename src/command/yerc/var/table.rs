@@ -12,8 +12,8 @@ use super::value::Data;
 use super::word::{Word, unlike};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::orders::{BEFORE, IF_DIFFERENT};
-use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Store, Words, Writable, ids};
+use crate::command::frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
+use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Store, TableWords, Writable, ids};
 use crate::command::yerc::complete;
 use crate::command::yerc::each::ReadError;
 use crate::command::yerc::link::{Link, Yerc};
@@ -153,7 +153,7 @@ impl Store for Variables {
     type More = More;
     type Options = StringForm;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["variable", "variables"],
         placeholder: "REF",
         range: "B0, I1..I20, D5, R3, S2, P10, BP1, EX1, a kind such as P, or a name",
@@ -317,7 +317,7 @@ impl Writable for Variables {
         }
     }
 
-    fn whole(&self, key: Reference, draft: &Draft, old: Option<&Value>) -> Result<Value, Failure> {
+    fn complete_draft(&self, key: Reference, draft: &Draft, old: Option<&Value>) -> Result<Value, Failure> {
         let wrong = |why: String| Failure::usage(format!("{key}: {why}")).hint("nothing was written");
         match (draft, old) {
             (Draft::Whole(value), _) => Ok(value.clone()),
@@ -335,7 +335,7 @@ impl Writable for Variables {
     }
 
     async fn read_old(&self, link: &mut Link, screen: &Screen, keys: &[Reference]) -> Result<Answers<Value>, Failure> {
-        self.read(link.for_purpose(BEFORE), screen, keys).await
+        self.read(link.for_purpose(OLD_VALUE), screen, keys).await
     }
 
     /// Consecutive variables of a kind are one request; so is a single axis of a BP or an EX.

@@ -11,7 +11,7 @@ use super::content::{Store, ask};
 use super::parts::{COMMENTS, POINTS, Part};
 use super::restore::{Comparison, IF_IT_DIFFERS, Job, carry_out, named};
 use super::rows::Row as Cells;
-use crate::command::backup::{AGAIN, with_hint};
+use crate::command::backup::{RETRY_HINT, add_hint};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::sheet::{self, SheetManner};
 use crate::command::frame::text_files;
@@ -256,8 +256,8 @@ impl Command for Restore {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Restored, Failure> {
         let Context { link, screen, authority, .. } = context;
         link.no_unit("points belong to the whole controller")?;
-        let name = text_files::shown(&self.file);
-        let points = read(&text_files::read(&self.file)?).map_err(|errors| text_files::faulty(&name, &errors))?;
+        let name = text_files::display_path(&self.file);
+        let points = read(&text_files::read(&self.file)?).map_err(|errors| text_files::file_failure(&name, &errors))?;
         if points.is_empty() {
             return Err(
                 Failure::usage(format!("{name} has no points")).hint("`yrcx point dump` writes a file with points")
@@ -362,7 +362,7 @@ impl Report for Restored {
     }
 
     fn failure(&self) -> Option<Failure> {
-        Some(with_hint(self.items.failure()?, AGAIN))
+        Some(add_hint(self.items.failure()?, RETRY_HINT))
     }
 
     fn rows(&self) -> RowsOf {

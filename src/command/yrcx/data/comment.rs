@@ -1,7 +1,7 @@
 //! `yrcx comment` (4.3.2).
 
 use crate::command::commands;
-use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, TableWords, ids};
 use crate::command::yrcx::backup::{COMMENTS, Records};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
@@ -34,7 +34,7 @@ pub struct Comments;
 
 impl Kind for Comments {
     type Value = String;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["comment of point", "comments"],
         placeholder: "POINT",
         range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",

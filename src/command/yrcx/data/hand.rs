@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::commands;
-use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, TableWords, ids};
 use crate::command::yrcx::backup::{HANDS, Records};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
@@ -41,7 +41,7 @@ pub struct Hands;
 
 impl Kind for Hands {
     type Value = Data;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["hand", "hands"],
         placeholder: "HAND",
         range: "Hands, 0 to 31: 1, 0..31 or 1,5",

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::commands;
-use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, TableWords, ids};
 use crate::command::yrcx::backup::{PALLETS, Records};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
@@ -37,7 +37,7 @@ pub struct Pallets;
 
 impl Kind for Pallets {
     type Value = Places;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["pallet", "pallets"],
         placeholder: "PALLET",
         range: "Pallets, 0 to 39: 10, 0..39 or 1,5",

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{Four, four};
-use crate::command::frame::store::{Copy, Get, Ids, List, Words, ids};
-use crate::command::frame::teach::printed_position;
+use crate::command::frame::store::{Copy, Get, Ids, List, TableWords, ids};
+use crate::command::frame::teach::parse_printed_position;
 use crate::command::robot::position::Position;
 use crate::command::yrcx::backup::{Dump, POINTS, Records, Restore};
 use crate::command::yrcx::link::Yrcx;
@@ -46,7 +46,7 @@ pub struct Points;
 
 impl Kind for Points {
     type Value = Position;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["point", "points"],
         placeholder: "POINT",
         range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",
@@ -135,7 +135,7 @@ impl Set {
 
 /// Point in the output of `position --json` or `point get --json`.
 fn printed_point(file: &Path) -> Result<Given, Failure> {
-    let text = printed_position(file)?;
+    let text = parse_printed_position(file)?;
     let words: Vec<&str> = text.split_whitespace().collect();
     let (unit, axes, hand) = match words[..] {
         ["--mm", axes] => ("mm", axes, None),

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::{Four, four};
 use crate::command::commands;
-use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, TableWords, ids};
 use crate::command::yrcx::backup::{Records, SHIFTS};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
@@ -38,7 +38,7 @@ pub struct Shifts;
 
 impl Kind for Shifts {
     type Value = Shift;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["shift", "shifts"],
         placeholder: "SHIFT",
         range: "Shifts, 0 to 39: 5, 0..39 or 1,5",

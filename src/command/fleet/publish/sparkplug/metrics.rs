@@ -7,7 +7,7 @@ use srad_types::payload::{DataType, Metric, PropertySet, PropertyValue};
 
 use super::super::Kind;
 use super::super::also::Also;
-use crate::command::fleet::poll::Look;
+use crate::command::fleet::poll::PollResult;
 use crate::command::robot::state::Mode;
 
 /// Limit of metrics per extra command.
@@ -29,7 +29,7 @@ const UNITS: [(&str, &str); 9] = [
 ];
 
 /// All metrics of a sample, for these kinds and extra commands.
-pub fn of_look(look: &Look, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
+pub fn of_look(look: &PollResult, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
     let line = &look.sample.line.state;
     let text = |text: Option<&str>| text.map(|text| Value::StringValue(text.to_owned()));
     let flag = |flag: Option<bool>| flag.map(Value::BooleanValue);

@@ -23,7 +23,7 @@ use super::outbox::Record;
 use super::speech::{Reaction, Speech};
 use super::topic::Levels;
 use super::uplink::{Message, Will};
-use crate::command::fleet::poll::{Event, Look};
+use crate::command::fleet::poll::{Event, PollResult};
 use crate::output::log::Level;
 use crate::settings::Robot;
 
@@ -186,7 +186,7 @@ impl Node {
     }
 
     /// Handles a successful poll of a robot.
-    fn looked(&mut self, look: &Look, now_ms: u64) -> Option<Record> {
+    fn looked(&mut self, look: &PollResult, now_ms: u64) -> Option<Record> {
         let id = self.names.levels.of(&look.robot).ok()?;
         let found = metrics::of_look(look, &self.kinds, &self.also);
         let device = self.devices.entry(id.clone()).or_default();
@@ -402,7 +402,7 @@ impl Speech for Node {
 
     fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
         match event {
-            Event::Looked(look) => self.looked(look, now_ms).into_iter().collect(),
+            Event::Polled(look) => self.looked(look, now_ms).into_iter().collect(),
             Event::Failed { robot, .. } | Event::Gone(robot) => self.fell_silent(robot, now_ms).into_iter().collect(),
             Event::Appeared(_) | Event::Inventory(_) => Vec::new(),
         }

@@ -41,7 +41,7 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &Seen, n
 /// Everything else, from the top, as far as there is room.
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, now: Moment) {
     let Some(sample) = seen.sample() else { return trouble(painter, area, seen) };
-    let Some(whole) = &sample.whole else {
+    let Some(whole) = &sample.full else {
         let why = if model.is_paused() { "no details before the pause; press Space to continue" } else { "looking" };
         painter.left(after(line_of(area, 1), 2), why, painter.palette.quiet());
         return;
@@ -118,7 +118,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     let bad = painter.palette.tone(Tone::Bad);
     let line = &sample.line;
     if sample.alarms.is_empty() {
-        let (text, style) = match line.trouble() {
+        let (text, style) = match line.fault_text() {
             Some(what) => (format!(" {what}; the controller does not report which one here"), bad),
             None => (" no alarm".to_owned(), painter.palette.quiet()),
         };

@@ -45,7 +45,7 @@ fn four() -> (Model, Moment) {
         let wave = (f64::from(look) / 6.0).sin();
         let mut moving = sample(wave * 45_000.0);
         moving.answered_in = Some(Duration::from_millis(4) + Duration::from_millis(u64::from(look % 5)));
-        if let Some(whole) = &mut moving.whole {
+        if let Some(whole) = &mut moving.full {
             whole.axes[0].torque = Some((wave * 80.0).round());
         }
         model.take(now, 0, Ok(moving));

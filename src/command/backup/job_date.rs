@@ -2,10 +2,10 @@
 
 /// Filter that removes the line `///DATE` from a job.
 #[derive(Debug, Default)]
-pub struct WithoutDate {
+pub struct DateFilter {
     at: LineState,
     left_out: Vec<u8>,
-    kept: u64,
+    kept_len: u64,
     dropped: u64,
     /// Offset of the first removed line in the remaining bytes.
     cut: Option<u64>,
@@ -17,73 +17,73 @@ enum LineState {
     #[default]
     Start,
     /// Inside a line, after this number of bytes that match the prefix.
-    Begun(usize),
-    Kept,
-    Dropped,
+    Incomplete(usize),
+    Other,
+    Date,
 }
 
 /// Prefix of the removed line.
 pub const DATE_LINE: &str = "///DATE";
 const DATE: &[u8] = DATE_LINE.as_bytes();
 /// Maximum number of removed bytes to keep, enough to distinguish dates.
-const MOST_LEFT_OUT: usize = 256;
+const MAX_LEFT_OUT: usize = 256;
 
-impl WithoutDate {
+impl DateFilter {
     /// Remaining bytes of the next piece.
     pub fn take(&mut self, piece: &[u8]) -> Vec<u8> {
         let mut kept = Vec::with_capacity(piece.len());
         for &byte in piece {
             let begun = match self.at {
                 LineState::Start => Some(0),
-                LineState::Begun(count) => Some(count),
-                LineState::Kept | LineState::Dropped => None,
+                LineState::Incomplete(count) => Some(count),
+                LineState::Other | LineState::Date => None,
             };
             if let Some(count) = begun {
                 if DATE.get(count) == Some(&byte) {
-                    self.at = LineState::Begun(count + 1);
+                    self.at = LineState::Incomplete(count + 1);
                     if count + 1 == DATE.len() {
-                        self.at = LineState::Dropped;
+                        self.at = LineState::Date;
                         self.dropped = self.dropped.saturating_add(DATE.len() as u64);
-                        self.cut.get_or_insert(self.kept.saturating_add(kept.len() as u64));
+                        self.cut.get_or_insert(self.kept_len.saturating_add(kept.len() as u64));
                     }
                     continue;
                 }
                 kept.extend_from_slice(DATE.get(..count).unwrap_or_default());
-                self.at = LineState::Kept;
+                self.at = LineState::Other;
             }
             match self.at {
-                LineState::Kept => kept.push(byte),
-                LineState::Dropped => {
+                LineState::Other => kept.push(byte),
+                LineState::Date => {
                     self.dropped = self.dropped.saturating_add(1);
-                    if self.left_out.len() < MOST_LEFT_OUT {
+                    if self.left_out.len() < MAX_LEFT_OUT {
                         self.left_out.push(byte);
                     }
                 }
-                LineState::Start | LineState::Begun(_) => {}
+                LineState::Start | LineState::Incomplete(_) => {}
             }
             if byte == b'\n' {
                 self.at = LineState::Start;
             }
         }
-        self.kept = self.kept.saturating_add(kept.len() as u64);
+        self.kept_len = self.kept_len.saturating_add(kept.len() as u64);
         kept
     }
 
     /// Number of bytes removed so far.
-    pub fn dropped(&self) -> u64 {
+    pub fn is_date_left_out(&self) -> u64 {
         self.dropped
     }
 
     /// Offset in the original of a remaining byte.
-    pub fn in_whole(&self, at: u64) -> u64 {
+    pub fn is_complete(&self, at: u64) -> u64 {
         if self.cut.is_some_and(|cut| cut <= at) { at.saturating_add(self.dropped) } else { at }
     }
 
     /// Remaining bytes at the end.
     pub fn rest(&mut self) -> &'static [u8] {
         match std::mem::take(&mut self.at) {
-            LineState::Begun(count) => DATE.get(..count).unwrap_or_default(),
-            LineState::Start | LineState::Kept | LineState::Dropped => &[],
+            LineState::Incomplete(count) => DATE.get(..count).unwrap_or_default(),
+            LineState::Start | LineState::Other | LineState::Date => &[],
         }
     }
 
@@ -93,7 +93,7 @@ impl WithoutDate {
     }
 
     /// Remaining bytes of a whole file.
-    pub fn of(whole: &[u8]) -> Vec<u8> {
+    pub fn align(whole: &[u8]) -> Vec<u8> {
         let mut filter = Self::default();
         let mut kept = filter.take(whole);
         kept.extend_from_slice(filter.rest());
@@ -103,7 +103,7 @@ impl WithoutDate {
 
 /// Both jobs with the date of the first, so that line numbers stay valid, and whether the dates differed. If only one
 /// has a date, it is removed from that one.
-pub fn aligned(old: Vec<u8>, new: Vec<u8>) -> ([Vec<u8>; 2], bool) {
+pub fn align_files(old: Vec<u8>, new: Vec<u8>) -> ([Vec<u8>; 2], bool) {
     let dates = |text: &[u8]| -> Vec<Vec<u8>> {
         lines(text).filter(|line| line.starts_with(DATE)).map(<[u8]>::to_vec).collect()
     };
@@ -112,7 +112,7 @@ pub fn aligned(old: Vec<u8>, new: Vec<u8>) -> ([Vec<u8>; 2], bool) {
         return ([old, new], false);
     }
     if before.len() != after.len() {
-        return ([WithoutDate::of(&old), WithoutDate::of(&new)], true);
+        return ([DateFilter::align(&old), DateFilter::align(&new)], true);
     }
     let mut before = before.into_iter();
     let mut with_date =

@@ -8,41 +8,41 @@ use serde_json::Value;
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep_until, timeout};
 
-use super::extra::Read;
-use super::wish::Wants;
-use super::{Event, Extra, LEAVE_WITHIN, Look, RobotId, Teller, over};
+use super::extra_command::Read;
+use super::poll_request::Wants;
+use super::{CLOSE_TIMEOUT, Event, EventSender, Extra, PollResult, RobotId, wait_for_stop};
 use crate::command::face::Watch;
 use crate::command::face::sample::Traffic;
 use crate::command::families;
 use crate::command::frame::attach::is_held;
-use crate::command::frame::share::shared;
+use crate::command::frame::share::open_shared_session;
 use crate::command::{Access, ConnectMode, Entry};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
 
 /// Polling task of one robot.
-pub(super) struct Follower {
+pub(super) struct RobotTask {
     pub robot: Arc<Robot>,
     pub screen: Screen,
     /// Start delay, to spread the robots over the interval.
     pub delay: Duration,
     pub wants: watch::Receiver<Wants>,
     pub stopped: watch::Receiver<bool>,
-    pub tell: Teller,
+    pub tell: EventSender,
     /// Extra commands of this robot by their text.
-    pub asked: HashMap<Arc<str>, Option<Read>>,
+    pub extra_commands: HashMap<Arc<str>, Option<Read>>,
 }
 
 /// First backoff after a failure, unless the interval is longer.
-const AGAIN: Duration = Duration::from_secs(1);
+const FIRST_BACKOFF: Duration = Duration::from_secs(1);
 /// Interval of the check for a new session.
-const SESSIONS: Duration = Duration::from_secs(5);
+const SESSION_CHECK_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Reason for the end of polling through a link.
-enum Ended {
+enum LoopEnd {
     /// The task is stopped.
-    Over,
+    Stopped,
     /// A session has opened and must be used, or a used session has closed.
     Session,
     /// The robot does not answer, or its answer is not valid.
@@ -50,19 +50,19 @@ enum Ended {
 }
 
 /// Polls a robot until it is stopped.
-pub(super) async fn follow(mut follower: Follower) {
+pub(super) async fn follow(mut follower: RobotTask) {
     let mut start = Instant::now() + follower.delay;
-    let mut pauses = Pauses::default();
+    let mut pauses = Backoff::default();
     loop {
-        let Follower { robot, screen, .. } = &follower;
+        let RobotTask { robot, screen, .. } = &follower;
         let mut stopped = follower.stopped.clone();
         let opened = tokio::select! {
             biased;
-            () = over(&mut stopped) => return,
+            () = wait_for_stop(&mut stopped) => return,
             opened = async {
                 sleep_until(start).await;
                 let family = families::of(robot.family);
-                let robot = &shared(family.driver(), robot).await?;
+                let robot = &open_shared_session(family.driver(), robot).await?;
                 let is_shared = is_held(robot);
                 let access = Access::reading(ConnectMode::Monitor);
                 let watch = family.watch(robot, access, screen).await?;
@@ -70,18 +70,18 @@ pub(super) async fn follow(mut follower: Follower) {
             } => opened,
         };
         let ended = match opened {
-            Err(failure) => Ended::Failed(failure, Traffic::default()),
+            Err(failure) => LoopEnd::Failed(failure, Traffic::default()),
             Ok(mut link) => {
-                let ended = follower.look_on(&mut link, &mut pauses).await;
+                let ended = follower.poll_link(&mut link, &mut pauses).await;
                 // Polling changes nothing, so an error of the close does not matter.
-                let _closed = timeout(LEAVE_WITHIN, link.watch.close(&follower.screen)).await;
+                let _closed = timeout(CLOSE_TIMEOUT, link.watch.close(&follower.screen)).await;
                 ended
             }
         };
         match ended {
-            Ended::Over => return,
-            Ended::Session => start = Instant::now(),
-            Ended::Failed(failure, traffic) => {
+            LoopEnd::Stopped => return,
+            LoopEnd::Session => start = Instant::now(),
+            LoopEnd::Failed(failure, traffic) => {
                 let (every, longest) = {
                     let wants = follower.wants.borrow();
                     (wants.every, wants.longest_pause)
@@ -89,7 +89,7 @@ pub(super) async fn follow(mut follower: Follower) {
                 let pause = pauses.next(every, longest);
                 start = Instant::now() + pause;
                 let robot = Arc::clone(&follower.robot);
-                follower.tell.tell(Event::Failed { robot, failure, pause, traffic }).await;
+                follower.tell.send(Event::Failed { robot, failure, pause, traffic }).await;
             }
         }
     }
@@ -111,37 +111,37 @@ impl Link {
     }
 }
 
-impl Follower {
+impl RobotTask {
     /// Polls until a failure or until it is stopped.
-    async fn look_on(&mut self, link: &mut Link, pauses: &mut Pauses) -> Ended {
-        let id = RobotId::of(&self.robot);
+    async fn poll_link(&mut self, link: &mut Link, pauses: &mut Backoff) -> LoopEnd {
+        let id = RobotId::for_robot(&self.robot);
         let mut stopped = self.stopped.clone();
         let mut ticks = Ticks::new(Instant::now(), self.wants.borrow().every);
-        let mut sessions = Instant::now() + SESSIONS;
+        let mut sessions = Instant::now() + SESSION_CHECK_INTERVAL;
         let mut missed = 0;
         loop {
             let wants = self.wants.borrow_and_update().clone();
             let began = Instant::now();
-            let looked = tokio::select! {
+            let result = tokio::select! {
                 biased;
-                () = over(&mut stopped) => return Ended::Over,
-                looked = self.look(link, &id, &wants) => looked,
+                () = wait_for_stop(&mut stopped) => return LoopEnd::Stopped,
+                looked = self.poll(link, &id, &wants) => looked,
             };
-            match looked {
+            match result {
                 Ok(look) => {
-                    pauses.begin_anew();
-                    let look = Look { took: began.elapsed(), missed, traffic: link.traffic(), ..look };
-                    self.tell.tell(Event::Looked(Arc::new(look))).await;
+                    pauses.reset();
+                    let look = PollResult { took: began.elapsed(), missed, traffic: link.traffic(), ..look };
+                    self.tell.send(Event::Polled(Arc::new(look))).await;
                 }
                 // The session has closed, which is not a failure of the robot.
-                Err(_) if link.is_shared && !is_held(&self.robot) => return Ended::Session,
-                Err(failure) => return Ended::Failed(failure, link.traffic()),
+                Err(_) if link.is_shared && !is_held(&self.robot) => return LoopEnd::Session,
+                Err(failure) => return LoopEnd::Failed(failure, link.traffic()),
             }
             let now = Instant::now();
             if !link.is_shared && now >= sessions {
-                sessions = now + SESSIONS;
+                sessions = now + SESSION_CHECK_INTERVAL;
                 if is_held(&self.robot) {
-                    return Ended::Session;
+                    return LoopEnd::Session;
                 }
             }
             let mut next = ticks.next(now);
@@ -151,11 +151,11 @@ impl Follower {
             loop {
                 tokio::select! {
                     biased;
-                    () = over(&mut stopped) => return Ended::Over,
+                    () = wait_for_stop(&mut stopped) => return LoopEnd::Stopped,
                     () = sleep_until(next) => break,
                     changed = self.wants.changed() => {
                         if changed.is_err() {
-                            return Ended::Over;
+                            return LoopEnd::Stopped;
                         }
                         let now = self.wants.borrow_and_update().clone();
                         if now.detail(&id) > wants.detail(&id) {
@@ -174,7 +174,7 @@ impl Follower {
     }
 
     /// Polls once, and runs the extra commands.
-    async fn look(&mut self, link: &mut Link, id: &RobotId, wants: &Wants) -> Result<Look, Failure> {
+    async fn poll(&mut self, link: &mut Link, id: &RobotId, wants: &Wants) -> Result<PollResult, Failure> {
         let robot = Arc::clone(&self.robot);
         let mut sample = link.watch.look(wants.detail(id)).await?;
         let unexplained = sample.line.state.fault.explain(&robot).err();
@@ -187,12 +187,12 @@ impl Follower {
             }
         }
         let through_session = link.is_shared;
-        Ok(Look { through_session, extras, unexplained, ..Look::new(robot, sample) })
+        Ok(PollResult { through_session, extras, unexplained, ..PollResult::new(robot, sample) })
     }
 
     /// Runs an extra command, unless it needs a connection whose end would affect the controller.
     async fn ask(&mut self, link: &mut Link, extra: &Extra) -> Result<Value, Failure> {
-        let own = self.asked.entry(Arc::clone(extra.text())).or_insert_with(|| extra.of(&self.robot));
+        let own = self.extra_commands.entry(Arc::clone(extra.text())).or_insert_with(|| extra.of(&self.robot));
         let command = match own {
             None => extra.command(),
             Some(Ok(command)) => &**command,
@@ -210,18 +210,18 @@ impl Follower {
 
 /// Backoff of a robot that fails; doubles each time up to a limit.
 #[derive(Debug, Default)]
-struct Pauses {
+struct Backoff {
     last: Option<Duration>,
 }
 
-impl Pauses {
+impl Backoff {
     fn next(&mut self, every: Duration, longest: Duration) -> Duration {
-        let first = AGAIN.max(every);
+        let first = FIRST_BACKOFF.max(every);
         let next = self.last.map_or(first, |last| last.saturating_mul(2)).clamp(first, longest.max(first));
         *self.last.insert(next)
     }
 
-    fn begin_anew(&mut self) {
+    fn reset(&mut self) {
         self.last = None;
     }
 }
@@ -274,11 +274,11 @@ mod tests {
     #[test]
     fn pauses_double_up_to_a_bound_and_begin_anew() {
         let [second, most] = [1, 10].map(Duration::from_secs);
-        let mut pauses = Pauses::default();
+        let mut pauses = Backoff::default();
         let seconds: Vec<u64> = (0..6).map(|_| pauses.next(EVERY, most).as_secs()).collect();
         assert_eq!(seconds, [1, 2, 4, 8, 10, 10]);
-        pauses.begin_anew();
+        pauses.reset();
         assert_eq!(pauses.next(EVERY, most), second);
-        assert_eq!(Pauses::default().next(30 * second, most), 30 * second, "never more often than when it answers");
+        assert_eq!(Backoff::default().next(30 * second, most), 30 * second, "never more often than when it answers");
     }
 }

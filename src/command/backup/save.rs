@@ -8,9 +8,9 @@ use serde_json::Value;
 use tokio::time::Instant;
 
 use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved};
-use super::{BackedUp, Making};
+use super::{BackedUp, SaveOptions};
 use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::local::{Target, make_folder, own_folder};
+use crate::command::frame::local_names::{Target, make_folder, private_folder};
 use crate::command::robot::file::{FileItem, State};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -31,7 +31,7 @@ pub struct Task<C> {
 
 /// A part that was read.
 #[derive(Debug)]
-pub struct Part {
+pub struct SavedPart {
     /// Content of its file.
     pub content: Content,
     /// Content type, if known only after reading.
@@ -39,7 +39,7 @@ pub struct Part {
     /// Items that are not in the file.
     pub left_out: Vec<LeftOut>,
     /// Items that the controller does not have, only for the manifest.
-    pub absent: Vec<LeftOut>,
+    pub is_absent: Vec<LeftOut>,
     /// Notes.
     pub notes: Vec<String>,
 }
@@ -53,19 +53,20 @@ pub enum Content {
     File(Saved),
 }
 
-impl Part {
+impl SavedPart {
     /// Part without notes.
     pub fn new(content: Content) -> Self {
-        Self { content, holds: None, left_out: Vec::new(), absent: Vec::new(), notes: Vec::new() }
+        Self { content, holds: None, left_out: Vec::new(), is_absent: Vec::new(), notes: Vec::new() }
     }
 }
 
 impl<C: About> Task<C> {
     /// Reads the target folder; an existing backup supplies the selection if none is given.
-    pub fn new(making: Making, robot: &Robot, several: bool) -> Result<Self, Failure> {
-        let Making { folder, scope, resume, force } = making;
-        let folder = own_folder(&folder, &robot.name, several);
-        let earlier: Option<Manifest<C>> = manifest::earlier(&folder, robot, scope.as_deref(), resume, force)?;
+    pub fn new(making: SaveOptions, robot: &Robot, several: bool) -> Result<Self, Failure> {
+        let SaveOptions { folder, scope, resume, force } = making;
+        let folder = private_folder(&folder, &robot.name, several);
+        let earlier: Option<Manifest<C>> =
+            manifest::find_earlier_backup(&folder, robot, scope.as_deref(), resume, force)?;
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
         Ok(Self { folder, scope, earlier })
     }
@@ -77,35 +78,38 @@ impl<C: About> Task<C> {
         (screen, robot): (&'a Screen, &Robot),
         controller: C,
         is_kept: impl Fn(&Manifest<C>, &Entry) -> bool,
-    ) -> Result<Saving<'a, C>, Failure> {
+    ) -> Result<BackupWriter<'a, C>, Failure> {
         let folder = &self.folder;
         make_folder(folder)?;
         let mut list = Manifest::new(robot, controller, self.scope.clone());
         // Earlier parts stay in the manifest, so that they are kept if the backup is interrupted.
         if let Some(earlier) = &self.earlier {
             let is_whole = |entry: &&Entry| entry.copy.as_ref().is_some_and(|copy| copy.check(folder).is_ok());
-            let kept = earlier.files.iter().filter(|entry| is_kept(earlier, entry)).filter(is_whole);
-            list.files = kept.cloned().collect();
+            let kept_entry = earlier.files.iter().filter(|entry| is_kept(earlier, entry)).filter(is_whole);
+            list.files = kept_entry.cloned().collect();
         }
         list.write(folder)?;
-        Ok(Saving { list, folder, screen, files: Vec::new(), written: Instant::now(), is_closed: false })
+        Ok(BackupWriter { list, folder, screen, files: Vec::new(), written: Instant::now(), is_closed: false })
     }
 }
 
 /// Runs a backup until it ends or Ctrl-C; a failure reports what is saved.
-pub async fn cut_off_by_ctrl_c<T>(folder: &Path, work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
+pub async fn interrupted_failure<T>(
+    folder: &Path,
+    work: impl Future<Output = Result<T, Failure>>,
+) -> Result<T, Failure> {
     // Ctrl-C ends the work here, before the caller handles it, so that the saved files are reported.
     let outcome = interruptible(work).await.and_then(|outcome| outcome);
     outcome.map_err(|failure| match manifest::read::<Value>(folder) {
         Ok(Some(list)) if failure.kind != Kind::Usage => {
-            cut_off(failure, folder, list.files.iter().filter(|entry| entry.copy.is_some()).count())
+            with_resume_hint(failure, folder, list.files.iter().filter(|entry| entry.copy.is_some()).count())
         }
         _ => failure,
     })
 }
 
 /// Failure that ended a backup, with the number of saved files.
-fn cut_off(failure: Failure, folder: &Path, saved: usize) -> Failure {
+fn with_resume_hint(failure: Failure, folder: &Path, saved: usize) -> Failure {
     let message = format!("{}; {saved} files are in {}", failure.message.trim_end_matches('.'), folder.display());
     let again = "continue with --resume";
     let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}; then {again}"));
@@ -114,7 +118,7 @@ fn cut_off(failure: Failure, folder: &Path, saved: usize) -> Failure {
 
 /// A backup in progress.
 #[derive(Debug)]
-pub struct Saving<'a, C: About> {
+pub struct BackupWriter<'a, C: About> {
     list: Manifest<C>,
     folder: &'a Path,
     screen: &'a Screen,
@@ -123,7 +127,7 @@ pub struct Saving<'a, C: About> {
     is_closed: bool,
 }
 
-impl<C: About> Saving<'_, C> {
+impl<C: About> BackupWriter<'_, C> {
     /// Manifest entry of a part.
     pub fn entry(&self, name: &str) -> Option<&Entry> {
         self.list.entry(name)
@@ -138,16 +142,16 @@ impl<C: About> Saving<'_, C> {
     pub async fn part(
         &mut self,
         mut entry: Entry,
-        read: impl Future<Output = Result<Part, Failure>>,
+        read: impl Future<Output = Result<SavedPart, Failure>>,
     ) -> Result<bool, Failure> {
         let mut file = FileItem::pending(&entry.name);
-        let same = |known: &&Entry| known.name == entry.name && known.name_hex == entry.name_hex;
-        if let Some(Entry { copy: Some(copy), left_out, .. }) = self.list.files.iter().find(same) {
+        let unchanged = |known: &&Entry| known.name == entry.name && known.name_hex == entry.name_hex;
+        if let Some(Entry { copy: Some(copy), left_out, .. }) = self.list.files.iter().find(unchanged) {
             file.more.left_out.clone_from(left_out);
             self.files.push(self.saved(file, State::Kept, copy));
             return Ok(true);
         }
-        let goes_on = match read.await {
+        let continues = match read.await {
             Ok(part) => {
                 let copy = match part.content {
                     Content::Text(file, text) => write_text(self.folder, file, &text)?,
@@ -157,7 +161,7 @@ impl<C: About> Saving<'_, C> {
                 file = self.saved(file, State::Done, &copy);
                 entry.copy = Some(copy);
                 entry.holds = part.holds.unwrap_or(entry.holds);
-                entry.left_out = [part.left_out, part.absent].concat();
+                entry.left_out = [part.left_out, part.is_absent].concat();
                 true
             }
             Err(failure) => {
@@ -171,13 +175,13 @@ impl<C: About> Saving<'_, C> {
             self.list.write(self.folder)?;
             self.written = Instant::now();
         }
-        Ok(goes_on)
+        Ok(continues)
     }
 
     /// Result of a part whose file is in the folder.
     fn saved(&self, mut file: FileItem, state: State, copy: &Saved) -> FileItem {
         file.succeed(state);
-        file.of_copy(self.folder, copy)
+        file.from_copy(self.folder, copy)
     }
 
     /// Ends the backup; `rest` was not read.
@@ -191,7 +195,7 @@ impl<C: About> Saving<'_, C> {
     }
 }
 
-impl<C: About> Drop for Saving<'_, C> {
+impl<C: About> Drop for BackupWriter<'_, C> {
     /// Ctrl-C, or an error that ended the work early.
     fn drop(&mut self) {
         if let (false, Err(failure)) = (self.is_closed, self.list.write(self.folder)) {

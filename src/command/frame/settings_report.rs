@@ -6,18 +6,18 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::report::Report;
-use crate::command::face::shared::Alike;
+use crate::command::face::shared_commands::CommonReport;
 use crate::failure::Failure;
 use crate::gate::Change;
 use crate::output::view::View;
 
 /// Purpose of a read before a write, in a dry run.
-pub const BEFORE: &str = "old value";
+pub const OLD_VALUE: &str = "old value";
 /// Condition of a write in a dry run.
 pub const IF_DIFFERENT: &str = "whether the old value differs";
 
 /// Failure before any write.
-pub fn unwritten(failure: Failure) -> Failure {
+pub fn nothing_written(failure: Failure) -> Failure {
     let message = format!("{}; nothing was written", failure.message.trim_end_matches('.'));
     Failure { message, ..failure }
 }
@@ -42,24 +42,24 @@ impl Old {
     }
 
     /// Value as text; none if unknown.
-    pub fn in_words(&self) -> Option<String> {
+    pub fn describe(&self) -> Option<String> {
         (!self.0.is_null()).then(|| shown(&self.0))
     }
 }
 
 /// A value that was set. It becomes a report only with its old value, so that no command omits that.
 #[derive(Debug)]
-pub struct New {
-    set: String,
-    with: Map<String, Value>,
+pub struct NewValue {
+    name: String,
+    arguments: Map<String, Value>,
     new: Value,
-    words: String,
+    text: String,
 }
 
-impl New {
+impl NewValue {
     /// Name, new value, and text.
     pub fn of(set: impl Into<String>, new: impl Into<Value>, words: impl Into<String>) -> Self {
-        Self { set: set.into(), with: Map::new(), new: new.into(), words: words.into() }
+        Self { name: set.into(), arguments: Map::new(), new: new.into(), text: words.into() }
     }
 
     /// Adds a number or a name; none adds nothing.
@@ -67,7 +67,7 @@ impl New {
     pub fn with(mut self, name: &str, value: impl Into<Value>) -> Self {
         let value = value.into();
         if !value.is_null() {
-            self.with.insert(name.to_owned(), value);
+            self.arguments.insert(name.to_owned(), value);
         }
         self
     }
@@ -75,8 +75,8 @@ impl New {
     /// Confirmation: the intent, and old and new value if the old value was read.
     pub fn question(&self, intent: String, old: &Old) -> Change {
         let change = Change::new(intent);
-        let what = self.set.trim_end_matches("_on").replace('_', " ");
-        match old.in_words() {
+        let what = self.name.trim_end_matches("_on").replace('_', " ");
+        match old.describe() {
             Some(old) => change.replaces(&what, &old, &shown(&self.new)),
             None => change,
         }
@@ -84,7 +84,7 @@ impl New {
 
     /// Adds the old value.
     pub fn replaces(self, old: Old) -> Done {
-        let Self { set, with, new, words } = self;
+        let Self { name: set, arguments: with, new, text: words } = self;
         Done { set, with, old, new, words }
     }
 }
@@ -111,7 +111,7 @@ impl Done {
     }
 }
 
-impl Alike for Done {
+impl CommonReport for Done {
     type Core = Self;
 
     fn core(&self) -> Self {

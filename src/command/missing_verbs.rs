@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn every_shared_verb_works_or_says_why_not() {
+    fn every_shared_verb_works_or_explains_what_is_missing() {
         let mut silent = Vec::new();
         for family in Family::ALL {
             for verb in SHARED {
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn sentences_lead_to_commands() {
+    fn explanations_name_existing_commands() {
         for (words, why, instead) in MISSING {
             assert!(!exists(words), "{words} is a command");
             assert!(!why.contains("armctl") || why.contains('`'), "{words}: {why}");

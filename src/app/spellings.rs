@@ -6,7 +6,7 @@ use std::ffi::OsString;
 
 use clap::Command;
 
-use super::typed::Typed;
+use super::typed_line::TypedLine;
 use crate::command::face::Face;
 use crate::command::families::FAMILIES;
 use crate::settings::target::Family;
@@ -15,8 +15,8 @@ use crate::settings::target::Family;
 const HERE: &str = "here";
 
 /// The line in the form of its command; `None` if it has no other spelling.
-pub fn respelled(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
-    taught(args, whole).or_else(|| explained(args, whole))
+pub fn rewrite_spelling(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
+    rewrite_teach(args, whole).or_else(|| rewrite_explain(args, whole))
 }
 
 /// Families that have a code; of a code that none has, those with codes of its form.
@@ -34,9 +34,11 @@ pub fn families_with(code: &str) -> Vec<Family> {
 }
 
 /// `explain CODE` with the family, if only one has the code.
-fn explained(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
-    let typed = Typed::new(args, whole);
-    let (["explain"], [code], [at]) = (&typed.path[..], &typed.rest[..], &typed.at[..]) else { return None };
+fn rewrite_explain(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
+    let typed = TypedLine::new(args, whole);
+    let (["explain"], [code], [at]) = (&typed.path[..], &typed.rest[..], &typed.rest_positions[..]) else {
+        return None;
+    };
     let [family] = families_with(code)[..] else { return None };
     let mut line = args.to_vec();
     line.insert(*at, family.name().into());
@@ -44,10 +46,10 @@ fn explained(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
 }
 
 /// A command line that means `teach`.
-fn taught(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
-    let typed = Typed::new(args, whole);
+fn rewrite_teach(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
+    let typed = TypedLine::new(args, whole);
     let (family, path) = typed.path.split_first()?;
-    let replaced = match (path, &typed.rest[..]) {
+    let replacements = match (path, &typed.rest[..]) {
         (["position" | "point"], ["teach", ..]) => [Some("teach".to_owned())].into(),
         (["var" | "point", "set"], [one]) => vec![Some(one.strip_suffix(&format!("={HERE}"))?.to_owned())],
         (["point", "set"], [point, HERE]) => vec![Some((*point).to_owned()), None],
@@ -56,9 +58,9 @@ fn taught(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
         }
         _ => return None,
     };
-    let is_file = replaced.iter().flatten().any(|word| word.starts_with("--position"));
+    let is_file = replacements.iter().flatten().any(|word| word.starts_with("--position"));
     let mut line: Vec<Option<OsString>> = args.iter().cloned().map(Some).collect();
-    for (at, word) in typed.at.iter().zip(replaced) {
+    for (at, word) in typed.rest_positions.iter().zip(replacements) {
         *line.get_mut(*at)? = word.map(OsString::from);
     }
     // `position teach` and `point teach` lose their noun; `var set` and `point set` become the verb.
@@ -69,7 +71,7 @@ fn taught(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     } else {
         &[Some("teach"), None]
     };
-    for (at, word) in typed.said_at.iter().skip(1).zip(path) {
+    for (at, word) in typed.path_positions.iter().skip(1).zip(path) {
         *line.get_mut(*at)? = word.map(OsString::from);
     }
     Some(line.into_iter().flatten().collect())
@@ -83,11 +85,11 @@ mod tests {
     use crate::cli::Cli;
 
     #[test]
-    fn every_spelling_is_the_command() {
+    fn rewrites_every_spelling_to_its_command() {
         let whole = Cli::command();
         let line = |text: &str| {
             let args: Vec<OsString> = text.split(' ').map(Into::into).collect();
-            let line = respelled(&args, &whole)?;
+            let line = rewrite_spelling(&args, &whole)?;
             Some(line.join(std::ffi::OsStr::new(" ")).into_string().unwrap())
         };
         for (spelled, own) in [

@@ -5,15 +5,15 @@ use std::ffi::OsString;
 
 use clap::Command;
 
-use super::typed::Typed;
+use super::typed_line::TypedLine;
 use crate::command::frame::setting::Pair;
 
 /// The line in the form that its command expects; `None` if no conversion is necessary.
-pub fn parted(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
+pub fn split_assignments(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     if !args.iter().any(|word| word == "set") {
         return None;
     }
-    let typed = Typed::new(args, whole);
+    let typed = TypedLine::new(args, whole);
     let verb = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     if verb.get_name() != "set" {
         return None;
@@ -26,9 +26,10 @@ pub fn parted(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
         if values.iter().any(|value| value.starts_with('-') && value.parse::<f64>().is_err()) {
             return None;
         }
-        *line.get_mut(*typed.at.get(name)?)? = std::iter::once(word).chain(values).map(OsString::from).collect();
+        *line.get_mut(*typed.rest_positions.get(name)?)? =
+            std::iter::once(word).chain(values).map(OsString::from).collect();
     } else {
-        for (at, word) in typed.at.iter().zip(&typed.rest).skip(1) {
+        for (at, word) in typed.rest_positions.iter().zip(&typed.rest).skip(1) {
             let flag = word.split_once('=').map(|(name, _)| name);
             let mut own = verb.get_arguments().filter(|argument| !argument.is_global_set());
             if flag.is_some() && own.any(|argument| argument.get_long() == flag) {
@@ -185,7 +186,7 @@ mod tests {
     fn a_setting_is_the_same_as_its_words() {
         let whole = Cli::command();
         let parted = |line: &str| {
-            let line = parted(&words(line), &whole)?;
+            let line = split_assignments(&words(line), &whole)?;
             Some(line[1..].iter().map(|word| word.to_str().unwrap().to_owned()).collect::<Vec<_>>().join(" "))
         };
         for (line, expected) in [

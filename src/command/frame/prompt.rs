@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::output::Screen;
 
 /// Answer to a question. An aborted question restores the terminal.
-pub async fn answered<T: Send + 'static>(
+pub async fn ask<T: Send + 'static>(
     screen: Screen,
     question: impl FnOnce() -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, Failure> {

@@ -1,8 +1,8 @@
 //! Lines of every command: the examples of its help. Those for robots come with what they do at most, are held against the
 //! gate by tests, and are the reason why no tip proposes a dangerous one.
 
-mod desk;
 mod toyo;
+mod without_robot;
 mod yerc;
 mod yrcx;
 
@@ -52,28 +52,29 @@ pub fn leaves() -> impl Iterator<Item = &'static Leaf> {
 
 /// The lines of the command of these words.
 pub fn examples(path: &[&str]) -> impl Iterator<Item = &'static str> {
-    all().filter(move |line| begins(line, path))
+    all().filter(move |line| starts_with_words(line, path))
 }
 
 /// Every line.
 pub fn all() -> impl Iterator<Item = &'static str> {
-    leaves().map(|(line, _)| *line).chain(desk::LINES.iter().copied())
+    leaves().map(|(line, _)| *line).chain(without_robot::LINES.iter().copied())
 }
 
 /// Whether a command can move a robot, or delete or overwrite what a person wrote; of a noun, whether all of its verbs
 /// can. `path` are its words.
 pub fn is_dangerous(path: &[&str], is_noun: bool) -> bool {
-    let mut below = leaves().filter(|(line, _)| begins(line, path)).peekable();
+    let mut has_subcommand = leaves().filter(|(line, _)| starts_with_words(line, path)).peekable();
     let is_one = |(_, risk): &Leaf| *risk >= Destroy;
-    below.peek().is_some() && if is_noun { below.all(is_one) } else { below.any(is_one) }
+    has_subcommand.peek().is_some() && if is_noun { has_subcommand.all(is_one) } else { has_subcommand.any(is_one) }
 }
 
 /// Whether a list of the values that a command lacks may preselect the first: not where Enter alone would delete
 /// something, or move or stop a robot.
 pub fn preselects(path: &[&str]) -> bool {
-    !is_dangerous(path, false) && !desk::NO_DEFAULT.iter().any(|words| words.split(' ').eq(path.iter().copied()))
+    !is_dangerous(path, false)
+        && !without_robot::NO_DEFAULT.iter().any(|words| words.split(' ').eq(path.iter().copied()))
 }
 
-fn begins(line: &str, path: &[&str]) -> bool {
+fn starts_with_words(line: &str, path: &[&str]) -> bool {
     path.iter().copied().eq(line.split(' ').take(path.len()))
 }

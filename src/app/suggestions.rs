@@ -9,38 +9,38 @@ use std::ffi::OsString;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
 
-use super::respelled::families_with;
-use super::typed::Typed;
-use crate::command::leaves::{self, is_dangerous};
+use super::spellings::families_with;
+use super::typed_line::TypedLine;
+use crate::command::leaf_commands::{self, is_dangerous};
 use crate::controller::Risk;
 use crate::controller::nearest::nearest;
 use crate::failure::decimal_point;
 use crate::settings::target::Family;
 
 /// Limit of suggestions.
-const MOST: usize = 4;
+const MAX_SUGGESTIONS: usize = 4;
 
 /// Adds a suggestion to the error, if there is one. A command that moves a robot, deletes or overwrites is never
 /// suggested, because the line could be repeated without thought.
-pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
-    let typed = Typed::new(args, whole);
+pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
+    let typed = TypedLine::new(args, whole);
     let tip = match error.kind() {
-        ErrorKind::InvalidSubcommand => absent(&mut error, &typed)
-            .or_else(|| of_families(&error, &typed))
-            .or_else(|| place(&mut error, ContextKind::InvalidSubcommand, &typed, whole)),
+        ErrorKind::InvalidSubcommand => suggest_alternative(&mut error, &typed)
+            .or_else(|| suggest_families(&error, &typed))
+            .or_else(|| suggest_place(&mut error, ContextKind::InvalidSubcommand, &typed, whole)),
         ErrorKind::UnknownArgument => {
             // A flag is never meant as a value, but a negative number can be.
             let is_flag = |value: &ContextValue| matches!(value, ContextValue::String(word) if word.starts_with("--"));
             if error.get(ContextKind::InvalidArg).is_some_and(is_flag) {
                 error.remove(ContextKind::Suggested);
             }
-            leave_out_unlike(&mut error, &typed, whole);
-            let tip = absent(&mut error, &typed)
-                .or_else(|| place(&mut error, ContextKind::InvalidArg, &typed, whole))
-                .or_else(|| joined(&error, args, &typed, whole))
-                .or_else(|| flag_or_value(&mut error, &typed, whole));
+            remove_unlike_flag(&mut error, &typed, whole);
+            let tip = suggest_alternative(&mut error, &typed)
+                .or_else(|| suggest_place(&mut error, ContextKind::InvalidArg, &typed, whole))
+                .or_else(|| suggest_quotes(&error, args, &typed, whole))
+                .or_else(|| suggest_flag_or_value(&mut error, &typed, whole));
             let has_tip = error.get(ContextKind::SuggestedArg).or(error.get(ContextKind::Suggested)).is_some();
-            tip.or_else(|| example(&typed.path).filter(|_| !has_tip))
+            tip.or_else(|| suggest_example(&typed.path).filter(|_| !has_tip))
         }
         ErrorKind::MissingRequiredArgument if typed.path == ["robots", "discover"] => {
             // Its --for limits a condition that it does not have.
@@ -49,11 +49,13 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
             plain_usage(&mut error, &typed, whole);
             Some("robots discover ends by itself: remove --for".to_owned())
         }
-        ErrorKind::MissingRequiredArgument => every_file(args, &typed).or_else(|| missing(&error, &typed, whole)),
-        ErrorKind::InvalidValue => folder(&error, &typed, whole),
-        ErrorKind::ValueValidation => {
-            std::error::Error::source(&error).and_then(|why| number(&why.to_string())).or_else(|| cut_off(&error, args))
+        ErrorKind::MissingRequiredArgument => {
+            suggest_pattern(args, &typed).or_else(|| suggest_value(&error, &typed, whole))
         }
+        ErrorKind::InvalidValue => suggest_folder(&error, &typed, whole),
+        ErrorKind::ValueValidation => std::error::Error::source(&error)
+            .and_then(|why| suggest_number(&why.to_string()))
+            .or_else(|| suggest_quoted_text(&error, args)),
         _ => None,
     };
     if let Some(tip) = tip {
@@ -63,7 +65,7 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
 }
 
 /// Alternative for something that a family does not have.
-fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
+fn suggest_alternative(error: &mut clap::Error, typed: &TypedLine<'_>) -> Option<String> {
     let path = typed.path.join(" ");
     let invalid = match error.get(ContextKind::InvalidArg) {
         Some(ContextValue::String(word)) => Some(word.as_str()),
@@ -76,7 +78,7 @@ fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
 }
 
 /// Families that have a code for which no family was given.
-fn of_families(error: &clap::Error, typed: &Typed<'_>) -> Option<String> {
+fn suggest_families(error: &clap::Error, typed: &TypedLine<'_>) -> Option<String> {
     let Some(ContextValue::String(code)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     if typed.path != ["explain"] || !code.chars().any(|one| one.is_ascii_digit()) {
         return None;
@@ -88,7 +90,7 @@ fn of_families(error: &clap::Error, typed: &Typed<'_>) -> Option<String> {
 }
 
 /// Suggestion for a flag that is a value here, or a value that belongs to a flag.
-fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
     let word = word.clone();
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
@@ -119,27 +121,27 @@ fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) ->
 }
 
 /// Correct place of the wrong word.
-fn place(error: &mut clap::Error, kind: ContextKind, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(kind) else { return None };
     let word = word.clone();
-    leave_out_dangerous(error, &typed.path, whole);
+    remove_dangerous(error, &typed.path, whole);
     if kind == ContextKind::InvalidArg && (word.starts_with('-') || typed.path.len() > 1) {
         return None;
     }
     let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) =
         lines(&word, typed, whole).into_iter().partition(|line| risk(&line.0, whole).is_none());
-    let mut of_risk: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
+    let mut commands_by_risk: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
     for line in &dangerous {
-        if let (Some((_, noun)), Some(risk)) = (words_of(&line.0).split_last(), risk(&line.0, whole)) {
-            of_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
+        if let (Some((_, noun)), Some(risk)) = (parse_words(&line.0).split_last(), risk(&line.0, whole)) {
+            commands_by_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
-    let dangerous = of_risk
+    let dangerous = commands_by_risk
         .into_iter()
         .map(|(risk, helps)| format!("one that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", ")));
-    let mut lines: Vec<String> = safe.into_iter().map(|line| line.shown()).collect();
+    let mut lines: Vec<String> = safe.into_iter().map(|line| line.format_line()).collect();
     lines.extend(dangerous);
-    if lines.is_empty() || lines.len() > MOST {
+    if lines.is_empty() || lines.len() > MAX_SUGGESTIONS {
         return None;
     }
     // The word is spelled correctly, so a similar word is not meant.
@@ -149,12 +151,12 @@ fn place(error: &mut clap::Error, kind: ContextKind, typed: &Typed<'_>, whole: &
 
 /// Effect of a dangerous command; `None` for others.
 fn risk(line: &str, whole: &Command) -> Option<&'static str> {
-    let words = words_of(line);
+    let words = parse_words(line);
     if !may_do_harm(&words, whole) {
         return None;
     }
-    let (_, words) = found(&words, whole);
-    let most = leaves::leaves().filter(|(line, _)| line.split(' ').take(words.len()).eq(words.iter().copied()));
+    let (_, words) = find_command(&words, whole);
+    let most = leaf_commands::leaves().filter(|(line, _)| line.split(' ').take(words.len()).eq(words.iter().copied()));
     Some(match most.map(|(_, risk)| *risk).max() {
         Some(Risk::Destroy) => "deletes or overwrites",
         _ => "moves or powers the robot",
@@ -162,7 +164,7 @@ fn risk(line: &str, whole: &Command) -> Option<&'static str> {
 }
 
 /// Suggestion for a value with blanks, or for numbers separated by blanks.
-fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Command) -> Option<String> {
+fn suggest_quotes(error: &clap::Error, args: &[OsString], typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     let has_values = command
@@ -175,7 +177,7 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     let at = words.iter().rposition(|other| other == word)?;
     let is_number = |word: &&str| word.parse::<f64>().is_ok();
     let is_value = |word: &&str| !word.starts_with('-') || is_number(word);
-    let first = words[..at].iter().rposition(|word| !is_value(word) || typed.said.contains(word))? + 1;
+    let first = words[..at].iter().rposition(|word| !is_value(word) || typed.typed_path.contains(word))? + 1;
     // Only the last argument can have been meant with blanks.
     let is_of_flag = words[first - 1].starts_with('-');
     let others = if is_of_flag { 0 } else { command.get_positionals().count().saturating_sub(1) };
@@ -201,7 +203,7 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
 }
 
 /// Suggestion for `NAME=VALUE` with an unquoted text: `S1=HELLO WORLD`.
-fn cut_off(error: &clap::Error, args: &[OsString]) -> Option<String> {
+fn suggest_quoted_text(error: &clap::Error, args: &[OsString]) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidValue) else { return None };
     let words: Vec<&str> = args.iter().filter_map(|word| word.to_str()).collect();
     let at = words.iter().position(|other| other == word).filter(|_| !word.contains('='))?;
@@ -211,7 +213,7 @@ fn cut_off(error: &clap::Error, args: &[OsString]) -> Option<String> {
 }
 
 /// Suggestion for the format flag used as a folder flag.
-fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+fn suggest_folder(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     let has_folder = command.get_arguments().any(|argument| argument.get_long() == Some("dir"));
@@ -219,7 +221,7 @@ fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<Str
 }
 
 /// Suggestion for an invalid number.
-fn number(why: &str) -> Option<String> {
+fn suggest_number(why: &str) -> Option<String> {
     if let Some((least, most)) = why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..=")) {
         return Some(format!("write a number from {least} to {most}"));
     }
@@ -231,14 +233,14 @@ fn number(why: &str) -> Option<String> {
 }
 
 /// Suggestion for all files: a pattern, because `--all` selects robots.
-fn every_file(args: &[OsString], typed: &Typed<'_>) -> Option<String> {
+fn suggest_pattern(args: &[OsString], typed: &TypedLine<'_>) -> Option<String> {
     let is_meant = typed.path == ["yerc", "file", "get"] && args.iter().any(|word| word == "--all");
     is_meant
         .then(|| "use '*' for all files, '*.JBI' for all jobs; --all selects all robots in the inventory".to_owned())
 }
 
 /// Suggestion for a missing value.
-fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+fn suggest_value(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
@@ -250,18 +252,18 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     let names: Vec<&str> = values.iter().map(clap::builder::PossibleValue::get_name).collect();
     match names.split_last() {
         Some((last, others)) if !others.is_empty() => Some(format!("use {} or {last}", others.join(", "))),
-        _ => example(&typed.path),
+        _ => suggest_example(&typed.path),
     }
 }
 
 /// Example of a command that is not dangerous.
-fn example(path: &[&str]) -> Option<String> {
-    let mut lines = leaves::examples(path).filter(|_| leaves::preselects(path));
+fn suggest_example(path: &[&str]) -> Option<String> {
+    let mut lines = leaf_commands::examples(path).filter(|_| leaf_commands::preselects(path));
     lines.next().map(|line| format!("example: `armctl {line}`"))
 }
 
 /// Removes a similar flag that does not resemble the typed one enough.
-fn leave_out_unlike(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) {
+fn remove_unlike_flag(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Command) {
     let (Some(ContextValue::String(word)), Some(ContextValue::String(similar))) =
         (error.get(ContextKind::InvalidArg), error.get(ContextKind::SuggestedArg))
     else {
@@ -276,7 +278,7 @@ fn leave_out_unlike(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command)
 }
 
 /// Usage of the command alone, instead of one with flags that were not meant.
-fn plain_usage(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) {
+fn plain_usage(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Command) {
     let mut whole = whole.clone();
     whole.build();
     let command = typed.path.iter().try_fold(&mut whole, |command, word| command.find_subcommand_mut(word));
@@ -287,12 +289,12 @@ fn plain_usage(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) {
 
 /// Whether the words lead to a dangerous command, including its aliases.
 fn may_do_harm(words: &[&str], whole: &Command) -> bool {
-    let (command, path) = found(words, whole);
+    let (command, path) = find_command(words, whole);
     is_dangerous(&path, command.is_some_and(Command::has_subcommands))
 }
 
 /// The command of these words, and the words with its primary names.
-fn found<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec<&'a str>) {
+fn find_command<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec<&'a str>) {
     let mut command = Some(whole);
     let path = words.iter().map(|word| {
         command = command.and_then(|command| command.find_subcommand(word));
@@ -306,7 +308,7 @@ fn found<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec
 const READS: [&str; 5] = ["get", "list", "show", "read", "ls"];
 
 /// Removes dangerous commands from the similar words.
-fn leave_out_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) {
+fn remove_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) {
     let Some(similar) = error.remove(ContextKind::SuggestedSubcommand) else { return };
     let typed = match error.get(ContextKind::InvalidSubcommand) {
         Some(ContextValue::String(typed)) => typed.clone(),
@@ -341,17 +343,17 @@ impl Suggestion {
         Self(line.into(), "")
     }
 
-    fn shown(&self) -> String {
+    fn format_line(&self) -> String {
         format!("`armctl {}`{}", self.0, self.1)
     }
 }
 
-fn words_of(line: &str) -> Vec<&str> {
+fn parse_words(line: &str) -> Vec<&str> {
     line.split(' ').filter(|word| *word != "…" && !word.starts_with('-')).collect()
 }
 
 /// Command lines with the word in its correct place.
-fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Suggestion> {
+fn lines(word: &str, typed: &TypedLine<'_>, whole: &Command) -> Vec<Suggestion> {
     let words = typed.words();
     if word.parse::<Family>().is_ok() {
         let others: Vec<&str> = words.iter().copied().filter(|other| *other != word).collect();
@@ -371,38 +373,38 @@ fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Suggestion> {
         families.iter().flat_map(|family| find(family)).collect::<Vec<_>>()
     };
     [
-        all(&|family| reversed(family, &words)),
-        said_otherwise(&words, family),
-        all(&|family| other_verb(family, &words)),
-        all(&|family| below(family, word)),
+        all(&|family| reverse_words(family, &words)),
+        replace_synonym(&words, family),
+        all(&|family| find_sibling_verbs(family, &words)),
+        all(&|family| collect_subcommands(family, word)),
     ]
     .into_iter()
     .find(|lines| !lines.is_empty())
-    .map(|lines| for_all(lines, whole))
+    .map(|lines| common_lines(lines, whole))
     .unwrap_or_default()
 }
 
 /// Combines suggestions for each family into one, if a command for all families exists.
-fn for_all(lines: Vec<Suggestion>, whole: &Command) -> Vec<Suggestion> {
+fn common_lines(lines: Vec<Suggestion>, whole: &Command) -> Vec<Suggestion> {
     let shared = match &lines[..] {
         [Suggestion(first, _), _, ..] => first.split_once(' ').map(|(_, words)| words.to_owned()),
         _ => None,
     };
     let Some(shared) = shared else { return lines };
     let is_same = |line: &Suggestion| line.0.split_once(' ').is_some_and(|(_, words)| words == shared);
-    let exists = words_of(&shared).iter().try_fold(whole, |command, word| command.find_subcommand(word)).is_some();
+    let exists = parse_words(&shared).iter().try_fold(whole, |command, word| command.find_subcommand(word)).is_some();
     if exists && lines.iter().all(is_same) { vec![Suggestion::new(shared)] } else { lines }
 }
 
 /// Suggestion for a verb before its noun.
-fn reversed(family: &Command, words: &[&str]) -> Vec<Suggestion> {
+fn reverse_words(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [verb, noun, ..] = words else { return Vec::new() };
     let exists = family.find_subcommand(noun).is_some_and(|noun| noun.find_subcommand(verb).is_some());
     if exists { vec![Suggestion::new(format!("{} {noun} {verb}", family.get_name()))] } else { Vec::new() }
 }
 
 /// Suggestions from the table of synonyms: the entry with the most words.
-fn said_otherwise(words: &[&str], family: Option<Family>) -> Vec<Suggestion> {
+fn replace_synonym(words: &[&str], family: Option<Family>) -> Vec<Suggestion> {
     let typed = |entry: &&(&str, &[&str])| words.starts_with(&entry.0.split(' ').collect::<Vec<_>>());
     let Some((_, ways)) = synonyms::LINES.iter().filter(typed).max_by_key(|(words, _)| words.len()) else {
         return Vec::new();
@@ -413,7 +415,7 @@ fn said_otherwise(words: &[&str], family: Option<Family>) -> Vec<Suggestion> {
 }
 
 /// Suggestion for a noun with a synonym of its verb.
-fn other_verb(family: &Command, words: &[&str]) -> Vec<Suggestion> {
+fn find_sibling_verbs(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [noun, verb, ..] = words else { return Vec::new() };
     let Some(command) = family.find_subcommand(noun) else { return Vec::new() };
     let Some((_, verbs)) = synonyms::VERBS.iter().find(|(other, _)| other == verb) else { return Vec::new() };
@@ -422,7 +424,7 @@ fn other_verb(family: &Command, words: &[&str]) -> Vec<Suggestion> {
 }
 
 /// Suggestion for a word that is a command of a family, or a verb of one of its nouns.
-fn below(family: &Command, word: &str) -> Vec<Suggestion> {
+fn collect_subcommands(family: &Command, word: &str) -> Vec<Suggestion> {
     let name = family.get_name();
     if let Some(command) = family.find_subcommand(word) {
         let more = if command.has_subcommands() { " …" } else { "" };
@@ -443,12 +445,12 @@ mod tests {
         let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
         let mut whole = Cli::command();
         let error = whole.try_get_matches_from_mut(&args).unwrap_err();
-        let text = explained(error, &args, &whole).render().to_string();
+        let text = add_suggestion(error, &args, &whole).render().to_string();
         text.lines().find_map(|line| line.trim().strip_prefix("tip: ").map(ToOwned::to_owned))
     }
 
     #[test]
-    fn words_in_the_wrong_place_are_shown_in_theirs() {
+    fn suggests_the_right_place_of_a_word() {
         for (line, expected) in [
             ("armctl hlock on", "the command is `armctl yerc hlock`"),
             (
@@ -469,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn other_words_and_another_order_lead_to_the_command() {
+    fn suggests_commands_for_synonyms_and_other_word_orders() {
         for (line, expected) in [
             ("armctl get file", "`armctl yerc file get`"),
             ("armctl yerc get file A.JBI", "`armctl yerc file get`"),
@@ -494,7 +496,7 @@ mod tests {
     }
 
     #[test]
-    fn another_name_of_what_moves_is_no_more_proposed_than_its_own() {
+    fn never_suggests_an_alias_of_a_motion_command() {
         for line in ["armctl toyo origi", "armctl toyo hom", "armctl yrcx hom", "armctl yrcx origi"] {
             let tip = tip(line).unwrap_or_default();
             assert!(!tip.contains("home") && !tip.contains("origin"), "{line}: {tip}");
@@ -507,7 +509,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tables_lead_to_commands() {
+    fn every_synonym_leads_to_a_command() {
         let whole = Cli::command();
         let exists = |words: &[&str]| {
             words
@@ -516,7 +518,7 @@ mod tests {
         };
         for (_, ways) in synonyms::LINES {
             for way in *ways {
-                assert!(exists(&words_of(way)).is_some(), "{way}");
+                assert!(exists(&parse_words(way)).is_some(), "{way}");
             }
         }
         let words: Vec<&str> = synonyms::LINES.iter().map(|(words, _)| *words).collect();
@@ -524,7 +526,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_told_as_they_are_to_be_typed() {
+    fn suggests_the_typed_form_of_values() {
         for (line, expected) in [
             ("armctl yerc servo", "use on or off"),
             ("armctl yerc cycle", "use step, once or continuous"),
@@ -562,7 +564,7 @@ mod tests {
     }
 
     #[test]
-    fn what_resembles_nothing_gets_an_example_unless_it_is_dangerous() {
+    fn suggests_an_example_unless_it_is_dangerous() {
         for (line, expected) in [
             ("armctl yerc status x", "example: `armctl yerc status`"),
             ("armctl toyo program get 5 6 7", "example: `armctl toyo program get`"),
@@ -579,7 +581,7 @@ mod tests {
     }
 
     #[test]
-    fn a_usage_names_no_flag_that_was_not_meant() {
+    fn usage_names_only_typed_flags() {
         for (line, expected) in [
             ("armctl yerc job start --name X", "Usage: armctl yerc job start [OPTIONS] [NAME]"),
             ("armctl robots discover --for 3s", "Usage: armctl robots discover [OPTIONS] [ADDRESS[:PORT]]..."),
@@ -587,7 +589,7 @@ mod tests {
             let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
             let mut whole = Cli::command();
             let error = whole.try_get_matches_from_mut(&args).unwrap_err().format(&mut whole);
-            let text = explained(error, &args, &whole).render().to_string();
+            let text = add_suggestion(error, &args, &whole).render().to_string();
             assert!(text.contains(expected) && !text.contains("--until"), "{text}");
         }
     }

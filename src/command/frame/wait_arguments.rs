@@ -55,25 +55,25 @@ mod tests {
     const OTHERS: [&str; 2] = ["armctl yerc file cmos", "armctl robots discover"];
 
     /// Subcommands that accept only one of the two options.
-    fn halves(command: &Command, path: &str, found: &mut Vec<String>) {
+    fn selectors(command: &Command, path: &str, found: &mut Vec<String>) {
         let has = |long: &str| command.get_arguments().any(|argument| argument.get_long() == Some(long));
         if has("wait") != has("no-wait") && !OTHERS.contains(&path) {
             found.push(path.to_owned());
         }
         for verb in command.get_subcommands() {
-            halves(verb, &format!("{path} {}", verb.get_name()), found);
+            selectors(verb, &format!("{path} {}", verb.get_name()), found);
         }
     }
 
     #[test]
-    fn both_flags_exist_together() {
+    fn offers_both_flags_together() {
         let mut found = Vec::new();
-        halves(&Cli::command(), "armctl", &mut found);
+        selectors(&Cli::command(), "armctl", &mut found);
         assert!(found.is_empty(), "{found:?}");
     }
 
     #[test]
-    fn the_last_flag_counts_and_a_repeated_start_waits() {
+    fn last_flag_wins_and_repeated_starts_wait() {
         let parses = |line: &str| Cli::command().try_get_matches_from(line.split(' ')).is_ok();
         assert!(parses("armctl toyo home --no-wait --wait") && parses("armctl toyo run easy 1 --wait 5s"));
         assert!(

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{Making, Only, Restoring};
+use super::{Only, RestoreSelection, SaveOptions};
 use crate::command::ValueKind;
 
 /// Backup options.
@@ -31,9 +31,9 @@ impl BackupOptions {
     }
 
     /// Backup request, with additional selections of the family.
-    pub fn making(&self, narrowed: impl IntoIterator<Item = String>) -> Making {
+    pub fn making(&self, narrowed: impl IntoIterator<Item = String>) -> SaveOptions {
         let scope: Vec<String> = narrowed.into_iter().chain(Only(self.only.clone()).scope()).collect();
-        Making {
+        SaveOptions {
             folder: self.folder.clone(),
             scope: Some(scope).filter(|scope| !scope.is_empty()),
             resume: self.resume,
@@ -62,8 +62,8 @@ pub struct RestoreOptions {
 
 impl RestoreOptions {
     /// Restore request.
-    pub fn restoring(&self) -> Restoring {
+    pub fn restoring(&self) -> RestoreSelection {
         let Self { folder, only, machine, force } = self;
-        Restoring { folder: folder.clone(), only: Only(only.clone()), machine: *machine, force: *force }
+        RestoreSelection { folder: folder.clone(), only: Only(only.clone()), machine: *machine, force: *force }
     }
 }

@@ -3,14 +3,14 @@
 use std::ffi::OsString;
 
 use super::parser::{Parser, Refusal};
-use super::prepared::{Need, sources};
+use super::prepare::{Need, sources};
 use crate::cli::{Cli, Globals, Top};
 use crate::command::frame::names;
 
 /// Parses a line that can contain names for addresses. `all`: global flags for all lines, if there are several.
 /// `among`: other lines run in this process, where simulators live on.
 pub fn parse(parser: &mut Parser, args: &[OsString], all: Option<&Globals>, among: bool) -> Result<Cli, Refusal> {
-    let (parsed, is_named) = names::asking(|| parser.parse(args));
+    let (parsed, is_named) = names::detect_names(|| parser.parse(args));
     if !is_named {
         return parsed;
     }
@@ -23,7 +23,7 @@ pub fn parse(parser: &mut Parser, args: &[OsString], all: Option<&Globals>, amon
     };
     let sources = sources(globals, Need::Inventory, among).map_err(Refusal::Failed)?;
     let robots = sources.robots(Some(word.family)).map_err(Refusal::Failed)?;
-    names::known(word.family, &robots, || parser.parse(args))
+    names::with_names(word.family, &robots, || parser.parse(args))
 }
 
 #[cfg(test)]
@@ -36,7 +36,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_looked_up_once_the_robot_is_known() {
+    fn looks_names_up_after_the_robot_is_known() {
         for line in [
             "armctl --sim yerc io get gripper",
             "armctl --sim yerc io get 20010,GRIPPER",
@@ -55,8 +55,8 @@ mod tests {
             ("armctl --sim yerc var set PARTS_DONE", "write a variable, '=' and a value"),
             ("armctl --sim yrcx io get GRIPPER", "not a valid signal"),
         ] {
-            let told = parsed(line).err().unwrap_or_default();
-            assert!(told.contains(why), "{line}: {told}");
+            let failure_text = parsed(line).err().unwrap_or_default();
+            assert!(failure_text.contains(why), "{line}: {failure_text}");
         }
     }
 }

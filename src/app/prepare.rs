@@ -7,7 +7,7 @@ use clap::{CommandFactory as _, ValueEnum as _};
 use super::{flags, screen};
 use crate::cli::{Cli, FamilyWord, Globals, Top};
 use crate::command::common::Common;
-use crate::command::face::words::{Typed, Wish};
+use crate::command::face::family_command::{FamilyLine, ParsedCommand};
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
 use crate::command::fleet::shared;
@@ -16,7 +16,7 @@ use crate::command::frame::batch::Batch;
 use crate::command::frame::condition::Condition;
 use crate::command::frame::run::{Repeat, Run, RunError};
 use crate::command::frame::script_line::Line;
-use crate::command::{AnyCommand, Own};
+use crate::command::{AnyCommand, FamilyArguments};
 use crate::failure::Failure;
 use crate::gate::Gate;
 use crate::output::Format;
@@ -24,7 +24,7 @@ use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
-use crate::settings::target::Given;
+use crate::settings::target::TargetArgument;
 use crate::settings::{Selection, Sessions, Sources};
 
 /// Meaning of a command line.
@@ -45,7 +45,7 @@ pub enum Invocation {
 #[allow(clippy::large_enum_variant, reason = "a process has only a few")]
 pub enum Task {
     /// A command of a family, with the options of the family.
-    Family(Own, Box<dyn AnyCommand>),
+    Family(FamilyArguments, Box<dyn AnyCommand>),
     /// A command common to all families.
     Common(Common),
 }
@@ -53,12 +53,12 @@ pub enum Task {
 impl From<Top> for Invocation {
     fn from(command: Top) -> Self {
         match command {
-            Top::Family(FamilyWord { family, typed: Typed { own, wish } }) => {
+            Top::Family(FamilyWord { family, typed: FamilyLine { arguments: own, command: wish } }) => {
                 let prefix = std::iter::once(family.name().to_owned()).chain(own.words()).collect();
                 match wish {
-                    Wish::Command(command) => Self::Task(Task::Family(own, command)),
-                    Wish::Prompt => Self::Prompt(prefix),
-                    Wish::Nothing => Self::Bare(prefix),
+                    ParsedCommand::Command(command) => Self::Task(Task::Family(own, command)),
+                    ParsedCommand::Prompt => Self::Prompt(prefix),
+                    ParsedCommand::Nothing => Self::Bare(prefix),
                 }
             }
             Top::Common(common) => Self::Task(Task::Common(common)),
@@ -97,7 +97,7 @@ impl PreparedCommand {
         match &task {
             Task::Family(own, _) => run.own = own.clone(),
             Task::Common(common) if common.is_for_all() => {
-                run.sources.widen();
+                run.sources.default_to_all();
                 run.sources.selection.every_simulator = true;
             }
             Task::Common(Common::Wait(wait)) => run.repeat = wait.repeat(&run.repeat)?,
@@ -113,7 +113,7 @@ impl PreparedCommand {
     }
 
     /// Runs the command.
-    pub async fn go(self) -> Result<(), RunError> {
+    pub async fn run(self) -> Result<(), RunError> {
         self.task.go(&self.run).await
     }
 
@@ -195,7 +195,17 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     };
     let trace = globals.trace.clone();
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
-    Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })
+    Ok(Run {
+        screen,
+        sources,
+        gate,
+        repeat,
+        filter,
+        trace,
+        line,
+        redraw: Redraw::default(),
+        own: FamilyArguments::default(),
+    })
 }
 
 /// Selected robots and their settings. `among`: other lines run in this process, where simulators live on.
@@ -207,7 +217,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
         from_environment: false,
         tags: globals.tag,
         all: globals.all,
-        environment: variable("ARMCTL_TARGET", |url| url.parse::<Given>().map_err(|failure| failure.message))?,
+        environment: variable("ARMCTL_TARGET", |url| url.parse::<TargetArgument>().map_err(|failure| failure.message))?,
         sessions: match (globals.no_session, among) {
             (true, _) => Sessions::None,
             (false, true) => Sessions::OwnSimulators,
@@ -223,7 +233,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     // Also for a robot given by address, because its entry can be read-only.
     let mut location = location(globals.config)?;
     if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
-        location = Location::Usual(path.clone());
+        location = Location::Default(path.clone());
     }
     let inventory = if selection.sim || need == Need::Names {
         Inventory { path: location.path().map(Path::to_owned), ..Inventory::default() }

@@ -6,20 +6,20 @@ use clap::{Arg, Command};
 
 /// Words of a command line, without flags and their values.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub struct Typed<'a> {
+pub struct TypedLine<'a> {
     /// Words of the command, by their primary names.
     pub path: Vec<&'a str>,
     /// Words of the command, as typed (can be aliases).
-    pub said: Vec<&'a str>,
+    pub typed_path: Vec<&'a str>,
     /// Their positions in the line.
-    pub said_at: Vec<usize>,
+    pub path_positions: Vec<usize>,
     /// Words after the command.
     pub rest: Vec<&'a str>,
     /// Their positions in the line.
-    pub at: Vec<usize>,
+    pub rest_positions: Vec<usize>,
 }
 
-impl<'a> Typed<'a> {
+impl<'a> TypedLine<'a> {
     /// Analyzes a line, including the program name.
     pub fn new(args: &'a [OsString], whole: &'a Command) -> Self {
         let mut typed = Self::default();
@@ -27,7 +27,7 @@ impl<'a> Typed<'a> {
         let mut words = args.iter().enumerate().skip(1).filter_map(|(at, word)| Some((at, word.to_str()?)));
         while let Some((at, word)) = words.next().filter(|(_, word)| *word != "--") {
             if word.starts_with('-') && word.len() > 1 {
-                if takes_next(word, &commands) {
+                if has_value_after(word, &commands) {
                     words.next();
                 }
                 continue;
@@ -36,11 +36,11 @@ impl<'a> Typed<'a> {
             if let Some(below) = below.filter(|_| typed.rest.is_empty()) {
                 commands.push(below);
                 typed.path.push(below.get_name());
-                typed.said.push(word);
-                typed.said_at.push(at);
+                typed.typed_path.push(word);
+                typed.path_positions.push(at);
             } else {
                 typed.rest.push(word);
-                typed.at.push(at);
+                typed.rest_positions.push(at);
             }
         }
         typed
@@ -48,12 +48,12 @@ impl<'a> Typed<'a> {
 
     /// All words, as typed.
     pub fn words(&self) -> Vec<&'a str> {
-        [&self.said[..], &self.rest].concat()
+        [&self.typed_path[..], &self.rest].concat()
     }
 }
 
 /// Whether the word after a flag is its value.
-fn takes_next(flag: &str, commands: &[&Command]) -> bool {
+fn has_value_after(flag: &str, commands: &[&Command]) -> bool {
     let known = |is_it: &dyn Fn(&Arg) -> bool| {
         let found = commands.iter().flat_map(|command| command.get_arguments()).find(|argument| is_it(argument));
         found.is_some_and(|argument| {
@@ -74,7 +74,7 @@ mod tests {
     use crate::cli::Cli;
 
     #[test]
-    fn flags_and_their_values_are_no_words_of_a_command() {
+    fn command_words_exclude_flags_and_their_values() {
         let whole = Cli::command();
         for (line, path, rest) in [
             ("armctl yerc job select WELD", "yerc job select", "WELD"),
@@ -87,7 +87,7 @@ mod tests {
             ("armctl toyo error show", "toyo alarm list", ""),
         ] {
             let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
-            let typed = Typed::new(&args, &whole);
+            let typed = TypedLine::new(&args, &whole);
             assert_eq!((typed.path.join(" ").as_str(), typed.rest.join(" ").as_str()), (path, rest), "{line}");
         }
     }

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::Value;
 
+use super::arguments::{BackupOptions, RestoreOptions};
 use super::compare::Differences;
 use super::diff::DiffOptions;
 use super::manifest;
-use super::options::{BackupOptions, RestoreOptions};
-use super::{BackedUp, Making, Restored, Restoring};
-use crate::command::frame::local::own_folder;
+use super::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use crate::command::frame::local_names::private_folder;
 use crate::command::{Command, Context, Family};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -33,9 +33,9 @@ pub trait Backups: Family {
         Self::BACKUP_RISK
     }
     /// Makes a backup.
-    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure>;
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure>;
     /// Restores a backup.
-    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure>;
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure>;
 }
 
 /// Saves the data of a controller to a folder of files.
@@ -74,8 +74,8 @@ impl<F: Backups> Command for Backup<F> {
 
     async fn run(&self, context: Context<'_, F>) -> Result<BackedUp, Failure> {
         let making = self.options.making(None);
-        let folder = own_folder(&making.folder, &context.robot.name, context.several);
-        F::back_up(context, Making { folder, ..making }).await
+        let folder = private_folder(&making.folder, &context.robot.name, context.several);
+        F::back_up(context, SaveOptions { folder, ..making }).await
     }
 }
 
@@ -114,8 +114,8 @@ impl<F: Backups> Command for Restore<F> {
     async fn run(&self, context: Context<'_, F>) -> Result<Restored, Failure> {
         let restoring = self.options.restoring();
         let folder = place(&restoring.folder, context.robot, context.several);
-        manifest::check_origin(&manifest::existing::<Value>(&folder)?, context.robot, restoring.force)?;
-        F::restore(context, &Restoring { folder, ..restoring }).await
+        manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, context.robot, restoring.force)?;
+        F::restore(context, &RestoreSelection { folder, ..restoring }).await
     }
 }
 
@@ -197,7 +197,7 @@ impl<F: Backups> Command for Diff<F> {
 
 /// Folder of a robot's backup: a subfolder with its name if there are several robots.
 fn place(folder: &Path, robot: &Robot, several: bool) -> PathBuf {
-    let own = own_folder(folder, &robot.name, true);
+    let own = private_folder(folder, &robot.name, true);
     let has_list = |folder: &Path| folder.join(manifest::MANIFEST).exists();
     if several || !has_list(folder) && has_list(&own) { own } else { folder.to_owned() }
 }

@@ -7,7 +7,7 @@ use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
-use super::declared::Declaration;
+use super::registration::Declaration;
 use crate::command::frame::command::AnyContext;
 use crate::command::frame::connection;
 use crate::command::frame::report::sheet_of;
@@ -32,7 +32,7 @@ pub enum SharedVerb {
 }
 
 /// Conversion of a family report to the common report.
-pub trait Alike {
+pub trait CommonReport {
     /// Common report type.
     type Core: Report + 'static;
 
@@ -43,10 +43,10 @@ pub trait Alike {
 /// Family command for a shared verb, without arguments.
 pub fn command<F: Declaration>(verb: SharedVerb) -> Box<dyn AnyCommand> {
     match verb {
-        SharedVerb::AlarmHistory => Box::new(Reduced(usual::<F::AlarmHistory>())),
-        SharedVerb::AlarmReset => Box::new(Reduced(usual::<F::AlarmReset>())),
-        SharedVerb::Stop => Box::new(Reduced(F::stop_command())),
-        SharedVerb::Position => Box::new(Reduced(usual::<F::Position>())),
+        SharedVerb::AlarmHistory => Box::new(CommonCommand(default_arguments::<F::AlarmHistory>())),
+        SharedVerb::AlarmReset => Box::new(CommonCommand(default_arguments::<F::AlarmReset>())),
+        SharedVerb::Stop => Box::new(CommonCommand(F::stop_command())),
+        SharedVerb::Position => Box::new(CommonCommand(default_arguments::<F::Position>())),
     }
 }
 
@@ -54,7 +54,7 @@ pub fn command<F: Declaration>(verb: SharedVerb) -> Box<dyn AnyCommand> {
 ///
 /// # Panics
 /// If it has arguments without a default, which a test excludes.
-pub fn usual<C: Args>() -> C {
+pub fn default_arguments<C: Args>() -> C {
     // The position command of a YRCX reads this global option.
     let until = clap::Arg::new("until").long("until").global(true);
     let command = C::augment_args(clap::Command::new("usual").arg(until));
@@ -63,9 +63,9 @@ pub fn usual<C: Args>() -> C {
 }
 
 /// A command whose report is reduced to the common fields.
-struct Reduced<C>(C);
+struct CommonCommand<C>(C);
 
-impl<C: Command<Report: Alike>> AnyCommand for Reduced<C> {
+impl<C: Command<Report: CommonReport>> AnyCommand for CommonCommand<C> {
     fn id(&self) -> &'static str {
         C::ID
     }
@@ -83,7 +83,7 @@ impl<C: Command<Report: Alike>> AnyCommand for Reduced<C> {
     }
 
     fn sheet(&self) -> Option<Sheet> {
-        Some(sheet_of::<<C::Report as Alike>::Core>())
+        Some(sheet_of::<<C::Report as CommonReport>::Core>())
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {

@@ -4,18 +4,18 @@ use clap::builder::CommandExt;
 use clap::{ArgMatches, Command, FromArgMatches as _, Subcommand};
 
 use crate::command::frame::repl::Repl;
-use crate::command::{AnyCommand, CommandSet, Own};
+use crate::command::{AnyCommand, CommandSet, FamilyArguments};
 
 /// Parsed words after the family name.
-pub struct Typed {
+pub struct FamilyLine {
     /// Arguments before the command.
-    pub own: Own,
+    pub arguments: FamilyArguments,
     /// Requested action.
-    pub wish: Wish,
+    pub command: ParsedCommand,
 }
 
 /// Requested action of a family.
-pub enum Wish {
+pub enum ParsedCommand {
     /// A command.
     Command(Box<dyn AnyCommand>),
     /// Interactive prompt.
@@ -68,18 +68,18 @@ pub struct Headings(pub fn() -> Vec<(Option<&'static str>, String)>);
 impl CommandExt for Headings {}
 
 /// Reads the requested action of a family.
-pub fn read<C: CommandSet + Subcommand>(matches: &mut ArgMatches) -> Result<Wish, clap::Error> {
+pub fn read<C: CommandSet + Subcommand>(matches: &mut ArgMatches) -> Result<ParsedCommand, clap::Error> {
     if matches.subcommand_name().is_none() {
-        return Ok(Wish::Nothing);
+        return Ok(ParsedCommand::Nothing);
     }
     Ok(match Verb::<C>::from_arg_matches_mut(matches)? {
-        Verb::Command(command) => Wish::Command(command.command()),
-        Verb::Repl(Repl {}) => Wish::Prompt,
+        Verb::Command(command) => ParsedCommand::Command(command.command()),
+        Verb::Repl(Repl {}) => ParsedCommand::Prompt,
     })
 }
 
-impl From<Wish> for Typed {
-    fn from(wish: Wish) -> Self {
-        Self { own: Own::default(), wish }
+impl From<ParsedCommand> for FamilyLine {
+    fn from(wish: ParsedCommand) -> Self {
+        Self { arguments: FamilyArguments::default(), command: wish }
     }
 }

@@ -19,7 +19,7 @@ pub use crate::settings::state_folder;
 /// Maximum length of a name in common file systems.
 const MAX_LOCAL_NAME: usize = 255;
 /// Buffer size: the data of a few hundred blocks.
-const BUFFER: usize = 1 << 17;
+const MAX_BUFFER: usize = 1 << 17;
 /// Reserved device names of Windows, with any extension.
 const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
 /// Reserved device names with a digit.
@@ -37,12 +37,12 @@ pub fn local_name(encoding: Encoding, name: &[u8]) -> String {
             piece.plain = None;
         }
     }
-    if is_device(&written(&pieces))
+    if is_device(&escape_piece(&pieces))
         && let Some(first) = pieces.first_mut()
     {
         first.plain = None;
     }
-    written(&pieces)
+    escape_piece(&pieces)
 }
 
 /// Local name that differs from other names in more than case.
@@ -51,7 +51,7 @@ fn caseless_name(encoding: Encoding, name: &[u8]) -> String {
     for piece in &mut pieces {
         piece.plain = piece.plain.filter(|c| c.is_ascii_digit() || *c == '_');
     }
-    written(&pieces)
+    escape_piece(&pieces)
 }
 
 /// Name on the controller of a local file: [`local_name`] escapes are decoded, any other name is unchanged.
@@ -67,8 +67,8 @@ pub fn controller_name(encoding: Encoding, local: &str) -> Result<Vec<u8>, Encod
 /// Whether a local name in a manifest is a plain file name in its folder.
 pub fn is_plain_file_name(local: &str) -> bool {
     let mut parts = Path::new(local).components();
-    let alone = matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == local);
-    alone && local.chars().all(is_plain_or_escape) && !is_device(local)
+    let dots = matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == local);
+    dots && local.chars().all(is_plain_or_escape) && !is_device(local)
 }
 
 /// Assigns unique local names to the files of a controller, also on file systems that ignore case.
@@ -132,7 +132,7 @@ impl Target {
     pub fn begin(&self) -> Result<Draft, Failure> {
         let folder = folder_of(&self.path);
         let file = files::draft_in(&folder).with_context(|| folder.display().to_string())?;
-        Ok(Draft { file: BufWriter::with_capacity(BUFFER, file), target: self.clone() })
+        Ok(Draft { file: BufWriter::with_capacity(MAX_BUFFER, file), target: self.clone() })
     }
 }
 
@@ -165,7 +165,7 @@ impl Draft {
 }
 
 /// Path for robot `name` in the operator's folder: a subfolder if there are several robots.
-pub fn own_folder(folder: &Path, name: &str, several: bool) -> PathBuf {
+pub fn private_folder(folder: &Path, name: &str, several: bool) -> PathBuf {
     if several { folder.join(local_name(Encoding::Utf8, name.as_bytes())) } else { folder.to_owned() }
 }
 
@@ -201,7 +201,7 @@ fn pieces(encoding: Encoding, name: &[u8]) -> Vec<Piece<'_>> {
     shown.text.chars().map(piece).collect()
 }
 
-fn written(pieces: &[Piece<'_>]) -> String {
+fn escape_piece(pieces: &[Piece<'_>]) -> String {
     let mut local = String::new();
     for piece in pieces {
         match piece.plain {

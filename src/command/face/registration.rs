@@ -6,23 +6,25 @@ use clap::{ArgMatches, Args, FromArgMatches as _, Subcommand};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::explain::{Explain, Recorded};
+use super::explain::{Explain, RecordedAlarm};
+use super::family_command::{self, FamilyLine};
 use super::layers::Layer;
 use super::overview::OverviewReport;
-use super::panel::Panel;
 use super::sample::{Detail, Sample, Traffic};
-use super::shared::{self, Alike, SharedVerb};
+use super::shared_commands::{self, CommonReport, SharedVerb};
+use super::teach_panel::Panel;
 use super::tool::{Tool, ToolKind};
-use super::words::{self, Typed};
 use super::{Face, HeldLink, Watch};
-use crate::command::backup::words::Backups;
-use crate::command::backup::{BackedUp, Making, Restored, Restoring};
+use crate::command::backup::family_backup::Backups;
+use crate::command::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use crate::command::decode::Decode;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::connection;
 use crate::command::robot::alarm::Alarm;
 use crate::command::serve::Serve;
-use crate::command::{Access, AnyCommand, AnyContext, Command, CommandSet, Driver, Outcome, Own, SchemaEntry};
+use crate::command::{
+    Access, AnyCommand, AnyContext, Command, CommandSet, Driver, FamilyArguments, Outcome, SchemaEntry,
+};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -40,15 +42,15 @@ pub trait Declaration: Backups {
     /// `armctl explain`.
     type Explain: Explain + Args + 'static;
     /// Command that lists present alarms.
-    type Alarms: Command<Family = Self, Report: Recorded> + Args;
+    type Alarms: Command<Family = Self, Report: RecordedAlarm> + Args;
     /// Command that lists past alarms.
-    type AlarmHistory: Command<Family = Self, Report: Recorded + Alike> + Args;
+    type AlarmHistory: Command<Family = Self, Report: RecordedAlarm + CommonReport> + Args;
     /// Command that resets alarms.
-    type AlarmReset: Command<Family = Self, Report: Alike> + Args;
+    type AlarmReset: Command<Family = Self, Report: CommonReport> + Args;
     /// Command that reads the position.
-    type Position: Command<Family = Self, Report: Alike> + Args;
+    type Position: Command<Family = Self, Report: CommonReport> + Args;
     /// Command that stops the robot.
-    type Stop: Command<Family = Self, Report: Alike> + 'static;
+    type Stop: Command<Family = Self, Report: CommonReport> + 'static;
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
     /// Poller for live views.
@@ -89,8 +91,8 @@ pub trait Declaration: Backups {
         command
     }
     /// Reads the arguments between its name and a command.
-    fn read_arguments(_matches: &mut ArgMatches) -> Result<Own, clap::Error> {
-        Ok(Own::default())
+    fn read_arguments(_matches: &mut ArgMatches) -> Result<FamilyArguments, clap::Error> {
+        Ok(FamilyArguments::default())
     }
     /// Stop command, equivalent to the words of [`STOP`](connection::Family::STOP).
     fn stop_command() -> Self::Stop;
@@ -123,14 +125,14 @@ pub trait Poller: Sized + 'static {
 }
 
 /// [`Face`] of a declared family.
-pub struct Declared<F>(PhantomData<fn() -> F>);
+pub struct Registered<F>(PhantomData<fn() -> F>);
 
-impl<F> Declared<F> {
+impl<F> Registered<F> {
     /// The only value.
     pub const FACE: Self = Self(PhantomData);
 }
 
-impl<F: Declaration> Face for Declared<F> {
+impl<F: Declaration> Face for Registered<F> {
     fn family(&self) -> target::Family {
         F::NAME
     }
@@ -170,16 +172,16 @@ impl<F: Declaration> Face for Declared<F> {
     }
 
     fn augment(&self, command: clap::Command) -> clap::Command {
-        words::augment::<F::Commands>(F::arguments(command), F::ABOUT).after_help(F::AFTER_HELP)
+        family_command::augment::<F::Commands>(F::arguments(command), F::ABOUT).after_help(F::AFTER_HELP)
     }
 
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
         F::Commands::lay_out(F::arguments(command), is_named)
     }
 
-    fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error> {
+    fn read(&self, matches: &mut ArgMatches) -> Result<FamilyLine, clap::Error> {
         let own = F::read_arguments(matches)?;
-        Ok(Typed { own, wish: words::read::<F::Commands>(matches)? })
+        Ok(FamilyLine { arguments: own, command: family_command::read::<F::Commands>(matches)? })
     }
 
     fn schemas(&self) -> Vec<SchemaEntry> {
@@ -213,7 +215,7 @@ impl<F: Declaration> Face for Declared<F> {
     }
 
     fn shared(&self, verb: SharedVerb) -> Box<dyn AnyCommand> {
-        shared::command::<F>(verb)
+        shared_commands::command::<F>(verb)
     }
 
     fn check<'a>(
@@ -267,14 +269,18 @@ impl<F: Declaration> Face for Declared<F> {
         F::backup_risk(robot)
     }
 
-    fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
+    fn back_up<'a>(
+        &self,
+        context: AnyContext<'a>,
+        making: SaveOptions,
+    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
         async move { F::back_up(context.of()?, making).await }.boxed_local()
     }
 
     fn restore<'a>(
         &self,
         context: AnyContext<'a>,
-        restoring: &'a Restoring,
+        restoring: &'a RestoreSelection,
     ) -> LocalBoxFuture<'a, Result<Restored, Failure>> {
         async move { F::restore(context.of()?, restoring).await }.boxed_local()
     }
@@ -293,8 +299,8 @@ impl<E: Poller> Watch for E {
     ) -> LocalBoxFuture<'a, Outcome> {
         async move {
             let authority = Authority::reading(screen, robot);
-            let mut lent = connection::Lent::<E::Family>(self.link());
-            command.run(AnyContext { robot, connection: &mut lent, screen, several: false, authority }).await
+            let mut borrowed = connection::Borrowed::<E::Family>(self.link());
+            command.run(AnyContext { robot, connection: &mut borrowed, screen, several: false, authority }).await
         }
         .boxed_local()
     }

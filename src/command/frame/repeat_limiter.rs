@@ -12,7 +12,7 @@ const WINDOW: Duration = Duration::from_secs(600);
 const BURST: u32 = 5;
 /// Maximum number of distinct kinds of lines per peer; others count as one kind. A peer may choose the text of its
 /// errors.
-const KINDS: usize = 16;
+const MAX_KINDS: usize = 16;
 
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,45 +40,45 @@ impl Line {
 
 /// Lines of one kind.
 #[derive(Debug)]
-struct Seen {
+struct LineCount {
     since: Instant,
     printed: u32,
     /// Last suppressed line, its time, and the number of suppressed lines.
-    held: Option<(Line, Instant, u64)>,
+    suppressed: Option<(Line, Instant, u64)>,
 }
 
 /// Limiter for log lines: returns the lines to print.
 #[derive(Debug, Default)]
-pub struct Repeats {
+pub struct RepeatLimiter {
     /// By peer, and by text with every number as `#`.
-    seen: HashMap<(String, String), HashMap<String, Seen>>,
+    counts: HashMap<(String, String), HashMap<String, LineCount>>,
 }
 
-impl Repeats {
+impl RepeatLimiter {
     /// Lines to print now for this line: due summaries, and the line itself unless it is suppressed.
     pub fn lines(&mut self, line: Line, now: Instant) -> Vec<Line> {
         let mut lines = self.due(now, false);
-        if self.admits(&line, now) {
+        if self.is_printed(&line, now) {
             lines.push(line);
         }
         lines
     }
 
     /// Whether this line is printed now. Lines about this computer always are.
-    fn admits(&mut self, line: &Line, now: Instant) -> bool {
+    fn is_printed(&mut self, line: &Line, now: Instant) -> bool {
         let Some(peer) = line.peer() else { return true };
-        let kinds = self.seen.entry(peer.clone()).or_default();
+        let kinds = self.counts.entry(peer.clone()).or_default();
         let mut kind = shape(&line.text);
-        if !kinds.contains_key(&kind) && kinds.len() >= KINDS {
+        if !kinds.contains_key(&kind) && kinds.len() >= MAX_KINDS {
             kind.clear();
         }
-        let seen = kinds.entry(kind).or_insert(Seen { since: now, printed: 0, held: None });
+        let seen = kinds.entry(kind).or_insert(LineCount { since: now, printed: 0, suppressed: None });
         if seen.printed < BURST {
             seen.printed += 1;
             return true;
         }
-        let count = seen.held.as_ref().map_or(0, |(_, _, count)| *count);
-        seen.held = Some((line.clone(), now, count.saturating_add(1)));
+        let count = seen.suppressed.as_ref().map_or(0, |(_, _, count)| *count);
+        seen.suppressed = Some((line.clone(), now, count.saturating_add(1)));
         false
     }
 
@@ -86,13 +86,13 @@ impl Repeats {
     /// the end of the service, all are due.
     pub fn due(&mut self, now: Instant, is_end: bool) -> Vec<Line> {
         let mut due = Vec::new();
-        for kinds in self.seen.values_mut() {
+        for kinds in self.counts.values_mut() {
             kinds.retain(|_, seen| {
                 let age = now.saturating_duration_since(seen.since);
                 if age < WINDOW && !is_end {
                     return true;
                 }
-                let Some((mut line, at, count)) = seen.held.take() else { return false };
+                let Some((mut line, at, count)) = seen.suppressed.take() else { return false };
                 let times = if count == 1 { "once more".to_owned() } else { format!("{count} more times") };
                 let age = duration::display(Duration::from_secs(age.as_secs()));
                 line.text = format!("{} ({times} in {age})", line.text);
@@ -102,7 +102,7 @@ impl Repeats {
                 true
             });
         }
-        self.seen.retain(|_, kinds| !kinds.is_empty());
+        self.counts.retain(|_, kinds| !kinds.is_empty());
         due.sort_by_key(|(at, _)| *at);
         due.into_iter().map(|(_, line)| line).collect()
     }
@@ -111,10 +111,10 @@ impl Repeats {
 /// Text with each number replaced by `#`, because durations and counts differ between otherwise equal lines.
 fn shape(text: &str) -> String {
     /// Number of characters that distinguish kinds of lines.
-    const LONGEST: usize = 200;
+    const SHAPE_LENGTH: usize = 200;
 
     let mut shape = String::new();
-    for letter in text.chars().take(LONGEST) {
+    for letter in text.chars().take(SHAPE_LENGTH) {
         match letter {
             '0'..='9' if shape.ends_with('#') => {}
             '0'..='9' => shape.push('#'),
@@ -133,28 +133,28 @@ mod tests {
     }
 
     #[test]
-    fn repeated_lines_are_counted_and_the_last_one_is_printed_with_the_count() {
-        let (mut repeats, start) = (Repeats::default(), Instant::now());
-        let printed = (0..1000).filter(|number| repeats.admits(&line(&format!("again in {number}.1s")), start));
+    fn prints_the_last_repeated_line_with_its_count() {
+        let (mut repeats, start) = (RepeatLimiter::default(), Instant::now());
+        let printed = (0..1000).filter(|number| repeats.is_printed(&line(&format!("again in {number}.1s")), start));
         assert_eq!(printed.count(), 5);
-        assert!(repeats.admits(&line("connected"), start), "other lines are not held");
+        assert!(repeats.is_printed(&line("connected"), start), "other lines are not held");
         assert!(repeats.due(start + WINDOW / 2, false).is_empty());
         let due = repeats.due(start + WINDOW, false);
         let texts: Vec<&str> = due.iter().map(|line| &line.text[..]).collect();
         assert_eq!(texts, ["again in 999.1s (995 more times in 10m)"]);
         // While the line repeats, it is held for the next summary. After a window without it, it is forgotten.
-        assert!(!repeats.admits(&line("again in 7.0s"), start + WINDOW));
+        assert!(!repeats.is_printed(&line("again in 7.0s"), start + WINDOW));
         assert_eq!(repeats.due(start + WINDOW * 2, false)[0].text, "again in 7.0s (once more in 10m)");
         assert!(repeats.due(start + WINDOW * 3, false).is_empty());
-        assert!(repeats.admits(&line("again in 8.0s"), start + WINDOW * 3));
+        assert!(repeats.is_printed(&line("again in 8.0s"), start + WINDOW * 3));
     }
 
     #[test]
-    fn the_end_prints_what_is_held_in_the_order_in_which_it_came() {
-        let (mut repeats, start) = (Repeats::default(), Instant::now());
+    fn prints_suppressed_lines_in_order_at_the_end() {
+        let (mut repeats, start) = (RepeatLimiter::default(), Instant::now());
         for number in 0..20 {
             for (offset, text) in [(0, "lost"), (1, "back")] {
-                repeats.admits(&line(text), start + Duration::from_secs(number * 2 + offset));
+                repeats.is_printed(&line(text), start + Duration::from_secs(number * 2 + offset));
             }
         }
         let due = repeats.due(start + Duration::from_secs(60), true);
@@ -163,15 +163,15 @@ mod tests {
     }
 
     #[test]
-    fn a_peer_that_chooses_the_words_is_bounded_and_holds_up_no_other() {
-        let (mut repeats, now) = (Repeats::default(), Instant::now());
+    fn bounds_the_lines_of_each_peer() {
+        let (mut repeats, now) = (RepeatLimiter::default(), Instant::now());
         let word = |number: usize| "abcdefghij".chars().cycle().skip(number % 10).take(number).collect::<String>();
-        let printed = (0..500).filter(|number| repeats.admits(&line(&word(*number)), now)).count();
-        assert!(printed <= (KINDS + 1) * usize::try_from(BURST).unwrap(), "{printed}");
-        assert!(repeats.seen.values().all(|kinds| kinds.len() <= KINDS + 1));
+        let printed = (0..500).filter(|number| repeats.is_printed(&line(&word(*number)), now)).count();
+        assert!(printed <= (MAX_KINDS + 1) * usize::try_from(BURST).unwrap(), "{printed}");
+        assert!(repeats.counts.values().all(|kinds| kinds.len() <= MAX_KINDS + 1));
         let other = Line::new(Level::Warning, "no answer", &[("robot", "cell3")]);
-        assert!(repeats.admits(&other, now));
+        assert!(repeats.is_printed(&other, now));
         let own = Line::new(Level::Warning, "robots.toml:1: error", &[("kind", "usage")]);
-        assert!((0..100).all(|_| repeats.admits(&own, now)), "what a person changes here is always said");
+        assert!((0..100).all(|_| repeats.is_printed(&own, now)), "what a person changes here is always said");
     }
 }

@@ -10,7 +10,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches};
 
 use crate::command::AnyCommand;
-use crate::command::face::words::{Typed, Wish};
+use crate::command::face::family_command::{FamilyLine, ParsedCommand};
 use crate::command::families;
 use crate::command::frame::names;
 use crate::controller::Risk;
@@ -47,7 +47,7 @@ impl Extra {
         let Some(family) = words.first().and_then(|word| word.parse::<Family>().ok()) else {
             return wrong("does not begin with a family", EXAMPLE);
         };
-        let (command, is_named) = names::asking(|| read(text, family, &words));
+        let (command, is_named) = names::detect_names(|| read(text, family, &words));
         let command = command?;
         if command.intent(None).risk > Risk::Read {
             return wrong("does more than read", "monitoring only reads; use a command that reads");
@@ -67,7 +67,7 @@ impl Extra {
     /// The command for one robot if it contains names; `None` if it is the same for all robots.
     pub fn of(&self, robot: &Robot) -> Option<Read> {
         let words = shlex::split(&self.text).filter(|_| self.is_named)?;
-        Some(names::known(self.family, slice::from_ref(robot), || read(&self.text, self.family, &words)))
+        Some(names::with_names(self.family, slice::from_ref(robot), || read(&self.text, self.family, &words)))
     }
 
     /// The text, as typed.
@@ -103,7 +103,7 @@ fn read(text: &str, family: Family, words: &[String]) -> Read {
         return Err(takes_files(text));
     }
     match parsed.and_then(|mut matches| face.read(&mut matches)) {
-        Ok(Typed { wish: Wish::Command(command), .. }) => Ok(command),
+        Ok(FamilyLine { command: ParsedCommand::Command(command), .. }) => Ok(command),
         Ok(_) => Err(wrong(text, "is not a command", EXAMPLE)),
         Err(error) => {
             let told = error.render().to_string();
