@@ -1,7 +1,7 @@
-//! Every request and answer that the Toyo manual prints, both ways, character for character.
+//! Every request and answer in the Toyo manual, in both directions, character by character.
 //!
-//! Where the print is wrong (`flags` has `typo`), the file says why and what is right. If this fails, do not change the
-//! test.
+//! For misprints (`flags` has `typo`), the file has the reason and the correct text. If this test fails, do not change
+//! the test.
 
 use armctl::controller::toyo::request::{Answer, Request};
 use serde::Deserialize;
@@ -40,7 +40,7 @@ fn transcripts() -> Transcripts {
     serde_json::from_str(include_str!("data/toyo-transcripts.json")).expect("the transcripts are well-formed")
 }
 
-/// Demands that a request and its answer are understood whole, and made again as they were.
+/// Asserts that a request and its answer are parsed completely, and built again without changes.
 fn holds(about: &str, tx: &str, rx: &str) {
     let request = Request::parse(tx).unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
     request.check().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
@@ -62,7 +62,7 @@ fn holds(about: &str, tx: &str, rx: &str) {
 }
 
 #[test]
-fn every_pair_holds() {
+fn every_pair_matches() {
     let pairs = transcripts().pairs;
     assert_eq!(pairs.len(), 410);
     for pair in &pairs {
@@ -78,9 +78,9 @@ fn every_pair_holds() {
     }
 }
 
-/// What is printed wrong is not sent; where it only has other blanks or digits, it is still understood.
+/// Misprinted requests are not sent. With other blanks or digits, they are still parsed.
 #[test]
-fn misprints_are_not_made() {
+fn does_not_reproduce_misprints() {
     for pair in transcripts().pairs {
         let Some(corrected) = &pair.corrected else { continue };
         let made = Request::parse(&corrected.tx).unwrap().text();
@@ -91,7 +91,7 @@ fn misprints_are_not_made() {
 }
 
 #[test]
-fn both_sample_sessions_hold() {
+fn both_sample_sessions_match() {
     let sessions = transcripts().sessions;
     assert_eq!(sessions.iter().map(|session| session.steps.len()).collect::<Vec<_>>(), [13, 13]);
     for session in &sessions {

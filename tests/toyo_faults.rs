@@ -1,8 +1,8 @@
-//! The session of toyo behind lines that lose, double, damage and delay characters, or send them back.
+//! The session of toyo on lines with loss, duplication, damage, delay or echo of characters.
 //!
-//! In virtual time, against a controller of its own that counts what it carries out. Blocks have a fixed width and no
-//! checksum: one lost or doubled character is noticed, a lost and a doubled one in the same block are not, nor is noise
-//! that turns a digit into another. Under such faults only the number of executions counts.
+//! In virtual time, against a controller that counts executions. Blocks have a fixed width and no checksum: one lost or
+//! duplicated character is detected. A lost and a duplicated character in the same block are not, and neither is noise
+//! that changes a digit. Under such faults only the number of executions counts.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -23,15 +23,15 @@ const BITS: u32 = 11;
 const BAUD: u32 = 9600;
 const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// A controller with counters. Each order to it sets a counter to a value that no other order has.
+/// A controller with counters. Each command sets a counter to a unique value.
 #[derive(Debug, Default)]
 struct Counters {
     framer: Framer,
     is_damaged: bool,
     counters: HashMap<i32, i32>,
-    /// How often each value was set.
+    /// Number of executions per value.
     executed: HashMap<i32, u32>,
-    /// How often any was.
+    /// Number of all executions.
     executions: u32,
     answers: Vec<Vec<u8>>,
 }
@@ -63,7 +63,7 @@ impl Peer for Counters {
     fn receive(&mut self, _now: Duration, _channel: usize, bytes: &[u8]) {
         for byte in bytes {
             let Some(framed) = self.framer.push(*byte).0 else { continue };
-            // A block in which a parity error was seen is not answered (TO 1-3).
+            // A block with a parity error is not answered (TO 1-3).
             if !std::mem::take(&mut self.is_damaged)
                 && let Framed::Block(block) = framed
             {
@@ -86,18 +86,18 @@ impl Peer for Counters {
     }
 }
 
-/// What happened on one line.
+/// Results on one line.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Tally {
     answered: u32,
     refused: u32,
     open: u32,
-    /// Reads that told something else than what was there.
+    /// Reads that returned a wrong value.
     wrong: u32,
-    /// Orders that were carried out more often than once, or not although they were confirmed.
+    /// Commands executed more than once, or not executed although confirmed.
     doubled: u32,
     lost: u32,
-    /// Orders that were carried out, whatever they had become.
+    /// All executed commands, also damaged ones.
     executions: u32,
 }
 
@@ -117,7 +117,7 @@ async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, be
     }
 }
 
-/// A hundred orders, and a read after each.
+/// A hundred commands, and a read after each.
 async fn talk(faults: &str, seed: u64) -> Tally {
     const EXCHANGES: i32 = 100;
     let pace = Pace::new(BAUD, BITS);
@@ -166,9 +166,9 @@ fn virtual_time() -> tokio::runtime::Runtime {
     tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime")
 }
 
-/// Every kind of fault alone and together, with many seeds each.
+/// Every kind of fault, alone and combined, with many seeds each.
 #[test]
-fn nothing_is_doubled_lost_or_mistaken() {
+fn commands_are_not_duplicated_lost_or_confused() {
     let grid = [
         "drop=0.5%",
         "drop=5%",
@@ -177,7 +177,7 @@ fn nothing_is_doubled_lost_or_mistaken() {
         "parity=1%",
         "parity=10%",
         "delay=0..50ms",
-        // Later than the answer is waited for, and not later than it is let pass.
+        // Later than the timeout of the answer, but not later than the quiet time after it.
         "delay=0..900ms",
         "echo",
         "echo,drop=1%",
@@ -194,14 +194,14 @@ fn nothing_is_doubled_lost_or_mistaken() {
             all.open += tally.open;
             all.refused += tally.refused;
         }
-        // The grid is no grid if the faults do not bite, or nothing gets through.
+        // The test is useless if the faults have no effect, or if nothing succeeds.
         let bites = faults == "delay=0..50ms" || faults == "echo" || all.open + all.refused > 0;
         assert!(bites && all.answered > 0, "{faults}: {all:?}");
     }
 }
 
 #[test]
-fn no_damage_makes_an_order_count_twice() {
+fn damage_never_executes_a_command_twice() {
     for faults in ["noise=0.5%", "noise=5%", "drop=5%,dup=5%", "noise=1%,drop=1%,dup=1%,parity=1%,delay=0..200ms,echo"]
     {
         for seed in 0..25 {
@@ -212,7 +212,7 @@ fn no_damage_makes_an_order_count_twice() {
 }
 
 #[test]
-fn a_line_without_faults_is_as_fast_as_its_characters() {
+fn faultless_line_is_as_fast_as_its_characters() {
     let time = virtual_time().block_on(async {
         let began = Instant::now();
         let tally = talk("drop=0%", 0).await;

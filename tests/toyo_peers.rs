@@ -1,7 +1,7 @@
-//! Programs that others wrote between `armctl` and the simulated Toyo controller: `socat` makes a serial port of a TCP
-//! connection, `ser2net` a TCP port of a serial one. Both carry bytes the way that adapters and device servers do.
+//! Programs of other authors between `armctl` and the simulated Toyo controller: `socat` makes a serial port from a TCP
+//! connection, `ser2net` a TCP port from a serial one. Both transport bytes like adapters and device servers.
 //!
-//! Where they are absent the tests say so and pass; under `CI=true` they must be there.
+//! Without these programs, the tests print a message and pass; under `CI=true` they must be installed.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
@@ -27,7 +27,7 @@ impl Drop for Running {
     }
 }
 
-/// What a simulated controller is reached by.
+/// Address of a simulated controller.
 enum Reach {
     Tcp,
     PseudoTerminal,
@@ -57,7 +57,7 @@ fn serve(reach: Reach) -> String {
     told.recv().unwrap()
 }
 
-/// Whether a program is there; in CI it must be.
+/// Whether a program is installed; in CI it must be.
 fn is_there(program: &str, ask: &str) -> bool {
     let asked = Command::new(program).arg(ask).stdout(Stdio::null()).stderr(Stdio::null()).status();
     let is_there = asked.is_ok();
@@ -68,7 +68,7 @@ fn is_there(program: &str, ask: &str) -> bool {
     is_there
 }
 
-/// The data of a command line that must succeed.
+/// Data of a command line that must succeed.
 #[track_caller]
 fn data(target: &str, words: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();
@@ -87,7 +87,7 @@ fn data(target: &str, words: &[&str]) -> Value {
     envelope["data"].clone()
 }
 
-/// What a technician does first, over whatever lies between.
+/// First commands of a technician, over this link.
 fn works(target: &str) {
     assert_eq!(data(target, &["status"])["homed"], false);
     data(target, &["home"]);
@@ -117,7 +117,7 @@ fn through_socat() {
         .spawn()
         .map(Running)
         .unwrap();
-    // It says when both ends are open.
+    // It prints a message when both ends are open.
     let stderr = BufReader::new(socat.0.stderr.take().unwrap());
     let mut lines = stderr.lines();
     assert!(lines.by_ref().any(|line| line.unwrap().contains("starting data transfer")), "socat ended");
@@ -141,7 +141,7 @@ fn through_ser2net() {
     ];
     std::fs::write(&file, lines.join("\n") + "\n").unwrap();
     let _running = start_ser2net(&file);
-    // It says nothing when it listens.
+    // It prints nothing when it listens.
     while TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_err() {
         std::thread::yield_now();
     }
@@ -159,7 +159,7 @@ fn start_ser2net(file: &Path) -> Running {
     Running(child)
 }
 
-/// A port that nobody has now; `ser2net` cannot choose one itself.
+/// A free port, because `ser2net` cannot choose one itself.
 fn free_port() -> u16 {
     TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap().port()
 }

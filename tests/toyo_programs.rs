@@ -1,5 +1,5 @@
-//! Programs of a Toyo controller through the binary, against a served simulator: names in their text, sources that are
-//! kept, and how little a put reads.
+//! Programs of a Toyo controller through the binary, against a served simulator: names in their text, stored sources,
+//! and the number of reads of a put.
 
 #![cfg(unix)]
 
@@ -14,7 +14,7 @@ use crate::support::simulator::Simulator;
 const NAMED: &str = "# pick and place\nSPD V=5            # slow\nnext: MOVP pick\nTIMP dwell=1.5\n\
                      JMPC TAG=next parts>=5\nEND\n";
 
-/// A controller, and a user who knows it as `cell`, with names.
+/// A controller, and a user with the robot `cell` and names.
 struct Desk {
     folder: TempDir,
     _controller: Simulator,
@@ -62,7 +62,7 @@ impl Desk {
         Put { data: envelope["data"].clone(), blocks }
     }
 
-    /// Somebody at the pendant writes steps, of which this user's files know nothing.
+    /// Writes steps at the pendant, which the files of the user do not contain.
     #[track_caller]
     fn at_pendant(&self, step: &str, text: &str) {
         let state = tempfile::tempdir().expect("a folder");
@@ -74,14 +74,14 @@ impl Desk {
     }
 }
 
-/// What came of a put.
+/// Report of a put.
 struct Put {
     data: Value,
     blocks: String,
 }
 
 impl Put {
-    /// The blocks of a kind, each with how often it was sent.
+    /// Number of sent blocks per block of a kind.
     fn sent(&self, word: &str) -> BTreeMap<&str, usize> {
         let mut sent = BTreeMap::new();
         for (_, block) in self.blocks.lines().filter_map(|line| line.split_once("-> ")) {
@@ -93,14 +93,14 @@ impl Put {
         sent
     }
 
-    /// The steps that were read.
+    /// Steps that were read.
     fn read(&self) -> usize {
         self.sent("@RSTX").len()
     }
 }
 
 #[test]
-fn names_stand_for_numbers_in_the_text_of_a_program() {
+fn resolves_names_in_program_text() {
     let desk = Desk::new();
     let put = desk.put(NAMED, &[]);
     let written: Vec<&str> = put.sent("@WSTX").into_keys().collect();
@@ -128,7 +128,7 @@ fn names_stand_for_numbers_in_the_text_of_a_program() {
 }
 
 #[test]
-fn a_program_comes_back_as_it_was_written_while_its_steps_are_the_same() {
+fn keeps_the_source_of_an_unchanged_program() {
     let desk = Desk::new();
     desk.put(NAMED, &[]);
     assert_eq!(desk.text(&["get"]), NAMED);
@@ -140,13 +140,13 @@ fn a_program_comes_back_as_it_was_written_while_its_steps_are_the_same() {
     let shown = String::from_utf8(differs.stdout).expect("UTF-8");
     assert_eq!(differs.status.code(), Some(8));
     assert!(shown.contains("-TIMP TN2=003.5\n+TIMP TN2=001.5\n"), "{shown}");
-    // The text comes back with its steps.
+    // The text is returned with its steps.
     desk.at_pendant("4", "TIMP TN2=1.5\n");
     assert_eq!(desk.text(&["get"]), NAMED);
 }
 
 #[test]
-fn a_put_reads_the_steps_that_it_needs() {
+fn put_reads_only_the_needed_steps() {
     let desk = Desk::new();
     assert_eq!(desk.put(NAMED, &[]).read(), 2000, "nothing is known of them");
     let changed = NAMED.replace("1.5", "2.5");
@@ -160,20 +160,20 @@ fn a_put_reads_the_steps_that_it_needs() {
 }
 
 #[test]
-fn a_put_finds_what_was_written_at_the_pendant_where_it_matters() {
+fn put_detects_relevant_changes_from_the_pendant() {
     let desk = Desk::new();
     let base = "next: SPD V=5\nJMP TAG=next\n";
     desk.put(base, &[]);
-    // A routine that nothing calls yet.
+    // A routine that is not called yet.
     desk.at_pendant("5", "TAG TAG=7\nEND\n");
     let put = desk.put(&base.replace('5', "6"), &[]);
     assert_eq!(put.read(), 4, "its tags are those of before, and nothing runs on to what is behind");
-    // The program was made longer.
+    // The program became longer.
     desk.at_pendant("4", "SPD V=1\n");
     let put = desk.put(base, &[]);
     assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &3.into()));
     for program in [
-        // A tag that may be there twice, a last step that runs on, a jump that is computed.
+        // A duplicate tag, a last step without an end, a computed jump.
         "next: SPD V=5\nJMP TAG=next\nTAG TAG=7\nEND\n",
         "next: SPD V=5\nJMPC TAG=next CN1<3\n",
         "next: SPD V=5\nBRAC CN=1 OFS=1\nJMP TAG=next\n",

@@ -1,5 +1,5 @@
-//! Properties of the Toyo codec: what is written reads back in full width, nothing out of range is written, and no text
-//! at all makes anything panic.
+//! Properties of the Toyo codec: values round-trip in full width, no value out of range is written, and no text causes
+//! a panic.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -18,7 +18,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// Every form there is, of both directions, with what stands before it in its block.
+/// Every form of both directions, with the text before it in its block.
 fn layouts() -> Vec<(&'static str, Layout)> {
     let requests = ROWS.iter().flat_map(|row| row.requests).map(|layout| ("@", *layout));
     let answers = ROWS.iter().flat_map(|row| row.answers).map(|layout| ("@", *layout));
@@ -28,7 +28,7 @@ fn layouts() -> Vec<(&'static str, Layout)> {
     requests.chain(answers).chain(parameters).chain(instructions).chain(records).collect()
 }
 
-/// A value that a field may have, by a number.
+/// A value of a field, selected by a random number.
 fn value(field: &Field, pick: u32) -> Value {
     let [low, high, ..] = pick.to_le_bytes();
     if field.starred && pick.is_multiple_of(8) {
@@ -49,7 +49,6 @@ fn value(field: &Field, pick: u32) -> Value {
     }
 }
 
-/// Values for the fields of a form.
 /// Values for the fields of a layout; RSMV always passes (ambiguity R4).
 fn values(layout: &Layout, picks: &[u32]) -> Vec<Value> {
     let passes = layout.text.starts_with(Op::Rsmv.row().word);
@@ -64,7 +63,7 @@ fn picks() -> impl Strategy<Value = Vec<u32>> {
     vec(any::<u32>(), 12)
 }
 
-/// Bytes that a value takes, told by its form alone.
+/// Length of a value in bytes, from its form alone.
 fn width(field: &Field, value: &Value) -> usize {
     match (field.form, value) {
         (Form::Number(number), _) => {
@@ -100,7 +99,7 @@ fn line() -> impl Strategy<Value = String> {
     prop_oneof![4 => block, 1 => any::<String>(), 1 => "@[A-Z]{4}( [A-Z0-9=+.<>/*-]{0,16}){0,6}"]
 }
 
-/// The records of a program without errors: every tag that is named is there, once; RSMV passes.
+/// Records of a program without errors: every used tag exists once; RSMV passes.
 fn steps() -> impl Strategy<Value = Vec<Record>> {
     vec((select(&INSTRUCTIONS[..]), picks()), 0..60).prop_map(|rows| {
         let mut tags = std::collections::BTreeSet::new();
@@ -126,7 +125,7 @@ fn steps() -> impl Strategy<Value = Vec<Record>> {
 
 proptest! {
     #[test]
-    fn what_is_written_reads_back_in_full_width(row: Index, picks in picks()) {
+    fn round_trips_full_width_values(row: Index, picks in picks()) {
         let (front, layout) = layouts()[row.index(layouts().len())];
         let values = values(&layout, &picks);
         let text = layout.emit(&values).unwrap();
@@ -144,7 +143,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_out_of_range_is_never_written(row: Index, picks in picks(), at: Index, wrong: i32) {
+    fn never_writes_values_out_of_range(row: Index, picks in picks(), at: Index, wrong: i32) {
         let with_fields: Vec<Layout> = layouts().into_iter().map(|(_, layout)| layout).filter(|layout| !layout.fields.is_empty()).collect();
         let layout = row.get(&with_fields);
         let mut values = values(layout, &picks);
@@ -164,7 +163,7 @@ proptest! {
     }
 
     #[test]
-    fn the_edges_of_every_range_are_kept(row: Index, picks in picks()) {
+    fn keeps_the_limits_of_every_range(row: Index, picks in picks()) {
         let (_, layout) = layouts()[row.index(layouts().len())];
         let values = values(&layout, &picks);
         for (at, field) in layout.fields.iter().enumerate() {
@@ -180,7 +179,7 @@ proptest! {
     }
 
     #[test]
-    fn requests_read_back(row: Index, picks in picks()) {
+    fn round_trips_requests(row: Index, picks in picks()) {
         let row = &ROWS[row.index(ROWS.len())];
         for (form, layout) in row.requests.iter().enumerate() {
             let request = Request::in_form(row.command, form, values(layout, &picks)).unwrap();
@@ -189,7 +188,7 @@ proptest! {
     }
 
     #[test]
-    fn parameters_steps_and_records_read_back(picks in picks(), step in 1_i32..=5000, pallet in 1_i32..=16, row: Index) {
+    fn round_trips_parameters_steps_and_records(picks in picks(), step in 1_i32..=5000, pallet in 1_i32..=16, row: Index) {
         let parameter = &PARAMETERS[row.index(PARAMETERS.len())];
         let whole = values(&parameter.layout, &picks);
         let request = Request::parse(&Request::write_parameter(parameter, &whole).unwrap().text()).unwrap();
@@ -211,7 +210,7 @@ proptest! {
     }
 
     #[test]
-    fn any_line_is_judged(text in line(), other in line()) {
+    fn validates_every_line(text in line(), other in line()) {
         let _ = (instruction(&text), Parameter::from_text(&text));
         if let Ok(request) = Request::parse(&text) {
             let _ = (request.check(), request.content(), request.risk(), request.parameter());
@@ -226,7 +225,7 @@ proptest! {
     }
 
     #[test]
-    fn any_line_is_explained(text in line(), asked in line()) {
+    fn explains_every_line(text in line(), asked in line()) {
         let request = Request::parse(&asked).ok();
         let line = text.trim_end_matches(['\r', '\n']);
         for sender in [Sender::guess(&text), Sender::Host, Sender::Controller] {
@@ -244,9 +243,9 @@ proptest! {
     }
 
     #[test]
-    fn blocks_within_their_ranges_have_no_problem(row: Index, picks in picks()) {
+    fn blocks_in_range_have_no_problem(row: Index, picks in picks()) {
         let row = &ROWS[row.index(ROWS.len())];
-        // What stands there instead is of another table, or nobody knows (ambiguity C5).
+        // The text there belongs to another table, or is undocumented (ambiguity C5).
         let opaque = |layout: &&Layout| !layout.fields.iter().any(|field| ["body", "key", "text", "point"].contains(&field.name) && field.form == Form::Text);
         for (layouts, sender) in [(row.requests, Sender::Host), (row.answers, Sender::Controller)] {
             for layout in layouts.iter().filter(opaque) {
@@ -257,7 +256,7 @@ proptest! {
     }
 
     #[test]
-    fn programs_read_back(steps in steps(), numbered: bool, room in 0_usize..200) {
+    fn round_trips_programs(steps in steps(), numbered: bool, room in 0_usize..200) {
         let style = program::Style { first: 1, is_whole: true, is_numbered: numbered };
         let listing = program::listing(&steps, style, &program::Rows::new());
         let checked = program::check(listing.text.as_bytes(), program::MOST_STEPS);
@@ -269,12 +268,12 @@ proptest! {
     }
 
     #[test]
-    fn settings_read_back(all in vec(picks(), PARAMETERS.len()), axes in 1_usize..=4) {
+    fn round_trips_settings(all in vec(picks(), PARAMETERS.len()), axes in 1_usize..=4) {
         let settings: Vec<Setting> = PARAMETERS
             .iter()
             .zip(&all)
             .map(|(parameter, picks)| Setting { parameter, values: values(&parameter.layout, picks) })
-            // Steps of tasks must fit together.
+            // Steps of tasks must match.
             .filter(|setting| setting.parameter.id != "E22")
             .collect();
         let text = parameters::write(&settings);
@@ -294,7 +293,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_settings_or_told(
+    fn random_bytes_are_settings_or_an_error(
         bytes in vec(any::<u8>(), 0..400),
         rows in vec("[-0-9.,;\" a-z]{0,24}", 0..12),
         lines in vec(setting_line(), 0..12),
@@ -316,7 +315,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_a_program_or_told(bytes in vec(any::<u8>(), 0..400), lines in vec(text_line(), 0..40)) {
+    fn random_bytes_are_a_program_or_an_error(bytes in vec(any::<u8>(), 0..400), lines in vec(text_line(), 0..40)) {
         for text in [&bytes[..], lines.join("\n").as_bytes()] {
             let checked = program::check(text, 100);
             prop_assert_eq!(checked.program.is_some(), checked.errors().count() == 0);
@@ -330,7 +329,7 @@ proptest! {
     }
 }
 
-/// Lines that often look like one of a file of parameters.
+/// Lines that often look like a line of a parameter file.
 fn setting_line() -> impl Strategy<Value = String> {
     let whole = (any::<Index>(), picks()).prop_map(|(row, picks)| {
         let parameter = row.get(&PARAMETERS);
@@ -340,7 +339,7 @@ fn setting_line() -> impl Strategy<Value = String> {
     prop_oneof![4 => whole, 1 => "[a-zEMPT0-9]{1,4} = [-0-9.\"{}a-z= ]{0,12}", 1 => "\\[[a-zT0-9.-]{1,8}\\]"]
 }
 
-/// Lines that often look like one of a program.
+/// Lines that often look like a line of a program.
 fn text_line() -> impl Strategy<Value = String> {
     let words = select(&INSTRUCTIONS[..]).prop_map(|row| row.word);
     let mangled = (words, "( ?[a-zA-Z=<>0-9.+:#;-]{0,8}){0,5}").prop_map(|(word, rest)| format!("{word} {rest}"));

@@ -1,5 +1,5 @@
-//! What must not happen to a machine behind a Toyo controller, tried with the program itself against a controller of the
-//! test's own: an axis that is left jogging, a program that Ctrl-C does not stop, an order that leaves twice.
+//! Dangerous cases with a Toyo controller, with the program against a controller of the test: an axis that keeps
+//! jogging, a program that Ctrl-C does not stop, a command that is sent twice.
 
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use crate::support::simulator::Simulator;
 
-/// What is done with a block beside what it says.
+/// Fault for a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Peculiar {
     No,
@@ -21,14 +21,14 @@ enum Peculiar {
     HangUp,
 }
 
-/// A controller with its origin and servo power, whose axis 1 moves while it is jogged or a program runs.
+/// A controller with origin and servo power, whose axis 1 moves during a jog or a program.
 #[derive(Default)]
 struct Machine {
     host: bool,
     jogs: bool,
     runs: bool,
     x: i32,
-    /// The current task, counted from 0.
+    /// Current task, starting with 0.
     task: u8,
 }
 
@@ -63,7 +63,7 @@ impl Machine {
     }
 }
 
-/// A controller behind a device server, and what it hears.
+/// A controller behind a device server, and the received blocks.
 struct Controller {
     url: String,
     news: Receiver<String>,
@@ -105,7 +105,7 @@ impl Controller {
         command
     }
 
-    /// Waits for so many blocks of a kind.
+    /// Waits for this number of blocks of a kind.
     fn wait_for(&mut self, block: &str, count: usize) {
         for _ in 0..count {
             while let heard = self.news.recv_timeout(Duration::from_secs(30)).expect("the block comes")
@@ -117,7 +117,7 @@ impl Controller {
         }
     }
 
-    /// All that was heard, and the machine as it was left.
+    /// All received blocks, and the final state of the machine.
     fn end(mut self) -> (Vec<String>, Machine) {
         let machine = self.server.join().unwrap();
         self.heard.extend(self.news.try_iter());
@@ -150,10 +150,10 @@ fn stands(controller: Controller) -> Vec<String> {
     heard
 }
 
-/// Every way of ending a process that can be heard stops the axis, also that of keys that would suspend it.
+/// Every signal that ends or suspends a process stops the axis.
 #[test]
-fn an_axis_is_not_left_jogging_whatever_ends_the_process() {
-    // A test that is run under nohup hears no SIGHUP.
+fn every_end_of_the_process_stops_a_jog() {
+    // Under nohup, a test receives no SIGHUP.
     let ignored = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = ignored.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
     for (name, said) in [
@@ -180,9 +180,9 @@ fn an_axis_is_not_left_jogging_whatever_ends_the_process() {
     }
 }
 
-/// Ctrl-C in every phase: before an answer came, and while a look is not answered.
+/// Ctrl-C in every phase: before an answer, and during an unanswered status request.
 #[test]
-fn a_jog_is_stopped_when_ctrl_c_meets_a_silence() {
+fn ctrl_c_stops_a_jog_of_a_silent_controller() {
     for silent in [GO, "@STAS SNO=0", "@MPST"] {
         let (mut goes, mut was_silent) = (false, false);
         let mut controller = Controller::new(move |block| {
@@ -200,7 +200,7 @@ fn a_jog_is_stopped_when_ctrl_c_meets_a_silence() {
         }
         signal(&child, "INT");
         let output = child.wait_with_output().unwrap();
-        // The silence may be noticed before the signal is.
+        // The silence may be detected before the signal.
         assert!(matches!(output.status.code(), Some(130 | 4 | 6)), "{silent}: {}", errors(&output));
         let (heard, machine) = controller.end();
         assert!(!machine.jogs && count(&heard, STOP) > 0, "{silent}: {heard:?}");
@@ -208,7 +208,7 @@ fn a_jog_is_stopped_when_ctrl_c_meets_a_silence() {
 }
 
 #[test]
-fn a_reader_that_went_away_does_not_keep_the_stop_from_going_out() {
+fn closed_stdout_does_not_prevent_the_stop() {
     let controller = Controller::new(|_| Peculiar::No);
     let mut child = controller.command("jog X + low --for 200ms").spawn().unwrap();
     drop(child.stdout.take());
@@ -218,7 +218,7 @@ fn a_reader_that_went_away_does_not_keep_the_stop_from_going_out() {
 }
 
 #[test]
-fn a_line_that_is_cut_while_an_axis_moves_says_what_to_do() {
+fn lost_line_during_motion_has_a_hint() {
     let mut goes = false;
     let controller = Controller::new(move |block| {
         let cut = goes;
@@ -232,9 +232,9 @@ fn a_line_that_is_cut_while_an_axis_moves_says_what_to_do() {
     assert!(told.contains("press the emergency stop") && told.contains("`toyo stop --jog`"), "{told}");
 }
 
-/// From the moment the order is on the line: unanswered, accepted, under way.
+/// From the time when the command is sent: unanswered, accepted, in progress.
 #[test]
-fn ctrl_c_stops_what_runs() {
+fn ctrl_c_stops_a_running_program() {
     for (words, order) in [("run sequential 1 --wait", "@SPST 0001"), ("home", "@HOME")] {
         for (is_answered, looks) in [(false, 0), (true, 0), (true, 3)] {
             let mut controller =
@@ -257,7 +257,7 @@ fn ctrl_c_stops_what_runs() {
 }
 
 #[test]
-fn what_is_to_be_left_is_left() {
+fn on_interrupt_leave_does_not_stop() {
     let mut controller = Controller::new(|_| Peculiar::No);
     let child = controller.command("run sequential 1 --wait --on-interrupt leave").spawn().unwrap();
     controller.wait_for("@SPST 0001", 1);
@@ -270,9 +270,9 @@ fn what_is_to_be_left_is_left() {
     assert!(machine.runs && count(&heard, "@STOP") == 0, "{heard:?}");
 }
 
-/// An order whose answer is lost leaves once, and the outcome is told as unknown.
+/// A command whose answer is lost is sent once, and its outcome is reported as unknown.
 #[test]
-fn no_order_leaves_twice() {
+fn never_sends_a_command_twice() {
     for (words, order) in [
         ("home", "@HOME"),
         ("home --sync 1", "@SORG 1"),
@@ -298,7 +298,7 @@ fn no_order_leaves_twice() {
     }
 }
 
-/// A controller behind a device server that takes one connection after the other, and hangs up at the blocks that are
+/// A controller behind a device server that accepts one connection after the other, and closes it at the blocks in
 /// `peculiar`; it ends with the test.
 fn lasting(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -330,7 +330,7 @@ fn toyo(url: &str, state: &std::path::Path, words: &str) -> Command {
 }
 
 #[test]
-fn what_a_killed_command_has_left_is_told_until_it_is_undone() {
+fn reports_state_left_by_a_killed_command() {
     let state = tempfile::tempdir().unwrap();
     let (tell, moves) = channel();
     let url = lasting(move |block| {
@@ -355,7 +355,7 @@ fn what_a_killed_command_has_left_is_told_until_it_is_undone() {
     assert_eq!(said, "");
 }
 
-/// What another client of a device server does, and leaves so.
+/// State that another client of a device server leaves.
 fn another_client(url: &str, block: &str) {
     let mut stream = std::net::TcpStream::connect(url.trim_start_matches("tcp://")).unwrap();
     stream.write_all(format!("{block}\r\n").as_bytes()).unwrap();
@@ -365,7 +365,7 @@ fn another_client(url: &str, block: &str) {
 }
 
 #[test]
-fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
+fn status_reports_state_left_by_another_client() {
     let state = tempfile::tempdir().unwrap();
     let url = lasting(|_| Peculiar::No);
     let said = |words: &str| {
@@ -379,7 +379,7 @@ fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
     assert!(told.contains("the host is ON, and no armctl of this user keeps it so"), "{told}");
     assert!(told.contains("`toyo host off` gives it back"), "{told}");
     assert_eq!(said("status --watch=20ms --count 3").matches("the host is ON").count(), 1, "once is enough");
-    // What changes something looks who commands, too; what does not ask is not made to.
+    // A command that changes something also checks the host; a read does not.
     assert!(said("stop").is_empty() && said("position").is_empty());
     another_client(&url, "@SPST 0001");
     let told = said("status");
@@ -388,7 +388,7 @@ fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
     said("stop");
     said("host off");
     assert_eq!(said("status"), "");
-    // What is wanted here is no news, until it is over.
+    // The requested state is not a warning until it ends.
     said("raw @HSON");
     assert_eq!(said("status"), "");
     said("host off");
@@ -401,7 +401,7 @@ fn what_somebody_else_has_left_is_told_where_the_state_is_read() {
 }
 
 #[test]
-fn a_task_that_somebody_else_chose_is_told() {
+fn reports_a_task_selected_by_another_client() {
     let state = tempfile::tempdir().unwrap();
     let url = lasting(|_| Peculiar::No);
     let said = |words: &str| errors(&toyo(&url, state.path(), words).output().unwrap());
@@ -419,7 +419,7 @@ fn a_task_that_somebody_else_chose_is_told() {
 }
 
 #[test]
-fn a_watch_goes_on_when_the_line_is_back() {
+fn watch_continues_when_the_line_returns() {
     let state = tempfile::tempdir().unwrap();
     let mut places = 0;
     let url = lasting(move |block| {
@@ -431,7 +431,7 @@ fn a_watch_goes_on_when_the_line_is_back() {
     let lines = String::from_utf8_lossy(&watch.stdout).into_owned();
     let ok: Vec<bool> = lines.lines().map(|line| line.contains(r#""ok":true"#)).collect();
     assert_eq!(ok, [true, true, false, true, true, true], "{lines}");
-    // `--until` lives through it, too.
+    // `--until` also continues.
     let mut places = 0;
     let url = lasting(move |block| {
         places += u32::from(block == "@STAS SNO=0");
@@ -442,9 +442,9 @@ fn a_watch_goes_on_when_the_line_is_back() {
     assert_eq!(until.status.code(), Some(8), "{}", errors(&until));
 }
 
-/// A serial port has one host: who has it is named, with how to end it.
+/// A serial port has one host: the message names the process and how to end it.
 #[test]
-fn who_uses_a_serial_port_is_named() {
+fn names_the_process_that_uses_a_serial_port() {
     let folder = tempfile::tempdir().unwrap();
     let simulator = Simulator::start_with("toyo", &["--pty"]);
     let mut home = toyo(&simulator.url, folder.path(), "home --no-session -vv").spawn().unwrap();
@@ -456,7 +456,7 @@ fn who_uses_a_serial_port_is_named() {
     for part in [format!("another armctl, process {pid}, uses "), format!("hint: `kill {pid}` ends it")] {
         assert!(errors(&stop).contains(&part), "{part}: {}", errors(&stop));
     }
-    // The advice is good: it stops what it moves, and frees the port.
+    // The hint works: it stops the motion and frees the port.
     signal(&home, "TERM");
     assert_eq!(home.wait().unwrap().code(), Some(130));
     let looked = toyo(&simulator.url, folder.path(), "status --json --jq .data.running --no-session").output().unwrap();

@@ -1,4 +1,4 @@
-//! `armctl sim toyo` as its user has it: a process with a TCP port or a pseudo-terminal, a console, and an end.
+//! `armctl sim toyo` as a process with a TCP port or a pseudo-terminal, a console, and an end.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -8,16 +8,16 @@ use std::process::{Child, ChildStderr, Command, Output, Stdio};
 
 use serde_json::Value;
 
-/// A simulator that serves.
+/// A running simulator.
 struct Served {
     process: Child,
     stderr: BufReader<ChildStderr>,
-    /// The URL to reach it by.
+    /// URL of the simulator.
     target: String,
 }
 
 impl Served {
-    /// Starts one and waits until it serves.
+    /// Starts a simulator and waits until it listens.
     fn start(folder: &Path, words: &str) -> Self {
         let mut process = armctl(folder, &format!("sim toyo {words} --jq .data.target"))
             .stdin(Stdio::piped())
@@ -31,7 +31,7 @@ impl Served {
         Self { process, stderr, target: target.trim_end().to_owned() }
     }
 
-    /// What a command line for it prints.
+    /// Output of a command for it.
     fn data(&self, folder: &Path, words: &str) -> Value {
         let output = armctl(folder, &format!("--json -t {} toyo {words}", self.target)).output().unwrap();
         assert!(output.status.success(), "{words}: {}", stderr(&output));
@@ -56,7 +56,7 @@ impl Served {
 
 impl Drop for Served {
     fn drop(&mut self) {
-        // It may have ended as it was asked to.
+        // It may have ended as requested.
         self.process.kill().unwrap_or_default();
         self.process.wait().unwrap();
     }
@@ -73,7 +73,7 @@ fn stderr(output: &Output) -> String {
 }
 
 #[test]
-fn a_pseudo_terminal_has_its_link_as_long_as_it_is_served() {
+fn pseudo_terminal_link_exists_while_served() {
     let folder = tempfile::tempdir().unwrap();
     let link = folder.path().join("port");
     for signal in ["-INT", "-TERM"] {
@@ -88,14 +88,14 @@ fn a_pseudo_terminal_has_its_link_as_long_as_it_is_served() {
     }
 }
 
-/// Envelopes as a watch prints them, up to one that is a success or none.
+/// Envelopes of a watch, up to a success or a failure.
 fn until(lines: &mut impl Iterator<Item = std::io::Result<String>>, ok: bool) {
     let is_so = |line: &String| line.contains(&format!(r#""ok":{ok}"#));
     assert!(lines.map_while(Result::ok).any(|line| is_so(&line)), "none came that has ok: {ok}");
 }
 
 #[test]
-fn a_watch_outlives_a_port_that_is_pulled_out_and_plugged_in_again() {
+fn watch_survives_a_replugged_port() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("on.toml"), "host = true\n").unwrap();
     let mut served = Served::start(folder.path(), "--pty --link port");
@@ -116,13 +116,13 @@ fn a_watch_outlives_a_port_that_is_pulled_out_and_plugged_in_again() {
             let pid = watch.id().to_string();
             assert!(Command::new("kill").args(["-INT", pid.as_str()]).status().unwrap().success());
         }
-        // What was waited for came true on the controller that came back.
+        // The condition became true on the returned controller.
         assert_eq!(watch.wait().unwrap().code(), Some(if state.is_empty() { 130 } else { 0 }));
     }
 }
 
 #[test]
-fn the_console_drives_what_no_command_can() {
+fn console_sets_states_without_a_command() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 127.0.0.1:0 --console");
     let mut console = served.process.stdin.take().unwrap();
@@ -134,12 +134,12 @@ fn the_console_drives_what_no_command_can() {
     assert!(served.said().contains("inptu"));
     drop(console);
     assert!(served.said().trim().is_empty() && served.said().contains("`help`"), "a hint follows");
-    // It serves on after the end of the console.
+    // It continues after the end of the console input.
     assert_eq!(served.data(folder.path(), "io get IN1.3")["items"][0]["value"], true);
 }
 
 #[test]
-fn a_line_has_a_speed_and_an_address_has_one_simulator() {
+fn simulates_line_speed_and_one_simulator_per_address() {
     let folder = tempfile::tempdir().unwrap();
     let served = Served::start(folder.path(), "--bind 127.0.0.1:0 --baud 115200 --axes 2");
     let address = served.target.strip_prefix("tcp://").unwrap().strip_suffix("?baud=115200").unwrap();
@@ -150,7 +150,7 @@ fn a_line_has_a_speed_and_an_address_has_one_simulator() {
 }
 
 #[test]
-fn others_on_the_network_are_warned_of() {
+fn warns_about_a_reachable_simulator() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 0.0.0.0:0");
     assert_eq!(served.said(), "warning: others on the network can reach this simulator\n");

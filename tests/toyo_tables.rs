@@ -1,5 +1,5 @@
-//! The tables of the Toyo protocol against `data/toyo-tables.json`, which holds what the manual's templates and legends
-//! say: words, forms, ranges, units, marks. Where ours differ on purpose, the difference is listed with its reason.
+//! The tables of the Toyo protocol against `data/toyo-tables.json`, which contains the templates and legends of the
+//! manual: words, forms, ranges, units, marks. Intentional differences are listed with their reason.
 
 use std::collections::BTreeSet;
 
@@ -14,8 +14,8 @@ use armctl::controller::toyo::table::palletizing::RECORDS;
 use armctl::controller::toyo::table::parameters::PARAMETERS;
 use serde::Deserialize;
 
-/// What differs on purpose, with the ambiguity of the manual behind it, or the reason. Where the manual says nothing, it
-/// has `any`. Axes and tasks are not told apart.
+/// Intentional differences, with the ambiguity of the manual, or the reason. `any`: the manual has no value. Axes and
+/// tasks are not distinguished.
 const ON_PURPOSE: [(&str, &str); 15] = [
     ("SYSP answer TAIL: form enum, ours text", "C11: nobody says what the last word is"),
     ("RPLD answer PR: range 1 to 8, ours 1 to 16", "C15: there are 16 programs"),
@@ -97,7 +97,8 @@ struct RecordRow {
     fields: Vec<FieldRow>,
 }
 
-/// `form` is `d3.1` for digits, `sd4.2` with a sign, `cmp2` and `cmple` for comparisons; `|*` where asterisks may come.
+/// `form` is `d3.1` for digits, `sd4.2` with a sign, `cmp2` and `cmple` for comparisons; `|*` if asterisks are
+/// possible.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FieldRow {
@@ -105,7 +106,7 @@ struct FieldRow {
     form: String,
     min: Option<String>,
     max: Option<String>,
-    /// Where a legend takes more than it says is valid.
+    /// The legend accepts more than its valid values.
     valid_min: Option<String>,
     valid_max: Option<String>,
     words: Option<Vec<String>>,
@@ -133,7 +134,7 @@ fn tables() -> Tables {
     serde_json::from_str(include_str!("data/toyo-tables.json")).expect("the tables are well-formed")
 }
 
-/// Differences, gathered.
+/// Collected differences.
 #[derive(Default)]
 struct Differences(BTreeSet<String>);
 
@@ -141,7 +142,7 @@ impl Differences {
     #[expect(clippy::needless_pass_by_value, reason = "the many calls read better")]
     fn same<T: PartialEq + std::fmt::Display>(&mut self, place: &str, what: &str, theirs: T, ours: T) {
         if theirs != ours {
-            // What is the same for every axis and task is told once.
+            // Differences that are the same for every axis and task are listed once.
             let place = place.split(' ').map(|word| {
                 let bare = word.replace(|c: char| c.is_ascii_digit(), "");
                 if matches!(&bare[..], "AX" | "TA_STN" | "ER" | "MS") { bare } else { word.to_owned() }
@@ -190,7 +191,7 @@ impl Differences {
         self.same(place, "unit", theirs.unit.as_deref().unwrap_or_default(), ours.unit);
     }
 
-    /// That a sample is read, and made again as it is.
+    /// Asserts that a sample is parsed and written without changes.
     fn sample(&mut self, place: &str, layout: &Layout, sample: &str) {
         let made = layout.parse(sample).map_err(|error| error.to_string());
         let made = made.and_then(|record| record.emit().map_err(|error| error.to_string()));
@@ -217,7 +218,7 @@ fn form_of(field: &Field) -> String {
     if field.starred { format!("{form}|*") } else { form }
 }
 
-/// Commands whose block holds a row of another table, and those with one form for all screens.
+/// Commands whose block contains a row of another table, and those with one form for all screens.
 const BY_SAMPLE: [&str; 9] = ["WPAR", "RPAR", "WSTX", "RSTX", "WPLT", "RPLT", "MINP", "MOUT", "MNIN"];
 
 fn command(differences: &mut Differences, theirs: &CommandRow, ours: &Row) {
@@ -284,7 +285,7 @@ fn differences() -> BTreeSet<String> {
 }
 
 #[test]
-fn every_row_is_the_manuals() {
+fn every_row_matches_the_manual() {
     let expected: BTreeSet<String> = ON_PURPOSE.iter().map(|(difference, _)| (*difference).to_owned()).collect();
     let found = differences();
     let news: Vec<_> = found.difference(&expected).collect();
@@ -293,7 +294,7 @@ fn every_row_is_the_manuals() {
 }
 
 #[test]
-fn all_of_it_is_there() {
+fn tables_are_complete() {
     let tables = tables();
     let counts = [
         (tables.commands.len(), ROWS.len(), 62),
@@ -309,21 +310,21 @@ fn all_of_it_is_there() {
 }
 
 #[test]
-fn every_error_code_is_the_manuals() {
+fn every_error_code_matches_the_manual() {
     let theirs: Vec<(String, Option<u8>)> = tables().errors.into_iter().map(|row| (row.code, row.axis)).collect();
     let ours: Vec<_> = errors::all().map(|error| (format!("{:02X}", error.code), error.axis)).collect();
     assert_eq!(theirs, ours);
 }
 
 #[test]
-fn every_status_bit_is_the_manuals() {
+fn every_status_bit_matches_the_manual() {
     for theirs in tables().status_pages {
         let own = || status::BITS.iter().filter(|bit| bit.page == theirs.page);
         assert_eq!(own().map(|bit| bit.bit).collect::<Vec<_>>(), theirs.bits, "page {}", theirs.page);
         let low: Vec<u8> = own().filter(|bit| bit.is_low).map(|bit| bit.bit).collect();
         assert_eq!(low, theirs.active_low, "page {}", theirs.page);
         assert_eq!(theirs.kind == "code", theirs.page == 1);
-        // Kind of program and mode are two bits each.
+        // Program type and mode have two bits each.
         assert_eq!(theirs.groups.len(), if theirs.page == 2 { 2 } else { 0 });
     }
 }

@@ -12,7 +12,7 @@ use crate::app::suggestions;
 use crate::cli::Cli;
 use crate::command::AnyCommand;
 use crate::command::common::Common;
-use crate::command::fleet::shared;
+use crate::command::fleet::common;
 use crate::command::frame::run::Run;
 use crate::command::leaf_commands::{all, leaves};
 use crate::controller::Risk::{Destroy, Motion, Read, Write};
@@ -101,8 +101,8 @@ fn seen(line: &str) -> Result<Seen, String> {
         Invocation::Task(Task::Common(Common::Alarm(alarm))) => of(&*alarm.command().unwrap(), "toyo"),
         Invocation::Task(Task::Common(Common::Io(io))) => of(&*io.command().unwrap(), "toyo"),
         Invocation::Task(Task::Common(Common::Wait(wait))) => of(&*wait.command().unwrap(), "toyo"),
-        Invocation::Task(Task::Common(Common::Position)) => of(&shared::position(), "toyo"),
-        Invocation::Task(Task::Common(Common::Stop)) => of(&shared::stop(), "toyo"),
+        Invocation::Task(Task::Common(Common::Position)) => of(&common::position(), "toyo"),
+        Invocation::Task(Task::Common(Common::Stop)) => of(&common::stop(), "toyo"),
         Invocation::Task(Task::Common(Common::Backup(command))) => of(command.options(), "toyo"),
         Invocation::Task(Task::Common(Common::Restore(command))) => of(&command, "toyo"),
         Invocation::Task(Task::Common(Common::Diff(command))) => of(&command, "toyo"),

@@ -8,9 +8,9 @@ use super::{flags, screen};
 use crate::cli::{Cli, FamilyWord, Globals, Top};
 use crate::command::common::Common;
 use crate::command::face::family_command::{FamilyLine, ParsedCommand};
+use crate::command::fleet::common;
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
-use crate::command::fleet::shared;
 use crate::command::fleet::teach::Teach;
 use crate::command::frame::batch::Batch;
 use crate::command::frame::condition::Condition;
@@ -125,8 +125,8 @@ impl PreparedCommand {
             Task::Common(Common::Wait(wait)) => self.run.check_gate(&*wait.command()?),
             Task::Common(Common::Alarm(alarm)) => self.run.check_gate(&*alarm.command()?),
             Task::Common(Common::Io(io)) => self.run.check_gate(&*io.command()?),
-            Task::Common(Common::Position) => self.run.check_gate(&shared::position()),
-            Task::Common(Common::Stop) => self.run.check_gate(&shared::stop()),
+            Task::Common(Common::Position) => self.run.check_gate(&common::position()),
+            Task::Common(Common::Stop) => self.run.check_gate(&common::stop()),
             Task::Common(_) => Ok(()),
         }
     }

@@ -14,7 +14,7 @@ use super::screen;
 use crate::cli::{Globals, Words};
 use crate::command::families;
 use crate::command::fleet::session::host;
-use crate::command::fleet::teach::{Teach, Types, show};
+use crate::command::fleet::teach::{CommandRunner, Teach, show};
 use crate::command::frame::authority;
 use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::{RunError, begin_trace};
@@ -108,7 +108,7 @@ impl Lines {
     }
 }
 
-impl Types for Lines {
+impl CommandRunner for Lines {
     async fn run(&self, words: &[String]) -> Result<Value, Failure> {
         let line = self.line(&words.join(" "));
         let results = line.results.clone().unwrap_or_default();

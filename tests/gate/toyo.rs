@@ -1,4 +1,4 @@
-//! Toyo: what is replaced is asked, dry runs go to their end, a stop is always allowed.
+//! Toyo: questions before replacing, complete dry runs, stops that are always allowed.
 
 use super::desk::Desk;
 use crate::support::simulator::Simulator;
@@ -8,7 +8,7 @@ fn desk(controller: &Simulator, more: &str) -> Desk {
     Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
 }
 
-/// The blocks of a dry run.
+/// Blocks of a dry run.
 fn blocks(desk: &Desk, line: &str) -> Vec<String> {
     let data = desk.data(&format!("-r cell toyo {line} --dry-run"));
     let frames = data["frames"].as_array().expect("frames").iter();
@@ -16,7 +16,7 @@ fn blocks(desk: &Desk, line: &str) -> Vec<String> {
 }
 
 #[test]
-fn what_somebody_wrote_is_asked_before_it_is_replaced() {
+fn asks_before_replacing_user_data() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     for line in ["point set 7 1 2 3 4", "easy set 1 5 6 7", "program insert 1 TAG TAG=005 --yes"] {
@@ -39,14 +39,14 @@ fn what_somebody_wrote_is_asked_before_it_is_replaced() {
     assert_eq!(desk.data("-r cell toyo point get 7")["items"][0]["value"]["z_mm"], 3.0);
     assert_eq!(desk.data("-r cell toyo easy get 1")["items"][0]["value"]["loops"], 6);
     assert!(desk.run("-r cell toyo program get --to 1").stdout.contains("TAG TAG=005"));
-    // As it is already: nothing to ask.
+    // Equal data needs no question.
     assert_eq!(desk.run("-r cell toyo point set 7 1 2 3 4").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo point set 7 z=5 --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo program delete 1 --yes").exit, Some(0));
 }
 
 #[test]
-fn a_move_to_a_point_is_asked_about_in_numbers() {
+fn question_of_a_point_move_has_numbers() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     assert_eq!(desk.run("-r cell toyo point set 7=90,20,5,0 --yes").exit, Some(0));
@@ -60,13 +60,13 @@ fn a_move_to_a_point_is_asked_about_in_numbers() {
         }
         terminal.says("Continue?");
         terminal.press(key);
-        // It has not been at its origin, and refuses.
+        // It has no origin yet, and refuses.
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
     }
 }
 
 #[test]
-fn a_run_at_the_desk_ends_after_its_time() {
+fn offline_run_ends_after_its_time() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     let folder = tempfile::tempdir().unwrap();
@@ -78,7 +78,7 @@ fn a_run_at_the_desk_ends_after_its_time() {
 }
 
 #[test]
-fn a_program_is_asked_about_with_its_number_step_place_and_speed() {
+fn question_of_a_program_has_number_step_position_and_speed() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     for line in ["program insert 1 TAG TAG=005", "palletizing select 3", "easy select 2"] {
@@ -102,7 +102,7 @@ fn a_program_is_asked_about_with_its_number_step_place_and_speed() {
 }
 
 #[test]
-fn dry_runs_go_to_their_end() {
+fn dry_runs_plan_to_the_end() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "read_only = true");
     assert_eq!(
@@ -139,7 +139,7 @@ fn dry_runs_go_to_their_end() {
 }
 
 #[test]
-fn a_stop_is_allowed_on_a_read_only_robot() {
+fn stop_is_allowed_on_a_read_only_robot() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "read_only = true");
     assert_eq!(desk.run("-r cell toyo stop").exit, Some(0));
@@ -150,7 +150,7 @@ fn a_stop_is_allowed_on_a_read_only_robot() {
 }
 
 #[test]
-fn a_jog_is_refused_before_anything_is_sent_where_nobody_can_be_asked() {
+fn jog_is_refused_without_a_terminal_before_sending() {
     let desk = Desk::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
     desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by a small step in plus direction");
 }

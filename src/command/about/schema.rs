@@ -10,9 +10,9 @@ use crate::command::backup::check::Checked;
 use crate::command::backup::family_backup::{Backup, Diff, Restore};
 use crate::command::families::FAMILIES;
 use crate::command::fleet::status::{Fleet, Overview};
+use crate::command::fleet::{common, names, robots, session, tools, wait};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
-use crate::command::fleet::{names, robots, session, shared, tools, wait};
 use crate::command::frame::background::Opened;
 use crate::command::frame::dry_run::DryRun;
 use crate::command::frame::run::Run;
@@ -55,7 +55,7 @@ impl SchemaOf {
 pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
     all.extend(Overview::schemas());
-    all.extend(shared::schemas());
+    all.extend(common::schemas());
     all.push(wait::schema());
     all.extend(names::schemas());
     all.extend(Backup::<Fleet>::schemas());

@@ -39,7 +39,7 @@ pub struct Absent {
 
 impl Link {
     /// Tries again to connect to a robot that did not answer the last command.
-    pub async fn reach(&mut self, screen: &Screen) -> Result<(), Failure> {
+    pub async fn open_link(&mut self, screen: &Screen) -> Result<(), Failure> {
         let Self::Absent(absent) = self else { return Ok(()) };
         if !std::mem::replace(&mut absent.is_asked, true) {
             return Ok(());
@@ -125,7 +125,7 @@ impl Command for Overview {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
-        let found = match context.link.reach(context.screen).await {
+        let found = match context.link.open_link(context.screen).await {
             Ok(()) => match context.link {
                 Link::Open(face, connection) => face.overview(&mut **connection).await,
                 Link::Absent(absent) => Err(absent.failure.clone()),
@@ -146,8 +146,8 @@ impl Command for Overview {
     /// Summary line: `32 robots, 30 answer, 1 alarm`.
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         let count = |field: &str| {
-            let is_so = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
-            envelopes.iter().filter(is_so).count()
+            let is_true = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
+            envelopes.iter().filter(is_true).count()
         };
         let (robots, answer, alarms) = (envelopes.len(), count("reachable"), count("faulted"));
         let plural = |number: usize| if number == 1 { "" } else { "s" };

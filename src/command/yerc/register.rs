@@ -7,11 +7,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::batch_split::{BatchSplit, read_in_batches};
 use super::complete;
 use super::link::Yerc;
-use super::orders::usage;
-use super::parts::{Parts, read_in_parts};
-use super::writes::{WriteOrder, before, write_all};
+use super::switch_commands::usage;
+use super::write_all::{WriteOrder, old_value, write_all};
 use crate::command::frame::items;
 use crate::command::frame::names;
 use crate::command::frame::watch::{Watch, Watchable, Watched};
@@ -103,7 +103,7 @@ impl Command for Get {
         let names = names::of_robot(robot, screen);
         let model = link.model_for(|model| plan_register_reads(model, &numbers)).await?;
         let plan = |numbers: &[u16]| plan_register_reads(model, numbers).map_err(usage);
-        let mut outcomes = read_in_parts(link, plan, &numbers, |_| Parts::Halves, |_, _| {}).await?;
+        let mut outcomes = read_in_batches(link, plan, &numbers, |_| BatchSplit::Halves, |_, _| {}).await?;
         let words = numbers.into_iter().filter_map(|number| {
             let outcome = outcomes.remove(&number)?;
             Some(item(number, names, outcome.map_err(Failure::from)))
@@ -136,7 +136,7 @@ impl Command for Set {
         let steps = link.by_model(|model| plan_register_writes(model, &values)).await?;
         let numbers: Vec<u16> = values.iter().map(|(number, _)| *number).collect();
         let reads = link.by_model(|model| plan_register_reads(model, &numbers)).await?;
-        let old = before(link, &reads).await?;
+        let old = old_value(link, &reads).await?;
         write_all(link, screen, &steps).await?;
         let written = values
             .into_iter()

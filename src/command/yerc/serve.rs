@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::command::Report;
 use crate::command::serve::{self, Started, address, bind_failure};
-use crate::command::yerc::simulated::{self, Simulated};
+use crate::command::yerc::simulator_start::{self, Simulated};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::Simulator;
 use crate::failure::Failure;
@@ -66,7 +66,7 @@ impl serve::Serve for Serve {
 
     async fn start(self) -> Result<Started<Self>, Failure> {
         let model = self.model.unwrap_or(Model::Dx200);
-        let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
+        let start = simulator_start::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
             let message = format!("the start state is for model {}, not {model}", start.model());
             return Err(Failure::usage(message).hint("remove --model, or change the file"));

@@ -6,13 +6,13 @@ use clap::{Args, ValueEnum};
 use super::complete;
 use super::link::{Link, Yerc};
 use super::moves::{compared, moved_meanwhile, stands};
-use super::orders::usage;
 use super::position;
+use super::switch_commands::usage;
 use super::var::{PositionData, as_position, called, held, is_undefined, unlike};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::names;
 use crate::command::frame::teach::{Taught, mismatch, unverified};
-use crate::command::yerc::each::ReadError;
+use crate::command::yerc::existing_items::ReadError;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::names::Kind;
@@ -143,7 +143,7 @@ impl Teach {
 
     /// Content of the variable; none if it is undefined.
     async fn read(&self, link: &mut Link) -> Result<Option<Value>, Failure> {
-        match link.try_ask(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
+        match link.ask_optional(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
             Ok(value) => Ok(Some(value)),
             Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => Ok(None),
             Err(refusal) => Err(refusal.into()),

@@ -97,7 +97,7 @@ impl Poller {
     /// Reads an optional value: a refusal is `None`.
     async fn ask<Q: Query>(&mut self, query: Result<Q, QueryError>) -> Result<Option<Q::Answer>, Failure> {
         let query = query.map_err(|error| Failure::local(error.to_string()))?;
-        Ok(self.link.try_ask(&query).await?.ok())
+        Ok(self.link.ask_optional(&query).await?.ok())
     }
 }
 

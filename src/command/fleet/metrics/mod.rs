@@ -24,8 +24,8 @@ use tokio::time::timeout;
 
 use self::board::Board;
 use self::page::Form;
-use super::poll::{Poll, Subscription, Wish};
-use super::service::{END, Service};
+use super::poll::{Poll, PollRequest, Subscription};
+use super::service::{END_TIMEOUT, Service};
 use crate::command::Report;
 use crate::command::face::sample::Detail;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
@@ -93,10 +93,10 @@ impl Metrics {
         };
         run.local("serve.metrics", &listening)?;
         self.warn(&service);
-        let mut events = poll.subscribe(Wish { detail: Detail::Axes, ..Wish::every(every) });
+        let mut events = poll.subscribe(PollRequest { detail: Detail::Axes, ..PollRequest::every(every) });
         let mut polled = Box::pin(poll.run());
         let board = RefCell::new(Board::default());
-        service.ready(robots)?;
+        service.notify_ready(robots)?;
         let ended = interruptible(async {
             tokio::select! {
                 () = &mut polled => Err(Failure::local("internal error: polling has ended")),
@@ -104,13 +104,13 @@ impl Metrics {
                 ended = server.run(|request| answer(request, &board)) => {
                     ended.map_err(|error| Failure::io("metrics", &error))
                 }
-                () = service.pulses(|| service.robots()) => Ok(()),
+                () = service.watchdog_interval(|| service.robots()) => Ok(()),
             }
         })
         .await;
-        service.stopping();
+        service.notify_stopping();
         drop(events);
-        let _in_time = timeout(END, polled).await;
+        let _in_time = timeout(END_TIMEOUT, polled).await;
         match ended {
             Ok(ended) => Ok(ended?),
             // Ctrl-C or SIGTERM is the normal end of a server.
@@ -123,7 +123,7 @@ impl Metrics {
         if !self.listen.ip().is_loopback() {
             let text = "everyone on the network can read the positions and alarms of these robots; there is no \
                         password";
-            service.say(Level::Warning, text, &[("listen", &self.listen.to_string())]);
+            service.log_line(Level::Warning, text, &[("listen", &self.listen.to_string())]);
         }
     }
 }

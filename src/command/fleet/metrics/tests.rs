@@ -8,7 +8,7 @@ use super::catalogue::{METRICS, page};
 use super::page::{Form, Kind};
 use crate::command::face::sample::{Sample, Traffic};
 use crate::command::fleet::poll::{Event, PollResult};
-use crate::command::fleet::top::testing::{alarmed, fleet, sample, silence};
+use crate::command::fleet::top::testing::{fail, fleet, sample, with_alarm};
 use crate::command::robot::alarm::Alarm;
 use crate::command::robot::state::Fault;
 use crate::settings::Robot;
@@ -21,7 +21,7 @@ fn poll_event(robot: &Arc<Robot>, sample: Sample) -> Event {
 
 fn failure_event(robot: &Arc<Robot>, pause: u64) -> Event {
     let traffic = Traffic { sent: 3, received: 0, disturbances: 2 };
-    Event::Failed { robot: Arc::clone(robot), failure: silence(), pause: Duration::from_secs(pause), traffic }
+    Event::Failed { robot: Arc::clone(robot), failure: fail(), pause: Duration::from_secs(pause), traffic }
 }
 
 fn robots(count: usize) -> Vec<Arc<Robot>> {
@@ -114,12 +114,12 @@ fn sums_traffic_of_successful_and_failed_polls() {
 #[test]
 fn escapes_the_text_of_a_fault() {
     let robots = robots(2);
-    let mut injection = alarmed();
+    let mut injection = with_alarm();
     let text = format!("\"}} 1\n{}", "x".repeat(5000));
     let alarm = Alarm { code: Some("\\".to_owned()), text: Some(text), ..Alarm::default() };
     injection.line.state.fault = Fault::new(true, Some(&alarm));
     let appeared = robots.iter().map(|robot| Event::Appeared(Arc::clone(robot)));
-    let looks = [poll_event(&robots[0], alarmed()), poll_event(&robots[1], injection)];
+    let looks = [poll_event(&robots[0], with_alarm()), poll_event(&robots[1], injection)];
     let board = page_after(&appeared.chain(looks).collect::<Vec<_>>());
     let [plain, evil] = &samples(&board, "armctl_robot_fault_info")[..] else { panic!("one each") };
     assert_eq!(plain, &format!("{{{CELL1},code=\"4315\",text=\"COLLISION DETECT [SLURBT]\"}} 1"));
@@ -140,9 +140,9 @@ fn handles_axes_with_the_same_name() {
 
 #[test]
 fn reports_a_broken_inventory() {
-    let broken = page_after(&[Event::Inventory(Err(silence()))]);
+    let broken = page_after(&[Event::Inventory(Err(fail()))]);
     assert_eq!(samples(&broken, "armctl_inventory_last_reload_successful"), [" 0"]);
-    let repaired = page_after(&[Event::Inventory(Err(silence())), Event::Inventory(Ok(()))]);
+    let repaired = page_after(&[Event::Inventory(Err(fail())), Event::Inventory(Ok(()))]);
     assert_eq!(samples(&repaired, "armctl_inventory_last_reload_successful"), [" 1"]);
 }
 
@@ -150,7 +150,7 @@ fn reports_a_broken_inventory() {
 #[test]
 fn limits_the_series_of_a_robot() {
     let robots = robots(3);
-    let looks = robots.iter().map(|robot| poll_event(robot, alarmed()));
+    let looks = robots.iter().map(|robot| poll_event(robot, with_alarm()));
     let appeared = robots.iter().map(|robot| Event::Appeared(Arc::clone(robot)));
     let board = page_after(&appeared.chain(looks).collect::<Vec<_>>());
     let page = page(&board, Form::Text);

@@ -39,7 +39,7 @@ impl Extra {
     /// # Errors
     /// The text is not a command, does more than read, or does not end by itself.
     pub fn parse(text: &str) -> Result<Self, Failure> {
-        let wrong = |why: &str, hint: &str| Err(wrong(text, why, hint));
+        let wrong = |why: &str, hint: &str| Err(invalid(text, why, hint));
         let Some(words) = shlex::split(text) else { return wrong("has an unclosed quote", EXAMPLE) };
         if words.iter().any(|word| word.contains(';')) {
             return wrong("is more than one command", "write one command without ';', and repeat --also");
@@ -56,7 +56,7 @@ impl Extra {
             return wrong("does not read from a robot", EXAMPLE);
         }
         if command.uses_files() {
-            return Err(takes_files(text));
+            return Err(check_files(text));
         }
         if command.is_endless() {
             return wrong("does not end by itself", "use the command that reads once; armctl repeats it at each poll");
@@ -86,12 +86,12 @@ impl Extra {
     }
 }
 
-fn wrong(text: &str, why: &str, hint: &str) -> Failure {
+fn invalid(text: &str, why: &str, hint: &str) -> Failure {
     Failure::usage(format!("'{text}' {why}")).hint(hint)
 }
 
-fn takes_files(text: &str) -> Failure {
-    wrong(text, "uses a file or folder of this computer", "use a command that only reads from the robot")
+fn check_files(text: &str) -> Failure {
+    invalid(text, "uses a file or folder of this computer", "use a command that only reads from the robot")
 }
 
 /// Parses words into a command; the first word is the family.
@@ -99,16 +99,16 @@ fn read(text: &str, family: Family, words: &[String]) -> Read {
     let face = families::of(family);
     let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
     let parsed = parser.clone().try_get_matches_from(words);
-    if parsed.as_ref().is_ok_and(|matches| takes_file(&parser, matches)) {
-        return Err(takes_files(text));
+    if parsed.as_ref().is_ok_and(|matches| accepts_file(&parser, matches)) {
+        return Err(check_files(text));
     }
     match parsed.and_then(|mut matches| face.read(&mut matches)) {
         Ok(FamilyLine { command: ParsedCommand::Command(command), .. }) => Ok(command),
-        Ok(_) => Err(wrong(text, "is not a command", EXAMPLE)),
+        Ok(_) => Err(invalid(text, "is not a command", EXAMPLE)),
         Err(error) => {
-            let told = error.render().to_string();
-            let told = told.lines().next().unwrap_or_default().trim_start_matches("error: ");
-            Err(wrong(text, &format!("is not valid: {told}"), &format!("see `armctl {family} --help`")))
+            let message = error.render().to_string();
+            let told = message.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            Err(invalid(text, &format!("is not valid: {told}"), &format!("see `armctl {family} --help`")))
         }
     }
 }
@@ -127,7 +127,7 @@ impl fmt::Debug for Extra {
 
 /// Whether the command or one of its subcommands uses a path, typed or by default. A file would be read or written
 /// again and again.
-fn takes_file(command: &clap::Command, matches: &ArgMatches) -> bool {
+fn accepts_file(command: &clap::Command, matches: &ArgMatches) -> bool {
     let is_path = |arg: &Arg| arg.get_value_parser().type_id() == TypeId::of::<PathBuf>();
     let is_given = |arg: &Arg| {
         let source = matches.value_source(arg.get_id().as_str());
@@ -137,7 +137,7 @@ fn takes_file(command: &clap::Command, matches: &ArgMatches) -> bool {
         return true;
     }
     let below = matches.subcommand().and_then(|(name, matches)| Some((command.find_subcommand(name)?, matches)));
-    below.is_some_and(|(command, matches)| takes_file(command, matches))
+    below.is_some_and(|(command, matches)| accepts_file(command, matches))
 }
 
 #[cfg(test)]
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_reads_and_ends_is_taken() {
+    fn accepts_only_reads_that_end() {
         for text in ["yerc var get B0..B9", "yrcx io get", "toyo counter get 1", "yerc say hello"] {
             let risky = text.contains("say");
             assert_eq!(Extra::parse(text).is_err(), risky, "{text}");

@@ -35,8 +35,8 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
 pub use self::extra_command::Extra;
-use self::poll_request::Wants;
-pub use self::poll_request::Wish;
+use self::poll_request::MergedRequests;
+pub use self::poll_request::PollRequest;
 use self::robot_loop::{RobotTask, follow};
 use self::roster::Roster;
 use crate::command::face::sample::{Sample, Traffic};
@@ -129,7 +129,7 @@ impl PollResult {
 #[derive(Debug)]
 pub struct Subscription {
     events: mpsc::Receiver<Event>,
-    wish: watch::Sender<Wish>,
+    wish: watch::Sender<PollRequest>,
 }
 
 impl Subscription {
@@ -139,7 +139,7 @@ impl Subscription {
     }
 
     /// Replaces the wish.
-    pub fn wish(&self, wish: Wish) {
+    pub fn wish(&self, wish: PollRequest) {
         self.wish.send_if_modified(|last| {
             let is_new = *last != wish;
             *last = wish;
@@ -159,7 +159,7 @@ pub struct Poll {
     roster: Roster,
     /// Screen for messages of links while they open.
     screen: Screen,
-    consumers: Vec<(watch::Receiver<Wish>, mpsc::Sender<Event>)>,
+    consumers: Vec<(watch::Receiver<PollRequest>, mpsc::Sender<Event>)>,
 }
 
 impl Poll {
@@ -171,7 +171,7 @@ impl Poll {
 
     /// Creates a poller for one fixed robot.
     pub fn of(robot: Robot, screen: Screen) -> Self {
-        Self { roster: Roster::fixed(vec![robot]), screen, consumers: Vec::new() }
+        Self { roster: Roster::from_robots(vec![robot]), screen, consumers: Vec::new() }
     }
 
     /// The robots at the start.
@@ -180,7 +180,7 @@ impl Poll {
     }
 
     /// Adds a consumer.
-    pub fn subscribe(&mut self, wish: Wish) -> Subscription {
+    pub fn subscribe(&mut self, wish: PollRequest) -> Subscription {
         let (wish, wishes) = watch::channel(wish);
         let (tell, events) = mpsc::channel(EVENTS);
         self.consumers.push((wishes, tell));
@@ -192,7 +192,7 @@ impl Poll {
         let Self { roster, screen, consumers } = self;
         let (mut wishes, tellers): (Vec<_>, Vec<_>) = consumers.into_iter().unzip();
         let tell = EventSender(tellers.into());
-        let (wants, _) = watch::channel(Wants::of(&wishes));
+        let (wants, _) = watch::channel(MergedRequests::merge_all(&wishes));
         let mut fleet =
             Fleet { roster, screen, tell, wants, active: BTreeMap::new(), followers: FuturesUnordered::new() };
         fleet.match_roster(true).await;
@@ -203,7 +203,7 @@ impl Poll {
                         break;
                     }
                     fleet.wants.send_if_modified(|last| {
-                        let now = Wants::of(&wishes);
+                        let now = MergedRequests::merge_all(&wishes);
                         let is_new = *last != now;
                         *last = now;
                         is_new
@@ -234,7 +234,7 @@ impl EventSender {
 }
 
 /// Waits for a changed wish. Removes the wishes of consumers that are gone.
-async fn changed(wishes: &mut Vec<watch::Receiver<Wish>>) {
+async fn changed(wishes: &mut Vec<watch::Receiver<PollRequest>>) {
     if wishes.is_empty() {
         return;
     }
@@ -249,7 +249,7 @@ struct Fleet {
     roster: Roster,
     screen: Screen,
     tell: EventSender,
-    wants: watch::Sender<Wants>,
+    wants: watch::Sender<MergedRequests>,
     active: BTreeMap<RobotId, Active>,
     followers: FuturesUnordered<LocalBoxFuture<'static, RobotId>>,
 }
@@ -289,15 +289,15 @@ impl Fleet {
         let share = self.wants.borrow().every / u32::try_from(new.len().max(1)).unwrap_or(u32::MAX);
         for (at, given) in (0_u32..).zip(new) {
             let id = RobotId::for_robot(&given);
-            let robot = Arc::new(self.roster.identified(&given));
+            let robot = Arc::new(self.roster.identify(&given));
             let (stop, stopped) = watch::channel(false);
             let follower = RobotTask {
                 robot: Arc::clone(&robot),
                 screen: self.screen,
                 delay: if is_start { share * at } else { Duration::ZERO },
                 wants: self.wants.subscribe(),
-                stopped,
-                tell: self.tell.clone(),
+                stop: stopped,
+                events: self.tell.clone(),
                 extra_commands: HashMap::new(),
             };
             self.active.insert(id.clone(), Active { entry: given, robot: Arc::clone(&robot), stop: Some(stop) });

@@ -10,7 +10,7 @@ use crate::command::face::sample::Detail;
 
 /// Needs of one consumer, for all robots.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wish {
+pub struct PollRequest {
     /// Polling interval.
     pub every: Duration,
     /// Level of detail.
@@ -24,7 +24,7 @@ pub struct Wish {
     pub longest_pause: Duration,
 }
 
-impl Wish {
+impl PollRequest {
     /// Summary of each robot at this interval.
     pub fn every(every: Duration) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl Wish {
 
 /// Sum of all wishes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Wants {
+pub(super) struct MergedRequests {
     /// Polling interval.
     pub every: Duration,
     /// See [`Wish::longest_pause`].
@@ -50,18 +50,23 @@ pub(super) struct Wants {
 }
 
 /// Interval without a consumer; the poller is about to stop.
-const IDLE: Duration = Duration::from_secs(1);
+const IDLE_INTERVAL: Duration = Duration::from_secs(1);
 
-impl Wants {
+impl MergedRequests {
     /// Combines all wishes.
-    pub fn of(wishes: &[watch::Receiver<Wish>]) -> Self {
-        let idle =
-            Self { every: IDLE, longest_pause: IDLE, detail: Detail::Summary, whole: Vec::new(), extras: Vec::new() };
+    pub fn merge_all(wishes: &[watch::Receiver<PollRequest>]) -> Self {
+        let idle = Self {
+            every: IDLE_INTERVAL,
+            longest_pause: IDLE_INTERVAL,
+            detail: Detail::Summary,
+            whole: Vec::new(),
+            extras: Vec::new(),
+        };
         let wishes = wishes.iter().map(|wish| wish.borrow().clone());
-        wishes.map(Self::from).reduce(Self::and).unwrap_or(idle)
+        wishes.map(Self::from).reduce(Self::merge).unwrap_or(idle)
     }
 
-    fn and(mut self, other: Self) -> Self {
+    fn merge(mut self, other: Self) -> Self {
         self.every = self.every.min(other.every);
         self.longest_pause = self.longest_pause.min(other.longest_pause);
         self.detail = self.detail.max(other.detail);
@@ -82,9 +87,9 @@ impl Wants {
     }
 }
 
-impl From<Wish> for Wants {
-    fn from(wish: Wish) -> Self {
-        let Wish { every, detail, whole, extras, longest_pause } = wish;
+impl From<PollRequest> for MergedRequests {
+    fn from(wish: PollRequest) -> Self {
+        let PollRequest { every, detail, whole, extras, longest_pause } = wish;
         Self { every, longest_pause, detail, whole: whole.into_iter().collect(), extras: extras.to_vec() }
     }
 }

@@ -9,7 +9,7 @@ use tokio::sync::watch;
 use tokio::time::{Instant, sleep_until, timeout};
 
 use super::extra_command::Read;
-use super::poll_request::Wants;
+use super::poll_request::MergedRequests;
 use super::{CLOSE_TIMEOUT, Event, EventSender, Extra, PollResult, RobotId, wait_for_stop};
 use crate::command::face::Watch;
 use crate::command::face::sample::Traffic;
@@ -27,9 +27,9 @@ pub(super) struct RobotTask {
     pub screen: Screen,
     /// Start delay, to spread the robots over the interval.
     pub delay: Duration,
-    pub wants: watch::Receiver<Wants>,
-    pub stopped: watch::Receiver<bool>,
-    pub tell: EventSender,
+    pub wants: watch::Receiver<MergedRequests>,
+    pub stop: watch::Receiver<bool>,
+    pub events: EventSender,
     /// Extra commands of this robot by their text.
     pub extra_commands: HashMap<Arc<str>, Option<Read>>,
 }
@@ -55,7 +55,7 @@ pub(super) async fn follow(mut follower: RobotTask) {
     let mut pauses = Backoff::default();
     loop {
         let RobotTask { robot, screen, .. } = &follower;
-        let mut stopped = follower.stopped.clone();
+        let mut stopped = follower.stop.clone();
         let opened = tokio::select! {
             biased;
             () = wait_for_stop(&mut stopped) => return,
@@ -66,7 +66,7 @@ pub(super) async fn follow(mut follower: RobotTask) {
                 let is_shared = is_held(robot);
                 let access = Access::reading(ConnectMode::Monitor);
                 let watch = family.watch(robot, access, screen).await?;
-                Ok(Link { watch, is_shared, counted: Traffic::default() })
+                Ok(Link { watch, is_shared, reported: Traffic::default() })
             } => opened,
         };
         let ended = match opened {
@@ -89,7 +89,7 @@ pub(super) async fn follow(mut follower: RobotTask) {
                 let pause = pauses.next(every, longest);
                 start = Instant::now() + pause;
                 let robot = Arc::clone(&follower.robot);
-                follower.tell.send(Event::Failed { robot, failure, pause, traffic }).await;
+                follower.events.send(Event::Failed { robot, failure, pause, traffic }).await;
             }
         }
     }
@@ -100,14 +100,14 @@ struct Link {
     watch: Box<dyn Watch>,
     is_shared: bool,
     /// Counters that were already reported.
-    counted: Traffic,
+    reported: Traffic,
 }
 
 impl Link {
     /// Traffic since the last call.
     fn traffic(&mut self) -> Traffic {
         let now = self.watch.traffic();
-        now.since(std::mem::replace(&mut self.counted, now))
+        now.since(std::mem::replace(&mut self.reported, now))
     }
 }
 
@@ -115,13 +115,13 @@ impl RobotTask {
     /// Polls until a failure or until it is stopped.
     async fn poll_link(&mut self, link: &mut Link, pauses: &mut Backoff) -> LoopEnd {
         let id = RobotId::for_robot(&self.robot);
-        let mut stopped = self.stopped.clone();
+        let mut stopped = self.stop.clone();
         let mut ticks = Ticks::new(Instant::now(), self.wants.borrow().every);
         let mut sessions = Instant::now() + SESSION_CHECK_INTERVAL;
         let mut missed = 0;
         loop {
             let wants = self.wants.borrow_and_update().clone();
-            let began = Instant::now();
+            let start = Instant::now();
             let result = tokio::select! {
                 biased;
                 () = wait_for_stop(&mut stopped) => return LoopEnd::Stopped,
@@ -130,8 +130,8 @@ impl RobotTask {
             match result {
                 Ok(look) => {
                     pauses.reset();
-                    let look = PollResult { took: began.elapsed(), missed, traffic: link.traffic(), ..look };
-                    self.tell.send(Event::Polled(Arc::new(look))).await;
+                    let look = PollResult { took: start.elapsed(), missed, traffic: link.traffic(), ..look };
+                    self.events.send(Event::Polled(Arc::new(look))).await;
                 }
                 // The session has closed, which is not a failure of the robot.
                 Err(_) if link.is_shared && !is_held(&self.robot) => return LoopEnd::Session,
@@ -146,7 +146,7 @@ impl RobotTask {
             }
             let mut next = ticks.next(now);
             // The poll took longer than the interval: count the missed ticks.
-            missed = ticks.between(began, next);
+            missed = ticks.between(start, next);
             // Waits for the next tick. A new wish for more detail is served at once.
             loop {
                 tokio::select! {
@@ -174,7 +174,7 @@ impl RobotTask {
     }
 
     /// Polls once, and runs the extra commands.
-    async fn poll(&mut self, link: &mut Link, id: &RobotId, wants: &Wants) -> Result<PollResult, Failure> {
+    async fn poll(&mut self, link: &mut Link, id: &RobotId, wants: &MergedRequests) -> Result<PollResult, Failure> {
         let robot = Arc::clone(&self.robot);
         let mut sample = link.watch.look(wants.detail(id)).await?;
         let unexplained = sample.line.state.fault.explain(&robot).err();
@@ -183,7 +183,7 @@ impl RobotTask {
             match self.ask(link, extra).await {
                 // The link has failed, not the command.
                 Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
-                told => extras.push((Arc::clone(extra.text()), told)),
+                result => extras.push((Arc::clone(extra.text()), result)),
             }
         }
         let through_session = link.is_shared;
@@ -192,8 +192,8 @@ impl RobotTask {
 
     /// Runs an extra command, unless it needs a connection whose end would affect the controller.
     async fn ask(&mut self, link: &mut Link, extra: &Extra) -> Result<Value, Failure> {
-        let own = self.extra_commands.entry(Arc::clone(extra.text())).or_insert_with(|| extra.of(&self.robot));
-        let command = match own {
+        let command = self.extra_commands.entry(Arc::clone(extra.text())).or_insert_with(|| extra.of(&self.robot));
+        let command = match command {
             None => extra.command(),
             Some(Ok(command)) => &**command,
             Some(Err(failure)) => return Err(failure.clone()),
@@ -261,7 +261,7 @@ mod tests {
     const EVERY: Duration = Duration::from_millis(100);
 
     #[tokio::test(start_paused = true)]
-    async fn ticks_do_not_drift_and_do_not_pile_up() {
+    async fn ticks_do_not_drift_or_accumulate() {
         let start = Instant::now();
         let mut ticks = Ticks::new(start, EVERY);
         assert_eq!(ticks.next(start + Duration::from_millis(30)), start + EVERY);
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn pauses_double_up_to_a_bound_and_begin_anew() {
+    fn backoff_doubles_up_to_a_limit_and_resets() {
         let [second, most] = [1, 10].map(Duration::from_secs);
         let mut pauses = Backoff::default();
         let seconds: Vec<u64> = (0..6).map(|_| pauses.next(EVERY, most).as_secs()).collect();

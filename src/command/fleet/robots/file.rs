@@ -32,12 +32,12 @@ pub fn read(path: &Path) -> Result<String, Failure> {
 pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), DocumentError>) -> Result<String, Failure> {
     let path = path(run)?;
     replace(path, |text| {
-        let wrong = |why: &dyn std::fmt::Display| {
+        let invalid = |why: &dyn std::fmt::Display| {
             Failure::usage(format!("{}: {why}", path.display()))
                 .hint("correct the file with `armctl robots edit`; see `armctl help inventory`")
         };
-        let mut document = Document::parse(text).map_err(|error| wrong(&error))?;
-        change(&mut document).map_err(|why| wrong(&why))?;
+        let mut document = Document::parse(text).map_err(|error| invalid(&error))?;
+        change(&mut document).map_err(|why| invalid(&why))?;
         Ok(document.to_string())
     })?;
     Ok(path.display().to_string())

@@ -86,23 +86,23 @@ impl Close {
                 .hint("name a robot, or close all with --all; `armctl session list` shows the sessions")
                 .into());
         }
-        let mut meant = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
-        for robot in &mut meant {
+        let mut selected = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
+        for robot in &mut selected {
             // A robot that does not answer is identified by the typed address.
             let _ = identify(&run.sources, families::of(robot.family).driver(), robot, false);
         }
         let is_named = |info: &Info, name: &str| {
             let is_meant =
                 |robot: &Robot| info.target.parse::<Target>().is_ok_and(|held| robot.has_address(&held.address()));
-            is_named(info, name) || target.as_deref() == Some(name) && meant.iter().any(is_meant)
+            is_named(info, name) || target.as_deref() == Some(name) && selected.iter().any(is_meant)
         };
         let found: Vec<(SessionPath, Info)> =
             locations()?.into_iter().filter_map(|location| Some((location.clone(), location.owner()?))).collect();
         for name in &names {
             if !found.iter().any(|(_, info)| is_named(info, name)) {
-                let known = found.iter().map(|(_, info)| info.robot.as_str());
+                let open_names = found.iter().map(|(_, info)| info.robot.as_str());
                 let failure = Failure::usage(format!("no session of '{name}' is open"));
-                return Err(match nearest(name, known) {
+                return Err(match nearest(name, open_names) {
                     Some(near) => failure.hint(format!("did you mean '{near}'?")),
                     None => failure.hint("`armctl session list` shows the open sessions"),
                 }

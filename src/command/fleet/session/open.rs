@@ -10,7 +10,7 @@ use anyhow::Context as _;
 use clap::Args;
 use jiff::Timestamp;
 
-use super::host::{Attempt, SessionHost};
+use super::host::{OpenResult, SessionHost};
 use crate::command::ValueKind;
 use crate::command::families;
 use crate::command::frame::attach::{folder_failure, format_since, identify, session_key};
@@ -117,9 +117,9 @@ impl Open {
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Control) };
         let opening = SessionHost::open(robot, &access, &run.screen, say.clone());
         let holding = match interruptible(opening).await?? {
-            Attempt::SharedLink(holding) => holding,
-            Attempt::Taken => return Err(taken(robot, &location).await),
-            Attempt::NoPlace(failure) => return Err(failure),
+            OpenResult::SharedLink(holding) => holding,
+            OpenResult::InUse => return Err(in_use_failure(robot, &location).await),
+            OpenResult::NoPlace(failure) => return Err(failure),
         };
         say("the connection is open");
         let opened = Opened::here(robot, background, log.as_deref());
@@ -139,7 +139,7 @@ impl Open {
 }
 
 /// Failure: another process has the link.
-async fn taken(robot: &Robot, location: &SessionPath) -> Failure {
+async fn in_use_failure(robot: &Robot, location: &SessionPath) -> Failure {
     let who = match (status(location).await, location.owner()) {
         (Ok(Some(status)), _) => format!("process {}, since {}", status.info.pid, format_since(status.for_ms)),
         (_, Some(owner)) => format!("process {}, which does not answer", owner.pid),

@@ -85,7 +85,7 @@ pub fn sample(position: f64) -> Sample {
 }
 
 /// The same with two alarms, whose text contains terminal control characters.
-pub fn alarmed() -> Sample {
+pub fn with_alarm() -> Sample {
     let mut alarmed = sample(0.0);
     alarmed.line.state.running = Some(false);
     let alarm =
@@ -97,7 +97,7 @@ pub fn alarmed() -> Sample {
 }
 
 /// No answer.
-pub fn silence() -> Failure {
+pub fn fail() -> Failure {
     Failure::new(Kind::NoAnswer, "cell2 (udp://192.168.1.2): no answer within 3s")
         .hint("check address, cable and firewall")
 }

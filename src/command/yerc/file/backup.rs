@@ -79,7 +79,7 @@ async fn save(
         let label = format!("{}/{} {shown}", number + 1, work.len());
         let holds = type_word(FileType::from_name(name).unwrap_or(*kind)).to_owned();
         let entry = Entry { name: shown, name_hex: Some(hex(name)), holds, ..Entry::default() };
-        let fetched = async {
+        let fetched_file = async {
             // A listed name that is not allowed is an error of the controller, not of the operator.
             let malformed = |failure| Failure { kind: Kind::Malformed, ..failure };
             let local = local.clone().map_err(malformed)?;
@@ -89,14 +89,14 @@ async fn save(
             let notes = if content.bytes == 0 { vec!["empty".to_owned()] } else { Vec::new() };
             Ok(SavedPart { notes, ..SavedPart::new(Content::File(content.saved(local))) })
         };
-        if !saving.part(entry, fetched).await? {
+        if !saving.part(entry, fetched_file).await? {
             break;
         }
         saved.advance(1);
     }
     let files = saving.files();
-    let tried = files.len();
-    files.extend(work[tried..].iter().map(|listed| FileItem::pending(encoding.decode(&listed.name))));
+    let attempted = files.len();
+    files.extend(work[attempted..].iter().map(|listed| FileItem::pending(encoding.decode(&listed.name))));
     for (file, listed) in files.iter_mut().zip(&work) {
         file.more.name_hex = Shown::new(encoding, &listed.name).name_hex;
     }

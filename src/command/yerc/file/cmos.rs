@@ -81,29 +81,29 @@ impl Command for Cmos {
 
 impl Cmos {
     async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files, Failure> {
-        let _waiting = Waiting::new(screen, MAKING);
+        let _waiting = Waiting::new(screen, CREATE_TIMEOUT);
         // The transfer ends at its first block, so that the controller keeps its existing backup.
-        let had_one = |_: &[u8]| {
+        let existed = |_: &[u8]| {
             Err(Failure::new(Kind::Malformed, "the controller already has a backup and created no new one")
                 .hint("download it with --download-only"))
         };
-        self.ask(link, had_one).await?;
-        Ok(made(FileItem::pending(NAME)))
+        self.ask(link, existed).await?;
+        Ok(created_files(FileItem::pending(NAME)))
     }
 
     async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<Files, Failure> {
         let (mut draft, mut hash) = (target.begin()?, Hash::default());
-        let requests = if self.download_only { &[FETCHING][..] } else { &[MAKING, FETCHING] };
+        let requests = if self.download_only { &[FETCHING][..] } else { &[CREATE_TIMEOUT, FETCHING] };
         for what in requests {
             let mut waiting = Waiting::new(screen, what);
-            let came = self.ask(link, |block| {
+            let received = self.ask(link, |block| {
                 waiting.advance(block);
                 hash.take(block);
                 draft.write(block)
             });
-            if came.await?.is_some() {
+            if received.await?.is_some() {
                 draft.commit()?;
-                return Ok(made(FileItem::pending(NAME).with_path(target.path()).with_content(hash)));
+                return Ok(created_files(FileItem::pending(NAME).with_path(target.path()).with_content(hash)));
             }
         }
         Err(Failure::new(Kind::Malformed, "the controller created a backup instead of sending the existing one").hint(
@@ -128,7 +128,7 @@ impl Cmos {
 
 /// Name on the controller.
 const NAME: &str = "CMOSBK.BIN";
-const MAKING: &str = "the controller creates its backup (about ten minutes)";
+const CREATE_TIMEOUT: &str = "the controller creates its backup (about ten minutes)";
 const FETCHING: &str = "waiting for the backup";
 
 /// Progress display: first the wait for the controller, then the bytes received.
@@ -154,7 +154,7 @@ impl<'a> Waiting<'a> {
 }
 
 /// Report of the batch backup; it has a path unless it was left on the controller.
-fn made(mut file: FileItem) -> Files {
+fn created_files(mut file: FileItem) -> Files {
     file.succeed(State::Done);
     Files::new(vec![file], |files| match files {
         [FileItem { path: Some(path), bytes: Some(bytes), .. }] => {

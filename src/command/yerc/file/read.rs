@@ -1,6 +1,6 @@
 //! Reads small files of the controller for commands that need their content.
 
-use super::lists::{Lists, There};
+use super::lists::{Existence, Lists};
 use super::transfer;
 use crate::command::backup::continues_after;
 use crate::command::yerc::link::Link;
@@ -39,7 +39,7 @@ pub async fn read_files(
     drop(looking);
     let mut answers = Vec::with_capacity(files.len());
     for (file, name) in files.iter().zip(names) {
-        if lists.tell(file) == There::No {
+        if lists.existence(file) == Existence::No {
             answers.push(FileReading::Missing);
             continue;
         }

@@ -8,7 +8,7 @@ use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Known as _;
 use crate::command::frame::settings_report::{OLD_VALUE, nothing_written};
 use crate::command::frame::store::{Differing, old_rows};
-use crate::command::yerc::each::ReadError;
+use crate::command::yerc::existing_items::ReadError;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::query::ReadVariable;
 use crate::controller::yerc::request::Request;
@@ -52,7 +52,7 @@ async fn taught(link: &mut Link, references: &[Reference]) -> Result<Taught, Fai
     let mut taught = Taught { positions: HashMap::new(), has_unread: false };
     for reference in references {
         let question = ReadVariable::new(reference.kind, reference.number);
-        match link.for_purpose(OLD_VALUE).try_ask(&question).await.known().map_err(nothing_written)? {
+        match link.for_purpose(OLD_VALUE).ask_optional(&question).await.known().map_err(nothing_written)? {
             Some(Ok(value)) => drop(taught.positions.insert(*reference, value)),
             Some(Err(refusal)) => taught.has_unread |= !is_undefined(&ReadError::Refused(refusal)),
             None => {}

@@ -14,11 +14,11 @@ use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
 use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Store, TableWords, Writable, ids};
+use crate::command::yerc::batch_split::{BatchSplit, read_in_batches};
 use crate::command::yerc::complete;
-use crate::command::yerc::each::ReadError;
+use crate::command::yerc::existing_items::ReadError;
 use crate::command::yerc::link::{Link, Yerc};
-use crate::command::yerc::orders::usage;
-use crate::command::yerc::parts::{Parts, read_in_parts};
+use crate::command::yerc::switch_commands::usage;
 use crate::command::yerc::var::position::held;
 use crate::controller::Risk;
 use crate::controller::names::Kind;
@@ -261,14 +261,14 @@ impl Store for Variables {
         // Each position can be undefined; the valid numbers of other kinds end somewhere.
         let parts = |run: &[Reference]| {
             let is_position = run.first().is_some_and(|reference| reference.kind.is_position());
-            if is_position { Parts::Single } else { Parts::Halves }
+            if is_position { BatchSplit::Single } else { BatchSplit::Halves }
         };
         let told = |_: &[Reference], known: usize| {
             if let Some(progress) = &progress {
                 progress.say(&format!("reading variables ({known} of {})", keys.len()));
             }
         };
-        let answers = read_in_parts(link, |references| Ok(plan_reads(references)), &wanted, parts, told).await?;
+        let answers = read_in_batches(link, |references| Ok(plan_reads(references)), &wanted, parts, told).await?;
         let missing = || Failure::new(FailureKind::Malformed, "the answer does not have this variable");
         let row = |reference: &Reference| match answers.get(reference) {
             Some(Ok(value)) => Ok(value.clone()),

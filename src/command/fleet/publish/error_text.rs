@@ -56,10 +56,10 @@ pub fn refusal(url: &Url, refusal: &Refusal) -> Failure {
     };
     let found = codes.iter().find(|(known, ..)| known == code);
     let (_, why, advice, is_setting) = found.copied().unwrap_or((0, "with an undefined code", "", false));
-    let told = reason.as_ref().map(|reason| format!(" ({reason})")).unwrap_or_default();
-    let elsewhere = server.as_ref().map(|server| format!(": {server}")).unwrap_or_default();
+    let text = reason.as_ref().map(|reason| format!(" ({reason})")).unwrap_or_default();
+    let other_server = server.as_ref().map(|server| format!(": {server}")).unwrap_or_default();
     let kind = if is_setting { Kind::Usage } else { Kind::NoAnswer };
-    let failure = Failure::new(kind, format!("{url} refuses this client: {why}{told}{elsewhere}"));
+    let failure = Failure::new(kind, format!("{url} refuses this client: {why}{text}{other_server}"));
     let failure = failure.code(format!("0x{code:02X}"));
     if advice.is_empty() { failure } else { failure.hint(advice) }
 }
@@ -67,7 +67,7 @@ pub fn refusal(url: &Url, refusal: &Refusal) -> Failure {
 /// Failure for a connection that failed or was lost.
 pub fn loss(url: &Url, loss: &Loss) -> Failure {
     if let Loss::Tls(error) = loss {
-        return distrust(url, error);
+        return certificate_hint(url, error);
     }
     let failure = Failure::new(Kind::NoAnswer, format!("{url}: {loss}"));
     let hint = match loss {
@@ -83,7 +83,7 @@ pub fn loss(url: &Url, loss: &Loss) -> Failure {
 }
 
 /// Failure for a certificate error.
-pub fn distrust(url: &Url, error: &TlsError) -> Failure {
+pub fn certificate_hint(url: &Url, error: &TlsError) -> Failure {
     let (hint, kind) = match error {
         TlsError::UnknownIssuer => {
             ("set the certificate of the authority that signed the broker's certificate: --ca FILE", Kind::Usage)
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn every_code_has_words_and_those_that_stay_say_what_to_do() {
+    fn describes_every_code_with_a_remedy_for_permanent_ones() {
         for version in [Version::V3, Version::V5] {
             for code in 1..=u8::MAX {
                 let failure = refusal(&url(), &Refusal { version, code, reason: None, server: None });
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_certificate_is_about_a_setting_and_a_cable_is_not() {
+    fn certificate_errors_are_setting_errors() {
         assert_eq!(loss(&url(), &Loss::Tls(TlsError::Expired)).kind, Kind::Usage);
         assert_eq!(loss(&url(), &Loss::Closed).kind, Kind::NoAnswer);
     }

@@ -10,7 +10,7 @@ use crate::gate::{Change, outdated};
 
 /// Job that a start runs, as the controller reports it.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Chosen {
+pub enum SelectedJob {
     /// This job, at a line, with a speed override.
     Job(JobInfo),
     /// No job.
@@ -19,12 +19,12 @@ pub enum Chosen {
     Unread(String),
 }
 
-impl Chosen {
+impl SelectedJob {
     /// Reads the job of the master task (FS and DX 3.3.4).
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let unread = |failure: &Failure| Self::Unread(failure.message.trim_end_matches('.').to_owned());
         let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
-        match link.for_purpose("selected job").try_ask(&question).await {
+        match link.for_purpose("selected job").ask_optional(&question).await {
             Ok(Ok(info)) if info.name.is_empty() => Ok(Self::None),
             Ok(Ok(info)) => Ok(Self::Job(info)),
             Ok(Err(refusal)) => Ok(unread(&refusal.into())),
@@ -56,7 +56,7 @@ impl Chosen {
     }
 
     /// Note for a command that selects another job first.
-    pub fn noted(&self, change: Change, encoding: Encoding) -> Change {
+    pub fn item_name(&self, change: Change, encoding: Encoding) -> Change {
         match self {
             Self::Job(info) => {
                 let percent = units::PERCENT.show_unsigned(info.speed_override);
@@ -70,10 +70,10 @@ impl Chosen {
 
     /// Text of the confirmation; `times` is the number of repetitions, such as ` 20 times`.
     pub fn change(&self, encoding: Encoding, times: &str) -> Change {
-        let unnamed = Change::new(format!("start the selected job{times}"));
+        let unknown_name = Change::new(format!("start the selected job{times}"));
         match self {
-            Self::None => unnamed.note("The controller reports no job."),
-            Self::Unread(why) => unnamed.note(format!("The job name could not be read: {why}.")),
+            Self::None => unknown_name.note("The controller reports no job."),
+            Self::Unread(why) => unknown_name.note(format!("The job name could not be read: {why}.")),
             Self::Job(info) => {
                 let name = encoding.decode(info.name.as_bytes());
                 let from = if info.line == 0 { String::new() } else { format!(" from line {}", info.line) };
@@ -85,7 +85,7 @@ impl Chosen {
     }
 
     /// Rejects the start if the selection has changed since the question.
-    pub async fn check_again(&self, link: &mut Link) -> Result<(), Failure> {
+    pub async fn check_unchanged(&self, link: &mut Link) -> Result<(), Failure> {
         let now = Self::ask(link).await?;
         if now == *self {
             return Ok(());

@@ -12,9 +12,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Kind;
-use super::also::Also;
+use super::extra_topic::ExtraTopic;
+use super::message_format::{MessageFormat, Reaction};
 use super::outbox::Record;
-use super::speech::{Reaction, Speech};
 use super::topic::Levels;
 use super::uplink::{Message, Will};
 use crate::command::face::overview::OverviewReport;
@@ -44,7 +44,7 @@ pub struct Position {
 
 /// Last message of a topic.
 #[derive(Debug)]
-struct Told {
+struct SentState {
     /// The envelope without its time.
     what: Vec<u8>,
     at_ms: u64,
@@ -52,26 +52,26 @@ struct Told {
 
 /// The plain message format.
 #[derive(Debug)]
-pub struct Plain {
+pub struct PlainFormat {
     prefix: String,
     node: String,
     levels: Levels,
     kinds: Vec<Kind>,
-    also: Rc<[Also]>,
+    also: Rc<[ExtraTopic]>,
     every_ms: u64,
-    told: BTreeMap<RobotId, BTreeMap<String, Told>>,
+    sent: BTreeMap<RobotId, BTreeMap<String, SentState>>,
 }
 
-impl Plain {
+impl PlainFormat {
     /// Creates the format for these kinds and extra commands; unchanged data is sent again after `every_ms`. `node` is
     /// a topic level.
     pub fn new(
         (prefix, node, levels): (&str, String, Levels),
         kinds: &[Kind],
-        also: Rc<[Also]>,
+        also: Rc<[ExtraTopic]>,
         every_ms: u64,
     ) -> Self {
-        Self { prefix: prefix.to_owned(), node, levels, kinds: kinds.to_vec(), also, every_ms, told: BTreeMap::new() }
+        Self { prefix: prefix.to_owned(), node, levels, kinds: kinds.to_vec(), also, every_ms, sent: BTreeMap::new() }
     }
 
     fn state(&self, state: &str) -> Message {
@@ -85,8 +85,8 @@ impl Plain {
 
     /// Records for data that has changed or is due again.
     fn changed(&mut self, robot: &Robot, envelopes: Vec<(String, Envelope)>, now_ms: u64) -> Vec<Record> {
-        let Ok(level) = self.levels.of(robot) else { return Vec::new() };
-        let told = self.told.entry(RobotId::for_robot(robot)).or_default();
+        let Ok(level) = self.levels.level_of(robot) else { return Vec::new() };
+        let told = self.sent.entry(RobotId::for_robot(robot)).or_default();
         let mut records = Vec::new();
         for (kind, envelope) in envelopes {
             let Ok(what) = serde_json::to_vec(&envelope) else { continue };
@@ -100,7 +100,7 @@ impl Plain {
             let Ok(body) = serde_json::to_vec(&Envelope { time, ..envelope }) else { continue };
             let key = format!("{}/{level}/{kind}", self.prefix);
             records.push(Record { kind: 0, time_ms: now_ms, key, body, epoch: 0 });
-            told.insert(kind, Told { what, at_ms: now_ms });
+            told.insert(kind, SentState { what, at_ms: now_ms });
         }
         records
     }
@@ -148,8 +148,8 @@ impl Plain {
 
     /// The robot was removed: clears its retained messages.
     fn gone(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
-        let told = self.told.remove(&RobotId::for_robot(robot)).unwrap_or_default();
-        let Ok(level) = self.levels.of(robot) else { return Vec::new() };
+        let told = self.sent.remove(&RobotId::for_robot(robot)).unwrap_or_default();
+        let Ok(level) = self.levels.level_of(robot) else { return Vec::new() };
         let empty = |kind: String| Record {
             kind: 0,
             time_ms: now_ms,
@@ -161,7 +161,7 @@ impl Plain {
     }
 }
 
-impl Speech for Plain {
+impl MessageFormat for PlainFormat {
     fn client_id(&self) -> String {
         format!("armctl-{}", self.node)
     }
@@ -174,18 +174,18 @@ impl Speech for Plain {
         Vec::new()
     }
 
-    fn connected(&mut self, _now_ms: u64) -> Vec<Message> {
+    fn first_messages(&mut self, _now_ms: u64) -> Vec<Message> {
         vec![self.state("online")]
     }
 
-    fn lost(&mut self) {}
+    fn connection_lost(&mut self) {}
 
-    fn received(&mut self, message: &Message, _now_ms: u64) -> Reaction {
+    fn handle_message(&mut self, message: &Message, _now_ms: u64) -> Reaction {
         let note = format!("ignored an unexpected message from the broker: {}", message.topic);
         Reaction { note: Some((Level::Detail, note)), ..Reaction::default() }
     }
 
-    fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
+    fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
         match event {
             Event::Polled(look) => self.looked(look, now_ms),
             Event::Failed { robot, failure, .. } => self.failed(robot, failure, now_ms),
@@ -198,12 +198,12 @@ impl Speech for Plain {
         true
     }
 
-    fn told(&mut self, record: Record, _now_ms: u64) -> Vec<Message> {
+    fn convert_record(&mut self, record: Record, _now_ms: u64) -> Vec<Message> {
         let Record { key, body, .. } = record;
         vec![Message { topic: key, payload: body, retain: true, acknowledged: true }]
     }
 
-    fn farewell(&mut self, _now_ms: u64) -> Vec<Message> {
+    fn final_messages(&mut self, _now_ms: u64) -> Vec<Message> {
         vec![self.state("offline")]
     }
 }

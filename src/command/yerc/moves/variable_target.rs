@@ -1,16 +1,16 @@
 //! Moves to the content of a position variable (`--to P2`), and to axis angles in degrees (`--deg`).
 
 use super::arguments::{Destination, Speed, Values};
-use super::going::{Goal, Going, MotionReport, plan_looks};
+use super::execution::{Goal, Going, MotionReport, plan_looks};
 use super::question::Question;
-use super::{Target, plain, unnamed_base, way};
+use super::{Target, cartesian_move, unnamed_base_axes, way};
 use crate::command::Context;
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::names;
-use crate::command::yerc::each::ReadError;
+use crate::command::yerc::existing_items::ReadError;
 use crate::command::yerc::link::{Link, Yerc};
-use crate::command::yerc::orders::usage;
 use crate::command::yerc::position;
+use crate::command::yerc::switch_commands::usage;
 use crate::command::yerc::var::{called, is_undefined, unlike};
 use crate::controller::units;
 use crate::controller::yerc::group::Group;
@@ -40,12 +40,12 @@ impl Motion<'_> {
         let link = &mut *context.link;
         let (name, value) = match destination {
             Destination::Degrees(degrees) => {
-                self.target.refuse_besides("--deg", self.target.frame.user.is_some())?;
+                self.target.refuse_extra_flags("--deg", self.target.frame.user.is_some())?;
                 (None, Value::Position(self.rotated(link, degrees)?))
             }
             Destination::Variable(variable) => {
                 let has_frame = self.target.frame.tool.is_some() || self.target.frame.user.is_some();
-                self.target.refuse_besides(&format!("--to {variable}"), has_frame)?;
+                self.target.refuse_extra_flags(&format!("--to {variable}"), has_frame)?;
                 let group = self.target.mover.group;
                 suits(*variable, group)?;
                 match read(link, *variable).await.known()? {
@@ -125,7 +125,7 @@ impl Motion<'_> {
         let (axes, unnamed) = match value {
             Value::Position(position) if position.kind == PositionKind::Pulse => {
                 (order.axes, order.tool) = (position.axes.padded(), position.tool);
-                (position.axes, unnamed_base(group, None))
+                (position.axes, unnamed_base_axes(group, None))
             }
             Value::External(external) if external.kind == PositionKind::Pulse => {
                 let [first @ .., seventh, eighth] = external.axes.padded();
@@ -155,7 +155,7 @@ impl Motion<'_> {
                 .hint("teach it in pulses, which support all axes"));
         }
         let target = [x, y, z, rx, ry, rz];
-        let mut order = plain(link, &self.target.mover, self.speed, &self.target.frame);
+        let mut order = cartesian_move(link, &self.target.mover, self.speed, &self.target.frame);
         order.coordinate = position.kind;
         (order.target, order.form, order.extended) = (target, position.form, position.extended);
         // The user coordinate number applies only to user coordinates; other moves need 0.
@@ -170,7 +170,13 @@ impl Motion<'_> {
             PositionKind::Base => Goal::Base(target, position.tool),
             _ => Goal::Unknown(Coordinates::Base),
         };
-        Ok(Going { order, group, goal, unnamed: unnamed_base(group, None), no_wait: self.target.mover.end.no_wait() })
+        Ok(Going {
+            order,
+            group,
+            goal,
+            unnamed: unnamed_base_axes(group, None),
+            no_wait: self.target.mover.end.no_wait(),
+        })
     }
 
     /// Converts degrees to pulses, with the values of the inventory.
@@ -234,7 +240,7 @@ impl Motion<'_> {
         link.plan_depending(&first.request(), &second.request(), Reason::about(&about).depending_on("its content"));
         if robot != 0 {
             let coordinates = |position: Position, kind, flag: u32| {
-                let mut order = plain(link, &self.target.mover, self.speed, &self.target.frame);
+                let mut order = cartesian_move(link, &self.target.mover, self.speed, &self.target.frame);
                 (order.coordinate, order.target) = (kind, [position.axes.padded()[0]; 6]);
                 (order.form, order.extended) = (Form(flag), ExtendedForm(flag));
                 (order.tool, order.user) = (flag, flag);
@@ -256,7 +262,7 @@ impl Motion<'_> {
 /// Content of a variable, which must be defined.
 async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
     let question = ReadVariable::new(variable.kind, variable.number);
-    match link.for_purpose("target position").try_ask(&question).await? {
+    match link.for_purpose("target position").ask_optional(&question).await? {
         Ok(value) => Ok(value),
         Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => {
             let message = format!("{variable} was never taught; no motion command was sent");

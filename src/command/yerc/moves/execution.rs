@@ -12,7 +12,7 @@ use crate::command::frame::dry_run::Known as _;
 use crate::command::robot::motion::Motion;
 use crate::command::robot::position as robot;
 use crate::command::yerc::link::{Link, Refusal, Yerc};
-use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
+use crate::command::yerc::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
 use crate::command::yerc::position::{self, as_reported, in_a_line};
 use crate::command::{Context, Report};
 use crate::controller::units::{self, Unit};
@@ -186,9 +186,9 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         let began = Instant::now();
         let mut watch = Watch::new(start);
         loop {
-            let status = link.ask(&ReadStatus).await.map_err(|failure| lost(&done, failure))?;
+            let status = link.ask(&ReadStatus).await.map_err(|failure| lost_contact(&done, failure))?;
             let asked = position::ask(link, group, coordinates).await;
-            let (here, report) = asked.map_err(|failure| lost(&done, failure))?;
+            let (here, report) = asked.map_err(|failure| lost_contact(&done, failure))?;
             let at_target = goal.is_reached(&here);
             let place = in_a_line(here.kind, here.axes.as_slice(), matches!(group, Group::Robot(_)));
             match watch.look(began.elapsed(), status, here, at_target) {
@@ -211,7 +211,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
                     return Err(trouble.failure(link, &done, Some(&place)).await);
                 }
                 Look::NotBegun => {
-                    let within = duration::display(START_WITHIN);
+                    let within = duration::display(START_TIMEOUT);
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
                         format!("{done}, but it has not started within {within}; position: {place}"),
@@ -219,7 +219,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
                     .hint("it may still start: keep clear, and check `yerc status` and the pendant"));
                 }
             }
-            tokio::time::sleep(LOOK_EVERY).await;
+            tokio::time::sleep(POLL_INTERVAL).await;
         }
     }
 }
@@ -245,7 +245,7 @@ async fn resting_place(
     mut place: String,
 ) -> String {
     for _ in 0..LOOKS_TO_REST {
-        tokio::time::sleep(LOOK_EVERY).await;
+        tokio::time::sleep(POLL_INTERVAL).await;
         let Ok((here, _)) = position::ask(link, group, coordinates).await else { break };
         let is_at_rest = stands(&last, &here);
         place = in_a_line(here.kind, here.axes.as_slice(), matches!(group, Group::Robot(_)));
@@ -264,7 +264,8 @@ async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: 
         return Ok(());
     }
     let question = link.by_model(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
-    let Some(answer) = link.for_purpose("current position of the unnamed axes").try_ask(&question).await.known()?
+    let Some(answer) =
+        link.for_purpose("current position of the unnamed axes").ask_optional(&question).await.known()?
     else {
         link.plan_existing_axes(group, Coordinates::Pulse);
         return Ok(());
@@ -344,7 +345,7 @@ impl Watch {
         }
         match (is_still, self.seen || at_target == Some(true)) {
             (true, true) => Look::Ended,
-            (_, false) if elapsed >= START_WITHIN => Look::NotBegun,
+            (_, false) if elapsed >= START_TIMEOUT => Look::NotBegun,
             _ => Look::Moving,
         }
     }
@@ -467,7 +468,7 @@ mod tests {
     fn what_never_begins_is_told() {
         let mut watch = Watch::new(at(HOME));
         assert_eq!(watch.look(after(0), status(false), at(HOME), None), Look::Moving);
-        assert_eq!(watch.look(START_WITHIN, status(false), at(HOME), None), Look::NotBegun);
+        assert_eq!(watch.look(START_TIMEOUT, status(false), at(HOME), None), Look::NotBegun);
     }
 
     #[test]

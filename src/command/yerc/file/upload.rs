@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
-use super::lists::{Lists, There};
+use super::lists::{Existence, Lists};
 use super::transfer::{self, Download};
 use crate::command::backup::manifest::Hash;
 use crate::command::frame::authority::Authority;
@@ -30,7 +30,7 @@ pub struct Delivery {
 
 /// Upload options.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Manner {
+pub struct UploadOptions {
     /// Read the file back and compare it.
     pub verify: bool,
     /// Ignore the line that controllers rewrite in the comparison.
@@ -40,7 +40,7 @@ pub struct Manner {
 }
 
 /// Asks for confirmation if files are overwritten: listed files, and files of a type without a list.
-pub async fn confirm<'a>(
+pub async fn confirm_uploads<'a>(
     authority: &Authority<'_>,
     encoding: Encoding,
     lists: Option<&Lists>,
@@ -49,14 +49,14 @@ pub async fn confirm<'a>(
     let mut replaced = Vec::new();
     let mut has_machine_data = false;
     for Delivery { file, content } in deliveries {
-        let untold = match lists.map_or(There::No, |lists| lists.tell(file)) {
-            There::Yes => "",
-            There::Untold => " (not known whether it exists)",
-            There::No => continue,
+        let unlisted_count = match lists.map_or(Existence::No, |lists| lists.existence(file)) {
+            Existence::Yes => "",
+            Existence::Unlisted => " (not known whether it exists)",
+            Existence::No => continue,
         };
         let (name, path) = (encoding.decode(file.as_bytes()), content.path().display());
         has_machine_data |= matches!(file.file_type(), Some(FileType::Prm | FileType::Sys));
-        replaced.push(format!("{name}, with the {} bytes of {path}{untold}", content.size()));
+        replaced.push(format!("{name}, with the {} bytes of {path}{unlisted_count}", content.size()));
     }
     if replaced.is_empty() {
         return authority.confirm(&Change::nothing()).await;
@@ -70,7 +70,12 @@ pub async fn confirm<'a>(
 }
 
 /// Notes in a dry run the requests of [`deliver`].
-pub fn plan(link: &mut Link, delivery: &mut Delivery, manner: Manner, reason: Reason<'_>) -> Result<(), Failure> {
+pub fn plan(
+    link: &mut Link,
+    delivery: &mut Delivery,
+    manner: UploadOptions,
+    reason: Reason<'_>,
+) -> Result<(), Failure> {
     let Delivery { file, content } = delivery;
     transfer::plan_send(link, file, content, reason)?;
     if manner.replace && file.file_type() == Some(FileType::Jbi) {
@@ -86,11 +91,11 @@ pub fn plan(link: &mut Link, delivery: &mut Delivery, manner: Manner, reason: Re
 }
 
 /// Uploads a file and adds the steps to `notes`. Returns the content that was sent.
-pub async fn deliver(
+pub async fn upload(
     link: &mut Link,
     screen: &Screen,
     delivery: &mut Delivery,
-    manner: Manner,
+    manner: UploadOptions,
     notes: &mut Vec<String>,
 ) -> Result<Hash, Failure> {
     let sent = match send(link, screen, delivery).await {
@@ -105,7 +110,7 @@ pub async fn deliver(
             notes.push("replaced".to_owned());
             sent
         }
-        Err(failure) if failure.kind == Kind::Refused => return Err(with_own_name(link, delivery, failure)),
+        Err(failure) if failure.kind == Kind::Refused => return Err(check_job_name(link, delivery, failure)),
         sent => sent?,
     };
     if delivery.content.fixes_line_endings() {
@@ -120,7 +125,7 @@ pub async fn deliver(
 
 impl Delivery {
     /// Name in the job and name of the upload, if they differ.
-    pub fn other_name(&self, encoding: Encoding) -> Option<(String, String)> {
+    pub fn name_in_job(&self, encoding: Encoding) -> Option<(String, String)> {
         let file = self.file.as_bytes();
         let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
         let own = self.content.job_name().filter(|own| *own != stem)?;
@@ -129,8 +134,8 @@ impl Delivery {
 }
 
 /// Adds a hint if the name in the job differs from its file name, a likely cause of a refusal.
-fn with_own_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure {
-    match delivery.other_name(link.encoding) {
+fn check_job_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure {
+    match delivery.name_in_job(link.encoding) {
         Some((own, stem)) => failure.hint(format!("the job has //NAME {own} but is sent as {stem}: use the same name")),
         None => failure,
     }
@@ -177,7 +182,7 @@ async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> R
     old.is_needed = true;
     if let Err(failure) = transfer::remove(link, &delivery.file).await {
         old.is_needed = failure.kind == Kind::OutcomeUnknown;
-        return Err(old.told(failure));
+        return Err(old.failure_with_path(failure));
     }
     let failure = match send(link, screen, delivery).await {
         Ok(sent) => {
@@ -187,17 +192,17 @@ async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> R
         Err(failure) => failure,
     };
     if failure.kind != Kind::Refused {
-        return Err(old.told(failure));
+        return Err(old.failure_with_path(failure));
     }
-    let mut back = Delivery { file: delivery.file.clone(), content: Content::open(&old.path)? };
-    match send(link, screen, &mut back).await {
+    let mut restored = Delivery { file: delivery.file.clone(), content: Content::open(&old.path)? };
+    match send(link, screen, &mut restored).await {
         Ok(_) => {
             old.is_needed = false;
             Err(Failure { message: format!("{} The old job was restored", failure.message), ..failure })
         }
         Err(second) => {
             let message = format!("{} The old job could not be restored: {}", failure.message, second.message);
-            Err(old.told(Failure { message, ..failure }))
+            Err(old.failure_with_path(Failure { message, ..failure }))
         }
     }
 }
@@ -208,7 +213,7 @@ struct OldCopy {
     path: PathBuf,
     screen: Screen,
     is_needed: bool,
-    is_told: bool,
+    is_path_reported: bool,
 }
 
 impl OldCopy {
@@ -216,14 +221,14 @@ impl OldCopy {
         let name = link.encoding.decode(delivery.file.as_bytes());
         let label = format!("{name} (copy of the old job)");
         let local = local_name(link.encoding, delivery.file.as_bytes());
-        let target = Self::place(&folder_of(delivery.content.path()), &local)?;
+        let target = Self::local_folder(&folder_of(delivery.content.path()), &local)?;
         let path = target.path().to_owned();
         transfer::save(link, screen, &label, &target, Download::Named(&delivery.file)).await?;
-        Ok(Self { path, screen: *screen, is_needed: false, is_told: false })
+        Ok(Self { path, screen: *screen, is_needed: false, is_path_reported: false })
     }
 
     /// First free name: `A.JBI.replaced`, `A.JBI.replaced-2`.
-    fn place(folder: &Path, local: &str) -> Result<Target, Failure> {
+    fn local_folder(folder: &Path, local: &str) -> Result<Target, Failure> {
         let free = |path: &PathBuf| path.symlink_metadata().is_err();
         let numbered = (2..1000).map(|number| folder.join(format!("{local}.replaced-{number}")));
         let path = std::iter::once(folder.join(format!("{local}.replaced"))).chain(numbered).find(free);
@@ -235,11 +240,11 @@ impl OldCopy {
     }
 
     /// Failure with the location of the copy.
-    fn told(&mut self, failure: Failure) -> Failure {
+    fn failure_with_path(&mut self, failure: Failure) -> Failure {
         if !self.is_needed {
             return failure;
         }
-        self.is_told = true;
+        self.is_path_reported = true;
         Failure { message: format!("{}. The old job is saved in {}", failure.message, self.path.display()), ..failure }
     }
 }
@@ -247,7 +252,7 @@ impl OldCopy {
 impl Drop for OldCopy {
     fn drop(&mut self) {
         if self.is_needed {
-            if !self.is_told {
+            if !self.is_path_reported {
                 self.screen.note(&format!("the old job is saved in {}", self.path.display()));
             }
         } else if let Err(error) = fs::remove_file(&self.path) {

@@ -10,12 +10,12 @@ use crate::settings::target::Family;
 
 /// An extra command and its topic level.
 #[derive(Debug)]
-pub struct Also {
+pub struct ExtraTopic {
     level: String,
     extra: Rc<Extra>,
 }
 
-impl Also {
+impl ExtraTopic {
     /// Parses all lines. Each must only read, and have a unique level.
     pub fn all(lines: &[String]) -> Result<Rc<[Self]>, Failure> {
         let mut all: Vec<Self> = Vec::with_capacity(lines.len());
@@ -86,12 +86,12 @@ mod tests {
 
     fn all(lines: &[&str]) -> Result<Vec<String>, String> {
         let lines: Vec<String> = lines.iter().map(|line| (*line).to_owned()).collect();
-        let all = Also::all(&lines).map_err(|failure| failure.message)?;
+        let all = ExtraTopic::all(&lines).map_err(|failure| failure.message)?;
         Ok(all.iter().map(|also| format!("{} {}", also.level, also.id())).collect())
     }
 
     #[test]
-    fn lines_have_a_level_of_their_own() {
+    fn each_command_line_has_its_own_level() {
         assert_eq!(
             all(&["yerc var get B0..B9", "parts=toyo counter get 1"]).unwrap(),
             ["var-get-B0..B9 yerc.var.get", "parts toyo.counter.get"]
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_more_than_read_is_refused() {
+    fn rejects_commands_that_do_more_than_read() {
         for line in ["yerc var set B0=1", "x=yerc job start", "yrcx servo on", "toyo home"] {
             assert!(all(&[line]).unwrap_err().contains("does more than read"), "{line}");
         }

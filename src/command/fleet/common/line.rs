@@ -46,27 +46,27 @@ pub struct SharedLine {
 impl SharedLine {
     /// Parses a line; `id` is its command id in envelopes and schemas.
     pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
-        Self::first_of(id, vec![words], false)
+        Self::parse_first_family(id, vec![words], false)
     }
 
     /// Reads a value by its name or label, whatever it is: `NOUN get NAME` with the first noun that has it.
     pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self, Failure> {
         let lines = nouns.iter().map(|noun| [*noun, "get", name].map(ToOwned::to_owned).into());
-        Self::first_of(id, lines.collect(), true)
+        Self::parse_first_family(id, lines.collect(), true)
     }
 
-    fn first_of(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self, Failure> {
-        let usual: Vec<(Family, Parsed)> = Family::ALL
+    fn parse_first_family(id: &'static str, lines: Vec<Vec<String>>, is_reduced: bool) -> Result<Self, Failure> {
+        let default_line: Vec<(Family, Parsed)> = Family::ALL
             .into_iter()
             .map(|family| (family, names::detect_names(|| parse_first(family, &lines)).0))
             .collect();
-        match usual.iter().find(|_| usual.iter().all(|(_, parsed)| parsed.is_err())) {
+        match default_line.iter().find(|_| default_line.iter().all(|(_, parsed)| parsed.is_err())) {
             Some((_, Err(failure))) => Err(failure.clone()),
-            _ => Ok(Self { id, lines, is_reduced, usual, own: RefCell::default() }),
+            _ => Ok(Self { id, lines, is_reduced, usual: default_line, own: RefCell::default() }),
         }
     }
 
-    fn usual(&self, family: Option<Family>) -> Option<&dyn AnyCommand> {
+    fn default_arguments(&self, family: Option<Family>) -> Option<&dyn AnyCommand> {
         let of = |other: Family| family.is_none_or(|family| family == other);
         self.usual.iter().find_map(|(family, parsed)| parsed.as_deref().ok().filter(|_| of(*family)))
     }
@@ -90,7 +90,7 @@ impl AnyCommand for SharedLine {
     }
 
     fn is_endless(&self) -> bool {
-        self.usual(None).is_some_and(AnyCommand::is_endless)
+        self.default_arguments(None).is_some_and(AnyCommand::is_endless)
     }
 
     fn driver(&self) -> Option<&'static dyn Driver> {
@@ -106,7 +106,7 @@ impl AnyCommand for SharedLine {
     }
 
     fn sheet(&self) -> Option<Sheet> {
-        if self.is_reduced { Some(sheet_of::<Reading>()) } else { self.usual(None)?.sheet() }
+        if self.is_reduced { Some(sheet_of::<Reading>()) } else { self.default_arguments(None)?.sheet() }
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
@@ -191,8 +191,8 @@ fn parse_first(family: Family, lines: &[Vec<String>]) -> Parsed {
     if let [failure] = &failures[..] {
         return Err(failure.clone());
     }
-    let near = failures.iter().find(|failure| failure.message.contains("did you mean"));
-    Err(near.cloned().unwrap_or_else(|| {
+    let suggestion = failures.iter().find(|failure| failure.message.contains("did you mean"));
+    Err(suggestion.cloned().unwrap_or_else(|| {
         let name = lines.first().and_then(|words| words.last()).map_or("", String::as_str);
         let message = format!("'{name}' is not a signal, variable, counter or other value of {family}");
         Failure::usage(message)
@@ -208,8 +208,8 @@ fn parse(family: Family, words: &[String]) -> Parsed {
         Ok(FamilyLine { command: ParsedCommand::Command(command), .. }) => Ok(command),
         Ok(_) => Err(Failure::local("internal error: a shared line is a command of each family")),
         Err(error) => {
-            let told = error.render().to_string();
-            let told = told.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            let message = error.render().to_string();
+            let told = message.lines().next().unwrap_or_default().trim_start_matches("error: ");
             let message =
                 told.split_once("': ").filter(|_| told.starts_with("invalid value")).map_or(told, |(_, why)| why);
             Err(Failure::usage(message).hint(format!("see `armctl {family} {} -h`", words[..2].join(" "))))

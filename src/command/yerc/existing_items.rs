@@ -24,31 +24,31 @@ impl From<ReadError> for Failure {
 
 /// Reads items that may not exist and omits those that do not; other refusals are kept. If all requests are refused
 /// with the same code, the cause is not a missing item: the first refusal is the failure.
-pub async fn existing<K, Q: Query + Copy>(
+pub async fn ask_existing<K, Q: Query + Copy>(
     link: &mut Link,
     questions: Vec<(K, Q)>,
 ) -> Result<Vec<(K, Outcome<Q::Answer>)>, Failure> {
     let (keys, queries): (Vec<K>, Vec<Q>) = questions.into_iter().unzip();
     let outcomes = link.ask_each(&queries).await?;
-    of_existing(keys.into_iter().zip(outcomes)).map_err(Failure::from)
+    existing_outcomes(keys.into_iter().zip(outcomes)).map_err(Failure::from)
 }
 
-fn of_existing<K, A>(outcomes: impl Iterator<Item = (K, Outcome<A>)>) -> Result<Vec<(K, Outcome<A>)>, ReadError> {
+fn existing_outcomes<K, A>(outcomes: impl Iterator<Item = (K, Outcome<A>)>) -> Result<Vec<(K, Outcome<A>)>, ReadError> {
     let mut found = Vec::new();
-    let mut denied = None;
+    let mut absent = None;
     let mut is_any = false;
     for (key, outcome) in outcomes {
         is_any |= outcome.is_ok();
         match outcome {
-            Err(why) if why.is_absent() => denied = denied.or(Some(why)),
+            Err(why) if why.is_absent() => absent = absent.or(Some(why)),
             outcome => found.push((key, outcome)),
         }
     }
     if is_any {
         return Ok(found);
     }
-    let refused = found.into_iter().find_map(|(_, outcome)| outcome.err());
-    refused.or(denied).map_or(Ok(Vec::new()), Err)
+    let refusal = found.into_iter().find_map(|(_, outcome)| outcome.err());
+    refusal.or(absent).map_or(Ok(Vec::new()), Err)
 }
 
 #[cfg(test)]
@@ -58,14 +58,14 @@ mod tests {
     use crate::controller::yerc::wire::Status;
 
     #[test]
-    fn what_is_absent_is_left_out_unless_everything_is_refused() {
+    fn omits_absent_items_unless_all_are_refused() {
         let no = |code| {
             let to = RefusedRequest::Robot { command: 0x74, instance: 2 };
             Err(ReadError::Refused(Refusal { status: Status::refused(code), to }))
         };
-        let found = of_existing([(1, no(0xA001)), (2, Ok("x")), (3, no(0x2150)), (4, no(0xA001))].into_iter());
+        let found = existing_outcomes([(1, no(0xA001)), (2, Ok("x")), (3, no(0x2150)), (4, no(0xA001))].into_iter());
         assert_eq!(found, Ok(vec![(2, Ok("x")), (3, no(0x2150))]));
-        let none = of_existing::<i32, &str>([(1, no(0xA001)), (2, no(0x2100))].into_iter());
+        let none = existing_outcomes::<i32, &str>([(1, no(0xA001)), (2, no(0x2100))].into_iter());
         assert_eq!(none.map_err(Err), Err(no(0x2100)));
     }
 }

@@ -16,7 +16,7 @@ use crate::failure::Kind;
 use crate::gate::Gate;
 
 /// Commands that send nothing.
-const AT_HOME: [&str; 1] = ["names forget"];
+const LOCAL_COMMANDS: [&str; 1] = ["names forget"];
 
 /// A line for each command, with files in `DIR`; its risk, and the maximum risk of its frames.
 const LINES: &[(&str, Risk, Risk)] = &[
@@ -110,16 +110,16 @@ fn risk_of(frame: &Value) -> Risk {
 }
 
 #[test]
-fn every_command_passes_the_gate_by_its_risk() {
+fn every_command_passes_the_gate_according_to_its_risk() {
     let folder = tempfile::tempdir().unwrap();
     prepare(folder.path());
     let place = folder.path().to_str().unwrap();
-    let mut reached = BTreeSet::new();
+    let mut tested = BTreeSet::new();
     for (line, risk, most) in LINES {
         let line = line.replace("DIR", place);
         let words: Vec<&str> = line.split(' ').collect();
         let (mut robot, command) = resolved(DX200, &words).unwrap();
-        reached.insert(command.id().to_owned());
+        tested.insert(command.id().to_owned());
         let intent = command.intent(Some(&robot));
         assert_eq!(intent.risk, *risk, "{line}");
         assert!(*risk < Destroy || !intent.text.is_empty(), "{line}: what is asked says what will happen");
@@ -136,13 +136,13 @@ fn every_command_passes_the_gate_by_its_risk() {
         let frames = dry_run(DX200, &words).unwrap_or_else(|failure| panic!("{line}: {failure:?}"));
         let shown = frames.iter().map(risk_of).max();
         // Data on this computer does not concern other clients.
-        let expected = Some(*most).filter(|_| !AT_HOME.contains(&line.as_str()));
+        let expected = Some(*most).filter(|_| !LOCAL_COMMANDS.contains(&line.as_str()));
         assert_eq!(shown, expected, "{line}: {frames:?}");
     }
     let cli = Cli::command();
     let mut leaves = BTreeSet::new();
     collect(cli.find_subcommand("yerc").expect("the family is there"), "yerc", &mut leaves);
-    assert_eq!(reached, leaves);
+    assert_eq!(tested, leaves);
 }
 
 fn collect(command: &clap::Command, id: &str, all: &mut BTreeSet<String>) {

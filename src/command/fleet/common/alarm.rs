@@ -87,7 +87,7 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<Present, Failure> {
         let Context { robot, link, screen, several, .. } = context;
-        link.reach(screen).await?;
+        link.open_link(screen).await?;
         let found = match link {
             Link::Open(face, connection) => face.alarms(&mut **connection).await?,
             Link::Absent(absent) => return Err(absent.failure.clone()),

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, VecDeque};
 
-use super::each::{Batch, Outcome, ReadError};
+use super::existing_items::{Batch, Outcome, ReadError};
 use super::link::Link;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::controller::yerc::request::Request;
@@ -11,7 +11,7 @@ use crate::failure::{Failure, Kind};
 
 /// Division of a refused run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Parts {
+pub enum BatchSplit {
     /// Halves, because the valid numbers end somewhere.
     Halves,
     /// Single items, because each can be refused, or because the controller has no request for several items.
@@ -21,11 +21,11 @@ pub enum Parts {
 /// Sends the requests of a plan. A refused run is planned and read again in parts, down to the refused items. `parts`
 /// defines how a run is divided. `progress` receives the current items and the number of items known so far. A dry
 /// run notes the plan.
-pub async fn read_in_parts<S: PlannedRead>(
+pub async fn read_in_batches<S: PlannedRead>(
     link: &mut Link,
     mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
     wanted: &[S::Item],
-    parts: impl Fn(&[S::Item]) -> Parts,
+    parts: impl Fn(&[S::Item]) -> BatchSplit,
     mut progress: impl FnMut(&[S::Item], usize),
 ) -> Result<HashMap<S::Item, Outcome<S::Value>>, Failure> {
     if wanted.is_empty() {
@@ -33,7 +33,7 @@ pub async fn read_in_parts<S: PlannedRead>(
     }
     if link.is_dry() {
         let purpose = link.take_purpose();
-        plan_in_parts(link, plan, wanted, parts, |_| purpose.map(ToOwned::to_owned))?;
+        plan_in_batches(link, plan, wanted, parts, |_| purpose.map(ToOwned::to_owned))?;
         return Err(unknown());
     }
     let mut steps: VecDeque<S> = plan(wanted)?.into();
@@ -42,19 +42,19 @@ pub async fn read_in_parts<S: PlannedRead>(
     while let Some(step) = steps.pop_front() {
         let asked = step.wanted();
         progress(asked, known.len());
-        let denied = match link.ask_in_batch(&mut batch, &step).await? {
+        let refused = match link.ask_in_batch(&mut batch, &step).await? {
             Ok(values) => {
                 known.extend(values.into_iter().map(|(item, value)| (item, Ok(value))));
                 continue;
             }
             Err(denied) => denied,
         };
-        let again = if is_alone(&step, &mut plan)? { None } else { how(&denied, parts(asked)) };
-        let Some(parts) = again else {
-            known.extend(asked.iter().map(|item| (*item, Err(denied.clone()))));
+        let retry = if is_alone(&step, &mut plan)? { None } else { describe_reason(&refused, parts(asked)) };
+        let Some(parts) = retry else {
+            known.extend(asked.iter().map(|item| (*item, Err(refused.clone()))));
             continue;
         };
-        let size = if parts == Parts::Single { 1 } else { asked.len().div_ceil(2) };
+        let size = if parts == BatchSplit::Single { 1 } else { asked.len().div_ceil(2) };
         for part in asked.chunks(size).rev() {
             for step in plan(part)?.into_iter().rev() {
                 steps.push_front(step);
@@ -76,11 +76,11 @@ fn is_alone<S: PlannedRead>(
 /// Notes in a dry run the requests of [`read_in_parts`], each run with the requests after a refusal. For a long run
 /// these are its halves, which are divided again, and one request for a single item as an example. `about` is the
 /// purpose of a run.
-pub fn plan_in_parts<S: PlannedRead>(
+pub fn plan_in_batches<S: PlannedRead>(
     link: &mut Link,
     mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
     wanted: &[S::Item],
-    parts: impl Fn(&[S::Item]) -> Parts,
+    parts: impl Fn(&[S::Item]) -> BatchSplit,
     about: impl Fn(&[S::Item]) -> Option<String>,
 ) -> Result<(), Failure> {
     for step in plan(wanted)? {
@@ -94,7 +94,7 @@ pub fn plan_in_parts<S: PlannedRead>(
         let singles = singles.collect::<Result<Vec<_>, _>>()?.into_iter().flatten();
         let singles: Vec<Request> = singles.map(|single| single.request()).collect();
         match (parts(asked), &singles[..]) {
-            (Parts::Halves, [first, _, .., last]) => {
+            (BatchSplit::Halves, [first, _, .., last]) => {
                 let (one, other) = asked.split_at(asked.len().div_ceil(2));
                 for (half, which) in [(one, "first"), (other, "second")] {
                     let about = format!("its {which} half, if it is refused; divided again down to single items");
@@ -119,15 +119,15 @@ pub fn plan_in_parts<S: PlannedRead>(
 const REFUSED: &str = "whether the controller refuses the run";
 
 /// Division of a run after this refusal; `None` if a new read would not help.
-fn how(denied: &ReadError, usual: Parts) -> Option<Parts> {
+fn describe_reason(denied: &ReadError, usual: BatchSplit) -> Option<BatchSplit> {
     /// Added status: "command error", "undefined command".
     const UNKNOWN: [u32; 2] = [0x1010, 0xA000];
     match denied {
         ReadError::Refused(refusal) if refusal.status.code == 0x08 || UNKNOWN.contains(&refusal.status.added) => {
-            Some(Parts::Single)
+            Some(BatchSplit::Single)
         }
         ReadError::Refused(_) => Some(usual),
-        ReadError::Failed(failure) => (failure.kind == Kind::Malformed).then_some(Parts::Single),
+        ReadError::Failed(failure) => (failure.kind == Kind::Malformed).then_some(BatchSplit::Single),
         ReadError::NotSent(_) => None,
     }
 }

@@ -16,11 +16,11 @@ pub struct Reaction {
     /// Text for the log.
     pub note: Option<(Level, String)>,
     /// Whether to close the connection and open a new one.
-    pub leaves: bool,
+    pub reconnects: bool,
 }
 
 /// A message format.
-pub trait Speech {
+pub trait MessageFormat {
     /// Client identifier, unique at the broker.
     fn client_id(&self) -> String;
     /// Last will of a new connection.
@@ -28,17 +28,17 @@ pub trait Speech {
     /// Topics to subscribe to.
     fn topics(&self) -> Vec<String>;
     /// First messages of a new connection.
-    fn connected(&mut self, now_ms: u64) -> Vec<Message>;
+    fn first_messages(&mut self, now_ms: u64) -> Vec<Message>;
     /// The connection is lost.
-    fn lost(&mut self);
+    fn connection_lost(&mut self);
     /// Handles a message of the broker.
-    fn received(&mut self, message: &Message, now_ms: u64) -> Reaction;
+    fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction;
     /// Converts a poller event to records.
-    fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record>;
+    fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record>;
     /// Whether records can be sent now.
     fn is_ready(&self) -> bool;
     /// Converts a record to messages; empty if it is out of date.
-    fn told(&mut self, record: Record, now_ms: u64) -> Vec<Message>;
+    fn convert_record(&mut self, record: Record, now_ms: u64) -> Vec<Message>;
     /// Last messages before a normal close.
-    fn farewell(&mut self, now_ms: u64) -> Vec<Message>;
+    fn final_messages(&mut self, now_ms: u64) -> Vec<Message>;
 }

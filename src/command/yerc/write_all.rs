@@ -23,7 +23,7 @@ pub trait WriteOrder: Query<Answer = ()> {
 
 /// Reads the values that requests replace, one request per run; refused values are missing. A dry run notes the
 /// requests.
-pub async fn before<S: PlannedRead>(link: &mut Link, reads: &[S]) -> Result<HashMap<S::Item, S::Value>, Failure> {
+pub async fn old_value<S: PlannedRead>(link: &mut Link, reads: &[S]) -> Result<HashMap<S::Item, S::Value>, Failure> {
     let mut found = HashMap::new();
     for read in reads {
         found.extend(link.before(read).await?.into_iter().flatten());
@@ -53,11 +53,11 @@ pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: 
         Ok(Ok(())) => return Ok(()),
         Ok(Err(failure)) | Err(failure) => failure,
     };
-    Err(account(failure, orders, done))
+    Err(summarize_failure(failure, orders, done))
 }
 
 /// Failure with the result of each request; the first `done` were confirmed, the next one failed.
-fn account<O: WriteOrder>(failure: Failure, orders: &[O], done: usize) -> Failure {
+fn summarize_failure<O: WriteOrder>(failure: Failure, orders: &[O], done: usize) -> Failure {
     // If the controller refuses or does not answer, nothing was written.
     let refused = matches!(failure.kind, Kind::Refused | Kind::NoAnswer);
     if refused && orders.len() == 1 {
@@ -94,9 +94,9 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_says_what_became_of_each() {
+    fn failure_lists_the_result_of_each_write() {
         let refused = Failure::new(Kind::Refused, "the controller refused: no. Because.").hint("x");
-        let message = |failure: &Failure, done| account(failure.clone(), &orders(), done).message;
+        let message = |failure: &Failure, done| summarize_failure(failure.clone(), &orders(), done).message;
         assert_eq!(
             message(&refused, 1),
             "the controller refused: no. Because; written: register 0..2; not written: register 10, 20..21"
@@ -105,7 +105,7 @@ mod tests {
             message(&refused, 0),
             "the controller refused: no. Because; nothing was written; not written: register 0..2, 10, 20..21"
         );
-        assert_eq!([0, 1].map(|done| account(refused.clone(), &orders(), done).kind.exit()), [3, 9]);
+        assert_eq!([0, 1].map(|done| summarize_failure(refused.clone(), &orders(), done).kind.exit()), [3, 9]);
         let closed = Failure::new(Kind::NoAnswer, "nothing listens");
         assert_eq!(message(&closed, 1), "nothing listens; written: register 0..2; not written: register 10, 20..21");
         let lost = Failure::new(Kind::OutcomeUnknown, "no answer");
@@ -113,7 +113,7 @@ mod tests {
             message(&lost, 1),
             "no answer; written: register 0..2; written or not: register 10; not written: register 20..21"
         );
-        assert_eq!(account(refused.clone(), &orders()[..1], 0), refused);
-        assert!(account(Failure::new(Kind::Interrupted, "Ctrl-C"), &orders(), 2).hint.is_some());
+        assert_eq!(summarize_failure(refused.clone(), &orders()[..1], 0), refused);
+        assert!(summarize_failure(Failure::new(Kind::Interrupted, "Ctrl-C"), &orders(), 2).hint.is_some());
     }
 }

@@ -21,7 +21,7 @@ pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> R
 }
 
 /// Maximum size of a file: more than a controller can store.
-const MOST: u64 = 256 << 20;
+const MAX_FILE_SIZE: u64 = 256 << 20;
 
 fn load(path: &Path) -> Result<Start, Failure> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
@@ -29,7 +29,7 @@ fn load(path: &Path) -> Result<Start, Failure> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let read = |name: &str| {
         let path = folder.join(name);
-        files::read(&path, MOST).map_err(|error| format!("{}: {error}", path.display()))
+        files::read(&path, MAX_FILE_SIZE).map_err(|error| format!("{}: {error}", path.display()))
     };
     Start::parse(&text, read).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
