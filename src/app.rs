@@ -1,21 +1,21 @@
 //! Command line program: from arguments to an exit code.
 
-mod assigned;
+mod assignments;
 mod batch;
 mod complete;
 mod flags;
 #[cfg(test)]
 mod gate_tests;
-mod misplaced;
-mod named;
+mod line_words;
+mod name_lookup;
 mod parser;
 mod picker;
-mod prepared;
+mod prepare;
 mod repl;
-mod respelled;
+mod spellings;
+mod suggestions;
 mod teach;
-mod typed;
-mod words;
+mod typed_line;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -26,7 +26,7 @@ use clap::ValueEnum as _;
 use clap::builder::StyledStr;
 
 use self::parser::{Parser, Refusal};
-use self::prepared::{Invocation, PreparedCommand};
+use self::prepare::{Invocation, PreparedCommand};
 use crate::cli::{Cli, Globals, Words};
 use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::RunError;
@@ -54,19 +54,19 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let mut args = with_family(args);
     if let Some(version) = parser::version(&args) {
         let screen = Screen::new(Format::Table, ColorChoice::Never, false, 0);
-        return exit(screen.data(&version).map_err(|failure| tell(&screen, failure.into())));
+        return exit(screen.data(&version).map_err(|failure| report_failure(&screen, failure.into())));
     }
     let mut parser = Parser::default();
     let parsed = loop {
-        let refusal = match named::parse(&mut parser, &args, None, false) {
+        let refusal = match name_lookup::parse(&mut parser, &args, None, false) {
             Err(refusal) => refusal,
             parsed => break parsed,
         };
-        match picker::completed(&args, &refusal) {
+        match picker::complete_line(&args, &refusal) {
             Some(Ok(line)) => args = line,
             Some(Err(stopped)) => {
                 let screen = Screen::new(Format::Table, ColorChoice::Never, false, 0);
-                return exit(Err(tell(&screen, stopped)));
+                return exit(Err(report_failure(&screen, stopped)));
             }
             None => break Err(refusal),
         }
@@ -79,17 +79,17 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
             return exit(refuse(&args, &refusal, false, pager));
         }
     };
-    let format = prepared::format_of_environment(&cli);
+    let format = prepare::format_of_environment(&cli);
     if let Ok(format) = &format {
         cli.globals.format = cli.globals.format.or(*format);
     }
     let screen = screen(&cli.globals);
     screen.tells_the_end();
-    files::before_drafts(catch_interrupts);
+    files::set_draft_hook(catch_interrupts);
     if let Err(failure) = format {
-        return exit(Err(tell(&screen, failure.into())));
+        return exit(Err(report_failure(&screen, failure.into())));
     }
-    exit(on_this_thread(run(cli)).map_err(|stopped| tell(&screen, stopped)))
+    exit(on_this_thread(run(cli)).map_err(|stopped| report_failure(&screen, stopped)))
 }
 
 fn exit(done: Result<(), Kind>) -> ExitCode {
@@ -113,7 +113,7 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
 async fn run(cli: Cli) -> Result<(), RunError> {
     let Words { globals, command } = cli;
     match Invocation::from(command) {
-        Invocation::Task(task) => Box::pin(PreparedCommand::new(globals, None, task, None)?.go()).await,
+        Invocation::Task(task) => Box::pin(PreparedCommand::new(globals, None, task, None)?.run()).await,
         Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
         Invocation::Prompt(prefix) => Box::pin(repl::run(globals, prefix)).await,
         Invocation::Teach(teach) => Box::pin(teach::run(globals, teach)).await,
@@ -124,7 +124,7 @@ async fn run(cli: Cli) -> Result<(), RunError> {
 
 /// Runs the command on this thread.
 fn on_this_thread(done: impl Future<Output = Result<(), RunError>>) -> Result<(), RunError> {
-    has_room()?;
+    check_descriptors()?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().context("start")?;
     let done = runtime.block_on(done);
     // A thread that waits for stdin or a name server must not delay the exit.
@@ -134,16 +134,17 @@ fn on_this_thread(done: impl Future<Output = Result<(), RunError>>) -> Result<()
 
 /// File descriptors that the simplest command needs.
 #[cfg(unix)]
-const ROOM: usize = 20;
+const NEEDED_DESCRIPTORS: usize = 20;
 
 /// Checks that enough file descriptors are available, because the runtime and the signal handler would panic without
 /// them.
 #[cfg(unix)]
-fn has_room() -> Result<(), Failure> {
-    let pairs: Result<Vec<_>, _> = (0..ROOM / 2).map(|_| std::os::unix::net::UnixStream::pair()).collect();
+fn check_descriptors() -> Result<(), Failure> {
+    let pairs: Result<Vec<_>, _> =
+        (0..NEEDED_DESCRIPTORS / 2).map(|_| std::os::unix::net::UnixStream::pair()).collect();
     pairs.map(|_| ()).map_err(|error| {
         Failure::io("start", &error)
-            .hint(format!("too few open files are allowed: {ROOM} more are needed. See `ulimit -n`"))
+            .hint(format!("too few open files are allowed: {NEEDED_DESCRIPTORS} more are needed. See `ulimit -n`"))
     })
 }
 
@@ -165,7 +166,7 @@ fn screen(globals: &Globals) -> Screen {
 }
 
 /// Prints a failure once, in the requested format. Returns its kind.
-fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind {
+fn report_failure(screen: &Screen, RunError { failure, envelope, is_reported: told }: RunError) -> Kind {
     let kind = failure.kind;
     if !told && kind != Kind::PipeClosed {
         if screen.is_json() && !matches!(kind, Kind::Halted(_)) {
@@ -179,25 +180,25 @@ fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind
 
 /// Prints the result of the parser: help, version and lists of verbs to stdout, errors to stderr; as JSON if requested.
 fn refuse(args: &[OsString], refusal: &Refusal, is_json: bool, pager: bool) -> Result<(), Kind> {
-    let is_json = is_json || wants_json(args).unwrap_or_else(prepared::wants_json);
+    let is_json = is_json || wants_json(args).unwrap_or_else(prepare::wants_json);
     let format = if is_json { Format::Json } else { Format::Table };
     let screen = Screen::new(format, color(args), false, 0).with_pager(pager);
     match refusal {
         // A noun without a verb prints its list of verbs, except for JSON.
-        Refusal::Verb(text, _) if !is_json => read(&screen, text),
-        Refusal::Text(text) => read(&screen, text),
+        Refusal::Verb(text, _) if !is_json => print_text(&screen, text),
+        Refusal::Text(text) => print_text(&screen, text),
         Refusal::Mistake(error) if !is_json => {
             screen.usage(&error.render());
             Err(Kind::Usage)
         }
-        _ => Err(tell(&screen, refusal.failure().into())),
+        _ => Err(report_failure(&screen, refusal.failure().into())),
     }
 }
 
 /// Prints a text to stdout, with the pager.
-fn read(screen: &Screen, text: &StyledStr) -> Result<(), Kind> {
+fn print_text(screen: &Screen, text: &StyledStr) -> Result<(), Kind> {
     let text = if screen.stdout_color() { text.ansi().to_string() } else { text.to_string() };
-    screen.read(&text).map_err(|failure| tell(screen, failure.into()))
+    screen.read(&text).map_err(|failure| report_failure(screen, failure.into()))
 }
 
 /// Color option of a line that could not be parsed.

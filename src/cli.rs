@@ -1,4 +1,4 @@
-//! The command line: global flags and the first word.
+//! Command line: global flags and the first word.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches, Parser, Subcommand};
 
-use crate::command::face::words::Typed;
+use crate::command::face::family_command::FamilyLine;
 use crate::command::families::{self, FAMILIES};
 use crate::command::fleet::teach::Teach;
 use crate::command::frame::batch::Batch;
@@ -16,11 +16,11 @@ use crate::controller::text::Encoding;
 use crate::gate::OnInterrupt;
 use crate::output::{ColorChoice, Format};
 use crate::settings::duration;
-use crate::settings::target::{Family, Given};
+use crate::settings::target::{Family, TargetArgument};
 
-/// What `-V` says.
+/// Output of `-V`.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// What `--version` says.
+/// Output of `--version`.
 pub const LONG_VERSION: &str = concat!(
     env!("CARGO_PKG_VERSION"),
     "\ncommit: ",
@@ -74,12 +74,12 @@ pub enum Top {
     Common(common::Common),
 }
 
-/// The word of a family, and what stands behind it.
+/// Name of a family and the words after it.
 pub struct FamilyWord {
-    /// Which family.
+    /// Family.
     pub family: Family,
-    /// What stands behind it.
-    pub typed: Typed,
+    /// Words after it.
+    pub typed: FamilyLine,
 }
 
 impl fmt::Debug for FamilyWord {
@@ -108,7 +108,7 @@ impl FromArgMatches for FamilyWord {
     }
 
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
-        let (family, mut matches) = families::named(matches)?;
+        let (family, mut matches) = families::by_name(matches)?;
         Ok(Self { family, typed: families::of(family).read(&mut matches)? })
     }
 
@@ -127,7 +127,7 @@ pub struct Globals {
     pub sim: bool,
     /// Controller by URL, such as udp://192.168.1.31, or by 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
     #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
-    pub target: Option<Given>,
+    pub target: Option<TargetArgument>,
     /// Robots of the inventory: names or patterns with commas (ARMCTL_ROBOT)
     #[arg(short, long, global = true, value_name = "NAME", value_delimiter = ',', add = ValueKind::Robot, help_heading = "Which robot")]
     pub robot: Vec<String>,
@@ -243,8 +243,8 @@ pub struct Globals {
 }
 
 impl Globals {
-    /// The flags of a line within those that were given to all lines. What a line says of one thing replaces all that was
-    /// said of it: a robot, a format, how much to tell.
+    /// Flags of one line, completed with the flags for all lines. A flag of the line for the robot, the format or the
+    /// verbosity replaces all flags of that group.
     #[must_use]
     pub fn within(self, all: &Self) -> Self {
         let names_robot = self.names_robot();
@@ -287,28 +287,28 @@ impl Globals {
         }
     }
 
-    /// Whether they say which robot.
+    /// Whether a flag selects a robot.
     pub fn names_robot(&self) -> bool {
         self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty()
     }
 
-    /// The same for a command that is about the inventory, whatever robot was chosen.
+    /// The flags without a robot, for commands about the inventory.
     #[must_use]
     pub fn without_robot(self) -> Self {
         Self { sim: false, target: None, robot: Vec::new(), all: false, tag: Vec::new(), ..self }
     }
 
-    /// When to use colour.
+    /// Use of color.
     pub fn color(&self) -> ColorChoice {
         if self.no_color { ColorChoice::Never } else { self.color }
     }
 
-    /// Whether they say how to print data.
+    /// Whether a flag sets the output format.
     pub fn says_format(&self) -> bool {
         self.format.is_some() || self.json || self.jq.is_some()
     }
 
-    /// The flags that say whom a line is for, as words.
+    /// Robot flags as words of a command line.
     pub fn whom(&self) -> Vec<String> {
         let named = |flag: &str, value: String| vec![flag.to_owned(), value];
         let mut words = Vec::new();

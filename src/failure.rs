@@ -1,4 +1,4 @@
-//! How a command can fail, and the only place with exit numbers.
+//! Failures of commands, and their exit codes.
 
 use std::fmt;
 
@@ -9,32 +9,32 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// The reader of stdout went away: not a failure at all.
+    /// The reader of stdout has closed the pipe; not a failure.
     PipeClosed,
-    /// A fault of this program, or of a local file or disk.
+    /// Internal error, or a failure of a local file or disk.
     Local,
-    /// A command line, inventory or value that cannot be meant.
+    /// Invalid command line, inventory or value.
     Usage,
-    /// The controller said no.
+    /// The controller refused the request.
     Refused,
-    /// Nobody answered, or the port is absent or busy.
+    /// No answer, or the port is absent or busy.
     NoAnswer,
-    /// An answer that makes no sense.
+    /// Malformed or unexpected answer.
     Malformed,
-    /// A state-changing request went out and its answer was lost.
+    /// A state-changing request was sent, and its answer was lost.
     OutcomeUnknown,
-    /// Refused on this side, before anything was sent.
+    /// Rejected by armctl before anything was sent.
     Rejected,
     /// The condition of `--until` or `--check` was not met.
     ConditionNotMet,
-    /// Some robots or items failed, some did not.
+    /// Some robots or items failed, others succeeded.
     Mixed,
     /// Ctrl-C.
     Interrupted,
-    /// A filter ended by itself, with this exit code: `halt_error` of jq.
+    /// A filter ended with this exit code (`halt_error` of jq).
     #[serde(skip)]
     Halted(u8),
-    /// The answer to a question that a dry run does not ask. It ends a command there, and is never shown.
+    /// A dry run has no answer to continue with. It ends the command and is never printed.
     #[serde(skip)]
     DryRun,
 }
@@ -65,18 +65,18 @@ impl Kind {
     }
 }
 
-/// Ends the process at once, with the exit code of `kind`, whatever other threads do.
+/// Ends the process at once with the exit code of `kind`, without waiting for other threads.
 #[expect(clippy::exit, reason = "for those who must not wait for the rest of the process")]
 pub fn end(kind: Kind) -> ! {
     std::process::exit(kind.exit().into())
 }
 
-/// A failed command: what happened, and what to do about it.
+/// Failure of a command, with a message and a hint.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {
     /// The class.
     pub kind: Kind,
-    /// The controller's own code, such as `0x2060`.
+    /// Code from the controller, such as `0x2060`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub code: Option<String>,
@@ -94,13 +94,13 @@ impl Failure {
         Self { kind, code: None, message: message.into(), hint: None }
     }
 
-    /// A mistake on the command line or in a file of settings.
+    /// A mistake on the command line or in a settings file.
     pub fn usage(message: impl Into<String>) -> Self {
         let message = message.into();
         Self { hint: decimal_point(&message), ..Self::new(Kind::Usage, message) }
     }
 
-    /// A fault of this program or of the local machine.
+    /// An internal error, or a failure of the local machine.
     pub fn local(message: impl Into<String>) -> Self {
         Self::new(Kind::Local, message)
     }
@@ -127,7 +127,7 @@ impl Failure {
         }
     }
 
-    /// Adds what to do.
+    /// Adds a hint.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         let number = (self.kind == Kind::Usage).then(|| decimal_point(&self.message)).flatten();
@@ -143,7 +143,7 @@ impl Failure {
     }
 }
 
-/// What to type instead of a number with a decimal comma, if that is what a message refuses: `'2,5' is not a number`.
+/// Hint for a message that refuses a number with a decimal comma: `'2,5' is not a number`.
 pub fn decimal_point(message: &str) -> Option<String> {
     let quoted = message.split('\'').zip(message.split('\'').skip(1)).skip(1).step_by(2);
     let refused = quoted.filter(|(_, after)| after.starts_with(" is no") && !after.contains("whole"));
@@ -157,7 +157,7 @@ pub fn decimal_point(message: &str) -> Option<String> {
     numbers.next()
 }
 
-/// An I/O error without the `(os error 13)` that tells a technician nothing.
+/// Text of an I/O error without `(os error 13)`.
 pub fn plain(error: &std::io::Error) -> String {
     crate::files::plain(error).to_lowercase()
 }
@@ -170,8 +170,8 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// What is only told, and not looked at on its way, comes as an [`anyhow::Error`]: the contexts stand before the message of
-/// the [`Failure`] or the I/O error inside, whose kind and hint stay. Anything else is a local fault.
+/// Converts an error with contexts. The contexts precede the message of the inner [`Failure`] or I/O error; its kind and
+/// hint stay the same. Any other error is a local failure.
 impl From<anyhow::Error> for Failure {
     fn from(error: anyhow::Error) -> Self {
         let mut context = String::new();

@@ -1,9 +1,9 @@
-//! What stands between a typed command and a machine that can hurt someone.
+//! Safety gate: authorization of a command before anything is sent to a robot.
 //!
-//! A command names the most that it does ([`Risk`]); the one loop that runs all commands has it pass here before anything
-//! is sent. What it may then send is a [`Grant`], which its link checks before every frame: a command that does more than
-//! it was let through for cannot. What overwrites something is let through when the command knows what it overwrites and
-//! has that confirmed.
+//! A command declares its maximum risk ([`Risk`]). The loop that runs all commands checks it here before anything is
+//! sent. The command then has a [`Grant`], and its link checks each frame against that grant. So a command cannot do
+//! more than was authorized. A command that overwrites data raises its grant later, when it knows what it overwrites
+//! and the user has confirmed it.
 
 pub use crate::client::Grant;
 use crate::client::NotAuthorized;
@@ -12,7 +12,7 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::{Origin, Robot};
 
-/// What Ctrl-C does to a motion.
+/// Effect of Ctrl-C on a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum OnInterrupt {
     /// Stop the robot, then disconnect.
@@ -22,33 +22,33 @@ pub enum OnInterrupt {
     Leave,
 }
 
-/// How a yes is given to a command that needs one.
+/// Type of confirmation that a command needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Confirmation {
     /// A question before anything is sent.
     #[default]
     Question,
-    /// This word, typed, before anything is sent: what is done cannot be undone.
+    /// This word must be typed before anything is sent, because the effect cannot be undone.
     Word(&'static str),
-    /// A question of the command's own, once it knows what it replaces.
+    /// The command asks the question itself, when it knows what it replaces.
     WhenKnown,
 }
 
-/// What the gate is told about a command.
+/// Declaration of a command to the gate.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Intent {
-    /// The most that it does.
+    /// Maximum risk.
     pub risk: Risk,
     /// Completes "This will …": `start job COUNT`.
     pub text: String,
-    /// How a yes is given.
+    /// Type of confirmation.
     pub confirmation: Confirmation,
     /// Whether it stops the robot, which is always allowed.
     pub is_stop: bool,
 }
 
 impl Intent {
-    /// What may leave before anything was confirmed on the way.
+    /// Risk that is granted before the command has asked a question itself.
     pub fn granted_at_first(&self) -> Risk {
         match self.confirmation {
             Confirmation::WhenKnown => self.risk.min(Risk::Write),
@@ -64,7 +64,7 @@ impl From<NotAuthorized> for Failure {
     }
 }
 
-/// What the operator allowed beforehand.
+/// Permissions from the command line.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Gate {
     /// `--yes`.
@@ -76,13 +76,16 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// Whether a person must be asked; an error if nobody can be, or if it is refused whatever anybody says.
+    /// Whether a question is needed.
+    ///
+    /// # Errors
+    /// A question is needed but not possible, or the robot is read-only.
     pub fn must_ask(&self, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<bool, Failure> {
         self.admits(robot, intent)?;
         if !self.needs_yes(robot, intent.risk) {
             return Ok(false);
         }
-        // What is replaced is not known yet: perhaps nothing is. A motion is one, whatever is read before.
+        // The command may find that it replaces nothing. A motion always needs a question.
         let may_be_nothing = intent.confirmation == Confirmation::WhenKnown && intent.risk < Risk::Motion;
         if !screen.can_ask() && !may_be_nothing {
             return Err(unasked(robot, intent.risk, &intent.text));
@@ -90,7 +93,7 @@ impl Gate {
         Ok(true)
     }
 
-    /// Refuses to change a read-only robot. To stop one is always allowed.
+    /// Refuses to change a read-only robot. A stop is always allowed.
     fn admits(&self, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
         if intent.risk == Risk::Read || self.dry_run || intent.is_stop || !robot.read_only.value {
             return Ok(());
@@ -98,21 +101,23 @@ impl Gate {
         let way = |name: &str| {
             format!("it is so on purpose; where it may be changed: `armctl robots set {name} read_only=off`")
         };
-        Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(match &robot.bound_by {
-            Some(entry) => format!("its address is that of '{entry}' in robots.toml; {}", way(entry)),
-            None if robot.read_only.origin == Origin::Defaults => {
-                "[defaults] in robots.toml make it so, on purpose; `armctl robots edit` changes them".to_owned()
-            }
-            None => way(&robot.name),
-        }))
+        Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(
+            match &robot.read_only_entry {
+                Some(entry) => format!("its address is that of '{entry}' in robots.toml; {}", way(entry)),
+                None if robot.read_only.origin == Origin::Defaults => {
+                    "[defaults] in robots.toml make it so, on purpose; `armctl robots edit` changes them".to_owned()
+                }
+                None => way(&robot.name),
+            },
+        ))
     }
 
-    /// Whether a yes is needed, and was not given on the command line.
+    /// Whether a confirmation is needed and `--yes` is missing.
     pub fn needs_yes(&self, robot: &Robot, risk: Risk) -> bool {
         risk >= Risk::Destroy && !self.yes && !self.dry_run && !robot.target.value.is_simulated()
     }
 
-    /// Refuses to move, or to overwrite things on, robots that were not each named, where there are several.
+    /// Refuses to move several robots, or to overwrite data on them, unless the line names each of them.
     pub fn pass_many(robots: &[(&Robot, Intent)], is_named: impl Fn(&Robot) -> bool) -> Result<(), Failure> {
         let unnamed =
             robots.iter().filter(|(robot, intent)| intent.risk >= Risk::Destroy && !intent.is_stop && !is_named(robot));
@@ -127,7 +132,7 @@ impl Gate {
     }
 }
 
-/// What is deleted or overwritten: in one line each, old and new.
+/// Data that a command deletes or overwrites, for the confirmation.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Change {
     /// Completes "This will …": `overwrite 2 points`.
@@ -137,7 +142,7 @@ pub struct Change {
     is_empty: bool,
 }
 
-/// Lines of a question; the rest is counted.
+/// Maximum number of items in a question; the others are counted.
 const SHOWN: usize = 12;
 
 impl Change {
@@ -146,26 +151,26 @@ impl Change {
         Self { text: text.into(), ..Self::default() }
     }
 
-    /// Nothing that a person wrote or taught is deleted or overwritten.
+    /// A change that overwrites no user data.
     pub fn nothing() -> Self {
         Self { is_empty: true, ..Self::default() }
     }
 
-    /// Something that is replaced.
+    /// Adds a value that is replaced.
     #[must_use]
     pub fn replaces(mut self, what: &str, old: &str, new: &str) -> Self {
         self.items.push(format!("{what}: {old} -> {new}"));
         self
     }
 
-    /// Something that is deleted, or overwritten as a whole.
+    /// Adds an object that is deleted or overwritten completely.
     #[must_use]
     pub fn item(mut self, what: impl Into<String>) -> Self {
         self.items.push(what.into());
         self
     }
 
-    /// What follows from it: `a power cycle is needed`.
+    /// Adds a consequence: `a power cycle is needed`.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
@@ -177,7 +182,7 @@ impl Change {
         self.is_empty
     }
 
-    /// All of it, for a person to read before the question.
+    /// Lines to print before the question.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![format!("This will {}{}", self.text, if self.items.is_empty() { "." } else { ":" })];
         lines.extend(self.items.iter().take(SHOWN).map(|item| format!("  {item}")));
@@ -188,7 +193,7 @@ impl Change {
         lines
     }
 
-    /// All of it in one line.
+    /// The change in one line.
     pub fn in_a_line(&self) -> String {
         match &self.items[..] {
             [] => self.text.clone(),
@@ -198,12 +203,12 @@ impl Change {
     }
 }
 
-/// What was asked about is not so any more.
+/// Failure because the data changed while the question was open.
 pub fn outdated(message: impl Into<String>) -> Failure {
     Failure::new(Kind::Rejected, message).hint("somebody else is at work there: look, then repeat the command")
 }
 
-/// Nobody can be asked.
+/// Failure because a question is needed but not possible.
 pub fn unasked(robot: &Robot, risk: Risk, text: &str) -> Failure {
     let when = if risk == Risk::Motion { " when nobody is in the cell" } else { "" };
     Failure::new(Kind::Rejected, format!("not confirmed: on {} this would {text}", robot.label()))

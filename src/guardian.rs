@@ -1,11 +1,11 @@
 //! Guardian process: stops the robot when the process that moves it dies or hangs.
 //!
-//! The guardian is this program again, in a process group of its own, with the words of the family's stop command. It first
-//! reads a pipe from the process that it guards, which writes a byte before a motion is sent, a beat from then on, and a
-//! last byte at its end. The pipe closes with the process, however that ends. A process that does not beat is killed: then
-//! its serial port, its TCP connection and its place in a session are free for the stop.
+//! The guardian is another instance of this program in its own process group, with the arguments of the family's stop
+//! command. It reads a pipe from the guarded process. That process writes a byte before it sends a motion, then
+//! heartbeats, and a last byte at its end. The pipe closes when the process ends for any reason. A process without
+//! heartbeats is killed. This frees its serial port, its TCP connection and its place in a session for the stop.
 //!
-//! The holder of a session has one as well, for what clients move: who holds the link and who moves the robot may end at
+//! A session process also has a guardian for the motions of its clients, because the session and the client can end at
 //! the same time.
 
 use std::cell::RefCell;
@@ -25,27 +25,28 @@ use crate::files::this_program;
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::Robot;
 
-/// Pause between two beats.
+/// Heartbeat interval.
 const BEAT: Duration = Duration::from_millis(500);
-/// A process without a beat for so long counts as dead.
+/// A process without a heartbeat for this time counts as dead.
 const DEAD: Duration = Duration::from_secs(2);
 
-/// How long a stop is tried, and the pause after one that failed.
+/// Time limit for the attempts to stop, and the pause after a failed attempt.
 const CONFIRMED_WITHIN: Duration = Duration::from_secs(30);
 const AGAIN_AFTER: Duration = Duration::from_millis(200);
 
-/// First word of a guardian that stops the robot.
+/// First argument of a guardian that stops the robot.
 const STOPS: &str = "--guardian=stop";
-/// First word of a guardian that ends a process that hangs: the session, or the adapter of the fieldbus, then stops the robot.
+/// First argument of a guardian that only kills a hanging process. The session, or the fieldbus adapter, then stops the
+/// robot.
 const ENDS: &str = "--guardian=end";
 
-/// What the guarded process writes.
+/// Bytes from the guarded process.
 const MOTION: u8 = b'm';
 const REST: u8 = b'r';
 const ALIVE: u8 = b'.';
 const DONE: u8 = b'q';
 
-/// This program with the words of the command that stops a robot, of which `words` stand behind that of the family.
+/// This program with the arguments of the command that stops a robot. `words` follow the family name.
 fn stop_command(robot: &Robot, words: &[&str], first: Option<&str>) -> io::Result<Command> {
     let mut command = Command::new(this_program()?);
     command.args(first).args(["--quiet", "-t", robot.target.value.url(), robot.family.name()]);
@@ -56,7 +57,7 @@ fn stop_command(robot: &Robot, words: &[&str], first: Option<&str>) -> io::Resul
     Ok(command)
 }
 
-/// Stops a robot in a process of its own, through the session that holds its link. `say` is told what came of it.
+/// Stops a robot in a separate process, through the session that holds its link. Passes the result to `say`.
 pub fn stop_orphan(robot: &Robot, words: &[&str], say: impl Fn(&str) + Send + 'static) {
     let command = stop_command(robot, words, None);
     thread::spawn(move || match command.map_err(|error| error.to_string()).and_then(|mut stop| confirm(&mut stop)) {
@@ -65,11 +66,11 @@ pub fn stop_orphan(robot: &Robot, words: &[&str], say: impl Fn(&str) + Send + 's
     });
 }
 
-/// Runs the command that stops a robot until it succeeds: a stop twice is a stop once, and another program may have taken
-/// the line from it.
+/// Runs the command that stops a robot until it succeeds. A repeated stop does no harm, and another program may block the
+/// link for a moment.
 ///
 /// # Errors
-/// What the last one said.
+/// The error of the last attempt.
 fn confirm(stop: &mut Command) -> Result<(), String> {
     let until = Instant::now() + CONFIRMED_WITHIN;
     loop {
@@ -89,7 +90,7 @@ fn unstopped(why: &str) -> String {
     format!("the robot may still move, use the pendant or the emergency stop: {why}")
 }
 
-/// Starts a guardian, and has the pipe that it reads.
+/// Starts a guardian. Returns the pipe to it.
 fn spawn(robot: &Robot, words: &[&str], first: &str) -> io::Result<(Pipe, Child)> {
     let mut command = stop_command(robot, words, Some(first))?;
     #[cfg(not(unix))]
@@ -109,26 +110,26 @@ pub struct Guardian {
 }
 
 impl Guardian {
-    /// Starts one. `stops`: it stops the robot itself, because no session and no adapter does.
+    /// Starts a guardian. `stops`: it stops the robot itself, because no session or adapter does so.
     pub fn start(robot: &Robot, words: &[&str], stops: bool) -> Result<Self, Failure> {
         let spawned = spawn(robot, words, if stops { STOPS } else { ENDS });
         let (pipe, child) = spawned.context("the guardian of the motion could not be started; nothing was sent")?;
         Ok(Self { pipe, child: Some(child) })
     }
 
-    /// What is to be called before a motion is sent.
+    /// Function to call before a motion is sent.
     pub fn before_motion(&self) -> impl Fn() + Send + Sync + 'static {
         let pipe = Arc::clone(&self.pipe);
         move || write(&pipe, MOTION)
     }
 
-    /// Does the work, and beats.
+    /// Runs the work with heartbeats.
     pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
         beating(work, || write(&self.pipe, ALIVE)).await
     }
 }
 
-/// Does the work, and beats.
+/// Runs the work with heartbeats.
 async fn beating<T>(work: impl Future<Output = T>, beat: impl Fn()) -> T {
     let beats = async {
         let mut beats = interval(BEAT);
@@ -140,42 +141,42 @@ async fn beating<T>(work: impl Future<Output = T>, beat: impl Fn()) -> T {
     };
     tokio::select! {
         done = work => done,
-        () = beats => unreachable!("it beats without end"),
+        () = beats => unreachable!("the heartbeats never end"),
     }
 }
 
-/// The work has come to its end.
+/// Reports the end of the work.
 impl Drop for Guardian {
     fn drop(&mut self) {
         write(&self.pipe, DONE);
         self.pipe.lock().unwrap_or_else(PoisonError::into_inner).take();
-        // Nobody waits for it, but it must not stay as a zombie.
+        // Collects its exit status, so that no zombie process remains.
         if let Some(mut child) = self.child.take() {
             thread::spawn(move || child.wait());
         }
     }
 }
 
-/// Guards what clients of a session move. It stops the robot when the holder ends, however that comes about, while a client
-/// of another process moves it.
+/// Guards the motions of session clients. It stops the robot if the session process ends while a client in another process
+/// moves it.
 #[derive(Debug)]
 pub struct HolderGuardian {
     robot: Robot,
     words: &'static [&'static str],
-    /// Nothing before the first motion.
+    /// `None` before the first motion.
     started: RefCell<Option<(Pipe, Child)>>,
 }
 
 impl HolderGuardian {
-    /// Of the holder of this robot's link.
+    /// Creates the guardian of a session.
     pub fn new(robot: &Robot, words: &'static [&'static str]) -> Self {
         Self { robot: robot.clone(), words, started: RefCell::default() }
     }
 
-    /// Is told that a client moves the robot, or that none does any more.
+    /// Notes whether a client moves the robot. Starts the guardian at the first motion.
     ///
     /// # Errors
-    /// In words, when the first motion has no guardian.
+    /// Text for the user, if the guardian cannot be started.
     pub fn moves(&self, is_moving: bool) -> Result<(), String> {
         let mut started = self.started.borrow_mut();
         if started.is_none() && is_moving {
@@ -190,7 +191,7 @@ impl HolderGuardian {
         Ok(())
     }
 
-    /// Does the work, and beats.
+    /// Runs the work with heartbeats.
     pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
         let beat = || {
             if let Some((pipe, _)) = &*self.started.borrow() {
@@ -202,14 +203,14 @@ impl HolderGuardian {
 }
 
 fn write(pipe: &Mutex<Option<ChildStdin>>, byte: u8) {
-    // A guardian that is gone, as somebody killed it, cannot be told.
+    // The guardian may have been killed.
     if let Some(pipe) = &mut *pipe.lock().unwrap_or_else(PoisonError::into_inner) {
         let _ = pipe.write_all(&[byte]);
     }
 }
 
-/// Serves as the guardian, if the first argument says so: waits for the end of the guarded process, and has the stop sent
-/// that the other arguments name. Whether the robot stands, or nothing moved it.
+/// Runs as a guardian, if the first argument says so: waits for the end of the guarded process, and then runs the stop
+/// command in the other arguments. An error if the robot may still move.
 pub fn serve(args: &[OsString]) -> Option<Result<(), Kind>> {
     let stops = match args.get(1)?.to_str()? {
         STOPS => true,
@@ -231,7 +232,7 @@ fn say(text: &str) {
     Screen::new(Format::Table, ColorChoice::Never, false, 0).note(text);
 }
 
-/// Waits for the end of the guarded process; whether a motion was under way.
+/// Waits for the end of the guarded process. Returns whether a motion was in progress.
 fn outlives_motion() -> bool {
     let guarded = guarded();
     let (heard, bytes) = channel();
@@ -272,7 +273,7 @@ fn guarded() -> Option<rustix::process::Pid> {
     rustix::process::getppid()
 }
 
-/// Kills the guarded process, unless it has ended and its number may be another's.
+/// Kills the guarded process, unless it has ended, because another process may have its number then.
 #[cfg(unix)]
 fn kill(guarded: Option<rustix::process::Pid>) -> bool {
     use rustix::process::{Signal, getppid, kill_process};
@@ -280,7 +281,7 @@ fn kill(guarded: Option<rustix::process::Pid>) -> bool {
     guarded.filter(|_| getppid() == guarded).is_some_and(|guarded| kill_process(guarded, Signal::KILL).is_ok())
 }
 
-/// What tells a guardian whom it guards, where the system does not.
+/// Variable with the id of the guarded process, on systems without parent process ids.
 #[cfg(not(unix))]
 const GUARDED: &str = "ARMCTL_GUARDED";
 
@@ -289,7 +290,7 @@ fn guarded() -> Option<u32> {
     std::env::var(GUARDED).ok()?.parse().ok()
 }
 
-/// Kills the guarded process, which lives: its pipe is open.
+/// Kills the guarded process. Its pipe is open, so its id is still valid.
 #[cfg(not(unix))]
 fn kill(guarded: Option<u32>) -> bool {
     let Some(guarded) = guarded else { return false };

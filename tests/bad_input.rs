@@ -1,5 +1,5 @@
-//! Mistakes of the operator and of everything around him, through the built binary: the right exit code, a message that
-//! says what to do, and nothing lost.
+//! Mistakes of the operator and problems of the environment, through the built binary: exit code, message with a hint,
+//! no lost data.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -9,7 +9,7 @@ use std::process::{Child, Command, Output, Stdio};
 
 use serde_json::Value;
 
-/// Runs `armctl` in an empty home folder, with stdin closed and no environment of its own.
+/// Runs `armctl` in an empty home folder, with closed stdin and an empty environment.
 fn armctl(home: &Path, words: &str) -> Output {
     command(home, words).output().expect("the binary runs")
 }
@@ -35,7 +35,7 @@ fn succeeds(output: &Output) {
 }
 
 #[test]
-fn a_broken_inventory_does_not_keep_anybody_from_reading_the_help_on_it() {
+fn help_works_with_a_broken_inventory() {
     let home = tempfile::tempdir().unwrap();
     std::fs::write(home.path().join("robots.toml"), "garbage here").unwrap();
     let output = armctl(home.path(), "--config robots.toml yerc status");
@@ -51,7 +51,7 @@ fn a_broken_inventory_does_not_keep_anybody_from_reading_the_help_on_it() {
 }
 
 #[test]
-fn no_time_at_all_is_no_timeout() {
+fn rejects_a_timeout_of_zero() {
     let home = tempfile::tempdir().unwrap();
     fails(&armctl(home.path(), "--sim yerc var set B0=1 --timeout 0"), 2, &["is zero"]);
     fails(&armctl(home.path(), "--sim yerc status --watch 0 --count 2"), 2, &["is zero"]);
@@ -61,7 +61,7 @@ fn no_time_at_all_is_no_timeout() {
 }
 
 #[test]
-fn a_line_that_does_not_parse_fails_in_the_format_it_asks_for() {
+fn reports_syntax_errors_in_the_requested_format() {
     let home = tempfile::tempdir().unwrap();
     for format in ["--json", "-ojsonl", "--output=json", "-qo json"] {
         let output = armctl(home.path(), &format!("--sim yerc var set B0=256 {format}"));
@@ -72,7 +72,7 @@ fn a_line_that_does_not_parse_fails_in_the_format_it_asks_for() {
     }
 }
 
-/// A simulator on real ports that ends with the test.
+/// A simulator on real ports, until the end of the test.
 struct Server {
     process: Child,
     url: String,
@@ -106,7 +106,7 @@ fn signal(process: &Child, name: &str) {
     assert!(Command::new("kill").arg(format!("-{name}")).arg(process.id().to_string()).status().unwrap().success());
 }
 
-/// Whether this process was started with SIGHUP, the first signal, ignored; where that cannot be seen, it is not.
+/// Whether this process was started with SIGHUP (signal 1) ignored; `false` if unknown.
 #[cfg(unix)]
 fn is_hangup_ignored() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -116,7 +116,7 @@ fn is_hangup_ignored() -> bool {
 
 #[cfg(unix)]
 #[test]
-fn whatever_ends_a_move_holds_the_robot_first() {
+fn every_end_of_a_move_holds_the_robot_first() {
     let home = tempfile::tempdir().unwrap();
     for name in ["INT", "TERM", "HUP"] {
         if name == "HUP" && is_hangup_ignored() {
@@ -138,7 +138,7 @@ fn whatever_ends_a_move_holds_the_robot_first() {
 
 #[cfg(unix)]
 #[test]
-fn a_watch_without_pause_ends_on_the_first_signal() {
+fn watch_without_pause_ends_on_the_first_signal() {
     let home = tempfile::tempdir().unwrap();
     let mut watch = command(home.path(), "--sim yerc status -o jsonl --watch 1ms")
         .stderr(Stdio::null())
@@ -148,14 +148,14 @@ fn a_watch_without_pause_ends_on_the_first_signal() {
     let mut lines = BufReader::new(watch.stdout.take().unwrap()).lines();
     lines.next().unwrap().unwrap();
     signal(&watch, "INT");
-    // Reading on keeps the pipe from filling up; it ends with the process.
+    // Continue to read, so that the pipe does not fill up. The thread ends with the process.
     assert!(lines.all(|line| line.is_ok()));
     assert_eq!(watch.wait().unwrap().code(), Some(130));
 }
 
 #[test]
-fn one_record_holds_every_run_of_a_watch() {
-    /// Packets in a capture file: its blocks of type 6.
+fn one_recording_contains_every_run_of_a_watch() {
+    /// Packets in a capture file (blocks of type 6).
     fn packets(record: &[u8]) -> usize {
         let word = |at: usize| u32::from_le_bytes(record[at..at + 4].try_into().unwrap());
         let (mut at, mut count) = (0, 0);
@@ -183,16 +183,16 @@ fn one_record_holds_every_run_of_a_watch() {
 }
 
 #[test]
-fn what_the_model_cannot_do_is_told_before_anybody_is_asked() {
+fn rejects_unsupported_commands_before_the_question() {
     let home = tempfile::tempdir().unwrap();
-    // Without --yes and without a terminal a motion that could be asked about fails with 7.
+    // Without --yes and without a terminal, a motion fails with exit code 7.
     let line = "yerc move joint --to 1,2,3,4,5,6 --speed 1% --group R8";
     fails(&armctl(home.path(), &format!("-t udp://127.0.0.1:9?model=fs100 {line}")), 2, &["robot number is 8"]);
     fails(&armctl(home.path(), &format!("-t udp://127.0.0.1:9?model=dx200 {line}")), 7, &["--yes"]);
 }
 
 #[test]
-fn existing_files_are_kept_with_one_exit_code() {
+fn keeps_existing_files_with_one_exit_code() {
     let home = tempfile::tempdir().unwrap();
     for (name, words) in
         [("v.csv", "yerc var dump v.csv"), ("TESTJOB.JBI", "yerc file get TESTJOB.JBI"), ("c", "yerc file cmos c")]
@@ -204,7 +204,7 @@ fn existing_files_are_kept_with_one_exit_code() {
 }
 
 #[test]
-fn control_characters_are_not_sent_to_a_display_or_as_a_name() {
+fn rejects_control_characters_in_texts_and_names() {
     let home = tempfile::tempdir().unwrap();
     for words in [["say", "A\x1b[2J"], ["say", "two\nlines"]] {
         let output = command(home.path(), "--sim yerc").args(words).output().unwrap();
@@ -216,14 +216,14 @@ fn control_characters_are_not_sent_to_a_display_or_as_a_name() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_behind_stdout_does_not_hide_what_was_done() {
+fn reports_the_result_if_stdout_is_full() {
     let home = tempfile::tempdir().unwrap();
     let full = || std::fs::File::options().write(true).open("/dev/full").unwrap();
     let output = command(home.path(), "--sim yerc servo on").stdout(full()).output().unwrap();
     fails(&output, 1, &["succeeded, but the report could not be written", "no space left"]);
     let output = command(home.path(), "--sim yerc status").stdout(full()).output().unwrap();
     fails(&output, 1, &["error: stdout: no space left"]);
-    // Of several files one is missing: that is the failure, whatever becomes of the report.
+    // One of several files is missing; this failure is reported also if the report cannot be written.
     let output =
         command(home.path(), "--sim yerc file get TESTJOB.JBI NOPE.JBI --json").stdout(full()).output().unwrap();
     fails(&output, 9, &["NOPE.JBI", "0xE29C"]);

@@ -1,5 +1,4 @@
-//! What is bounded: memory, files, filters, what a table or a CSV file may do, how long a process may be deaf. Each of it
-//! through the binary, with a limit of the system where one counts.
+//! Limits of memory, files, filters, tables and reaction time, through the binary, with limits of the operating system.
 #![cfg(unix)]
 
 use std::io::Write as _;
@@ -19,7 +18,7 @@ fn run(folder: &Path, words: &[&str]) -> Output {
     armctl(folder, words).output().expect("it runs")
 }
 
-/// The same with a limit of the shell's `ulimit`.
+/// Runs the command with a limit of the shell's `ulimit`.
 fn limited(folder: &Path, limit: &str, words: &[&str]) -> Output {
     let mut command = Command::new("sh");
     command.env_clear().env("HOME", folder).env("XDG_RUNTIME_DIR", folder).current_dir(folder).stdin(Stdio::null());
@@ -49,7 +48,8 @@ fn signal(child: &Child, name: &str) {
     assert!(Command::new("kill").args(["-s", name, &pid]).status().expect("kill runs").success());
 }
 
-/// A capture with raw IP packets of TCP from one end to the other, so many bytes in each, their IP length left to the card.
+/// A capture with raw IP packets of one TCP connection. Each has this many bytes; its IP length is 0, as with
+/// offloading.
 fn capture(path: &Path, packets: u32, content: &[u8]) {
     let mut file = std::io::BufWriter::new(std::fs::File::create(path).expect("it works here"));
     file.write_all(&[&0xA1B2_C3D4_u32.to_be_bytes()[..], &[0, 2, 0, 4], &[0; 12], &[0, 0, 0, 101]].concat())
@@ -68,9 +68,9 @@ fn capture(path: &Path, packets: u32, content: &[u8]) {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn many_small_messages_take_no_more_memory_than_they_are() {
+fn limits_the_memory_for_many_small_messages() {
     let folder = folder();
-    // 2,700 NOP messages of 24 bytes in each packet.
+    // Each packet has 2,700 NOP messages of 24 bytes.
     capture(&folder.path().join("nop.pcap"), 30, &vec![0; 24 * 2700]);
     let output = limited(folder.path(), "-v 500000", &["decode", "yrcx", "nop.pcap"]);
     ends(&output, 0, "");
@@ -79,9 +79,9 @@ fn many_small_messages_take_no_more_memory_than_they_are() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_capture_is_read_in_pieces() {
+fn reads_a_capture_in_pieces() {
     let folder = folder();
-    // What is of nobody: half a gigabyte, with room for a quarter.
+    // Packets of no family: half a gigabyte, with memory for a quarter.
     capture(&folder.path().join("large.pcap"), 8000, &vec![b'x'; 65_000]);
     for family in ["yerc", "yrcx", "toyo"] {
         let output = limited(folder.path(), "-v 250000", &["decode", family, "large.pcap"]);
@@ -91,7 +91,7 @@ fn a_capture_is_read_in_pieces() {
 }
 
 #[test]
-fn only_regular_files_of_a_sensible_size_are_read() {
+fn reads_only_regular_files_of_limited_size() {
     let folder = folder();
     let fifo = folder.path().join("fifo");
     assert!(Command::new("mkfifo").arg(&fifo).status().expect("mkfifo runs").success());
@@ -131,7 +131,7 @@ fn only_regular_files_of_a_sensible_size_are_read() {
 }
 
 #[test]
-fn a_line_of_a_script_is_bounded() {
+fn limits_the_length_of_a_script_line() {
     let folder = folder();
     let mut command = Command::new("sh");
     let script = "ulimit -v 500000; exec \"$0\" repl </dev/zero";
@@ -140,9 +140,9 @@ fn a_line_of_a_script_is_bounded() {
 }
 
 #[test]
-fn filters_are_bounded() {
+fn limits_time_and_memory_of_filters() {
     let folder = folder();
-    // Less than a filter may have otherwise, so that it is soon full.
+    // Below the normal limit of a filter, to reach the limit sooner.
     let status =
         |filter: &str| limited(folder.path(), "-v 300000", &["--sim", "yerc", "status", &format!("--jq={filter}")]);
     let deep = "(".repeat(20_000) + "1" + &")".repeat(20_000);
@@ -161,14 +161,14 @@ fn filters_are_bounded() {
         assert_eq!(stdout(&output), expected, "{filter}");
     }
     ends(&status(".[0]"), 5, "Cannot index object with number");
-    // What was made before an error is there, as with jq.
+    // As with jq, outputs before an error are printed.
     let output = status("1, error(\"late\")");
     ends(&output, 5, "late");
     assert_eq!(stdout(&output), "1\n");
 }
 
 #[test]
-fn a_filter_that_fails_after_a_change_is_no_mistake_of_the_line() {
+fn filter_failure_after_a_change_is_no_usage_error() {
     let folder = folder();
     for words in [
         &["--sim", "yerc", "var", "set", "B0=1", "--yes", "--jq", "error"][..],
@@ -178,22 +178,22 @@ fn a_filter_that_fails_after_a_change_is_no_mistake_of_the_line() {
         ends(&output, 1, "succeeded, but the report could not be written");
     }
     ends(&run(folder.path(), &["--config", "robots.toml", "robots", "show", "cell"]), 0, "");
-    // One that does not compile is found before anything is done.
+    // A filter that does not compile is reported before anything is sent.
     ends(&run(folder.path(), &["--sim", "yerc", "var", "set", "B0=1", "--jq", ".["]), 2, "cannot be parsed");
 }
 
-/// It ends at one signal, which comes once it computes.
+/// Ends at one signal, sent while the process computes.
 #[cfg(target_os = "linux")]
 fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
     let child = armctl(folder, words).spawn().expect("it works here");
-    // Its filter runs in a process of its own, once there is one.
+    // The filter runs in a separate process, once it has started.
     let pid = child.id();
     let children = || std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap_or_default();
     while children().trim().is_empty() {
         std::thread::yield_now();
     }
     let worker = children().trim().to_owned();
-    // Once it has computed for a while (in ticks of the clock), it does nothing else any more.
+    // After some ticks of CPU time, the worker only computes.
     let ticks = || {
         let stat = std::fs::read_to_string(format!("/proc/{worker}/stat")).unwrap_or_default();
         stat.rsplit(')').next().and_then(|rest| rest.split(' ').nth(12)?.parse::<u64>().ok()).unwrap_or_default()
@@ -205,7 +205,7 @@ fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
     let output = child.wait_with_output().expect("it works here");
     assert_eq!(output.status.code(), Some(130), "{name}: {}", stderr(&output));
     assert!(stderr(&output).contains("interrupted"), "{name}: {}", stderr(&output));
-    // It goes, too.
+    // The worker ends, too.
     while Path::new(&format!("/proc/{worker}")).exists() {
         std::thread::yield_now();
     }
@@ -213,7 +213,7 @@ fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_filter_without_end_holds_up_no_signal() {
+fn endless_filter_does_not_delay_signals() {
     let folder = folder();
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap().trim();
@@ -230,7 +230,7 @@ fn a_filter_without_end_holds_up_no_signal() {
 }
 
 #[test]
-fn a_reader_that_does_not_read_holds_up_no_signal() {
+fn blocked_reader_does_not_delay_signals() {
     let folder = folder();
     let mut child =
         armctl(folder.path(), &["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]).spawn().unwrap();
@@ -243,7 +243,7 @@ fn a_reader_that_does_not_read_holds_up_no_signal() {
 }
 
 #[test]
-fn robots_added_at_the_same_time_are_all_there() {
+fn adds_robots_concurrently() {
     let folder = folder();
     let mut adding: Vec<Child> = (0..50)
         .map(|number| {
@@ -261,7 +261,7 @@ fn robots_added_at_the_same_time_are_all_there() {
 }
 
 #[test]
-fn an_inventory_keeps_its_rights_and_its_link() {
+fn inventory_keeps_its_permissions_and_link() {
     use std::os::unix::fs::PermissionsExt as _;
 
     let folder = folder();
@@ -276,7 +276,7 @@ fn an_inventory_keeps_its_rights_and_its_link() {
 }
 
 #[test]
-fn a_process_that_may_open_nothing_says_so() {
+fn reports_a_missing_descriptor_limit() {
     let folder = folder();
     // With fewer, the system cannot load the program.
     for most in 5..12 {
@@ -292,7 +292,7 @@ fn a_process_that_may_open_nothing_says_so() {
 }
 
 #[test]
-fn drafts_of_killed_runs_are_swept() {
+fn removes_drafts_of_killed_runs() {
     let folder = folder();
     let saved = folder.path().join("saved");
     std::fs::create_dir(&saved).unwrap();

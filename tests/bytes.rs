@@ -1,4 +1,4 @@
-//! The bytes of the protocols: golden frames, captures, tables, properties, arbitrary bytes. No sockets, no binary.
+//! Bytes of the protocols: golden frames, captures, tables, properties, random bytes. No sockets, no binary.
 
 mod capture_files;
 mod captures;

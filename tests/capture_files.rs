@@ -1,5 +1,5 @@
-//! Capture files: any bytes, and the same as tshark where that is installed. The files in `tests/cli/files/` were put
-//! together by hand, field by field from the formats' specifications; the transcript `captures` has what they say.
+//! Capture files: random bytes, and comparison with tshark if it is installed. The files in `tests/cli/files/` were
+//! assembled by hand from the specifications of the formats; the transcript `captures` shows their content.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ fn datagrams(file: &[u8]) -> Vec<(u64, Vec<u8>)> {
 }
 
 #[test]
-fn times_come_from_any_clock() {
+fn reads_times_of_every_clock() {
     let mut times = Vec::new();
     let summary = read(&*file("lines.pcapng"), |message| times.push((message.number, message.time.as_secs_f64())));
     let first = summary.expect("it is a capture").first.as_secs_f64();
@@ -67,7 +67,7 @@ fn tshark_finds_the_same_datagrams() {
 }
 
 #[test]
-fn a_file_cut_anywhere_gives_what_came_before() {
+fn truncated_file_yields_the_messages_before_the_cut() {
     for name in FILES {
         let whole = file(name);
         let all = datagrams(&whole);
@@ -96,7 +96,7 @@ fn a_file_cut_anywhere_gives_what_came_before() {
 
 proptest! {
     #[test]
-    fn no_bytes_make_the_reader_panic(
+    fn reader_never_panics_on_random_bytes(
         name in 0..FILES.len(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
     ) {
@@ -106,13 +106,13 @@ proptest! {
             bytes[at] = byte;
         }
         let mut heard = 0;
-        // No packet is read twice: what is heard cannot be more than the file has.
+        // No packet is read twice, so there cannot be more messages than packets.
         let _ = read(&*bytes, |message| heard += message.bytes.len());
         prop_assert!(heard <= bytes.len());
     }
 
     #[test]
-    fn neither_do_bytes_behind_a_magic_number(magic in 0..6usize, rest in prop::collection::vec(any::<u8>(), 0..512)) {
+    fn reader_never_panics_on_bytes_after_a_magic_number(magic in 0..6usize, rest in prop::collection::vec(any::<u8>(), 0..512)) {
         let magics: [[u8; 4]; 6] = [
             [0xA1, 0xB2, 0xC3, 0xD4],
             [0xD4, 0xC3, 0xB2, 0xA1],

@@ -1,7 +1,7 @@
-//! Pairs of request and answer captured from a controller, replayed where their file exists.
+//! Replay of request and answer pairs that were captured from a controller.
 //!
-//! The file is not part of the project; `ARMCTL_YERC_CAPTURES` names it. The controller is a YRC1000, whose requests for
-//! these commands are those of a DX200; it is known by what it says of its software.
+//! The file is not part of the project; `ARMCTL_YERC_CAPTURES` names it. The controller is a YRC1000. Its requests for
+//! these commands are those of a DX200, and armctl recognizes it by its software.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::needless_pass_by_value, reason = "queries are built where they are sent")]
@@ -25,7 +25,7 @@ use armctl::controller::yerc::wire::{AnswerFrame, Division, RequestFrame, Status
 
 const SKIPPED: &str = "skipped: ARMCTL_YERC_CAPTURES does not name the file of captured pairs";
 
-/// What was sent and what came back.
+/// Captured requests and answers.
 fn pairs() -> Option<Vec<(Vec<u8>, Vec<u8>)>> {
     let path = std::env::var_os("ARMCTL_YERC_CAPTURES")?;
     let json: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
@@ -35,12 +35,12 @@ fn pairs() -> Option<Vec<(Vec<u8>, Vec<u8>)>> {
     Some(pairs.iter().map(|pair| (bytes(pair, "tx"), bytes(pair, "rx"))).collect())
 }
 
-/// The simulator has other values, but sends them in frames of the same form: same header, same status, and as much
-/// data, which for axes depends on how many are fitted.
+/// The simulator has other values, but its frames must have the same form: same header, same status, and the same data
+/// length. For axes, the length depends on the number of fitted axes.
 #[test]
-fn the_simulator_answers_in_the_captured_form() {
+fn simulator_answers_match_captured_answers() {
     let Some(pairs) = pairs() else { return println!("{SKIPPED}") };
-    // This controller has no words for axes that are not fitted; others have.
+    // This controller omits the words of axes that are not fitted; others send them.
     let start = Start::parse("model = 'yrc1000'\ntrim_axes = true", |_| Err("there are no files".to_owned())).unwrap();
     let mut simulator = Simulator::new(start);
     for (sent, received) in pairs {
@@ -54,7 +54,7 @@ fn the_simulator_answers_in_the_captured_form() {
     }
 }
 
-/// Answers as the captured controller did, on the loopback; the id of a request is copied back.
+/// Answers like the captured controller on the loopback interface. Copies the id of the request.
 fn replayer(pairs: Vec<(Vec<u8>, Vec<u8>)>) -> SocketAddr {
     const ID: usize = 11;
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -74,9 +74,9 @@ fn replayer(pairs: Vec<(Vec<u8>, Vec<u8>)>) -> SocketAddr {
     address
 }
 
-/// Nobody names the model: the client asks once, and only when something depends on it.
+/// Without a model in the settings, the client asks once, when something depends on the model.
 #[tokio::test]
-async fn the_captured_controller_is_known_by_its_software() {
+async fn recognizes_the_captured_controller_by_its_software() {
     let Some(pairs) = pairs() else { return println!("{SKIPPED}") };
     let port = replayer(pairs).port();
     let endpoint = Endpoint::Udp { host: "127.0.0.1".to_owned(), ports: [port, port] };
@@ -94,7 +94,7 @@ async fn the_captured_controller_is_known_by_its_software() {
 }
 
 #[test]
-fn captured_pairs_replay() {
+fn replays_captured_pairs() {
     let Some(pairs) = pairs() else { return println!("{SKIPPED}") };
     for (sent, received) in pairs {
         let frame = RequestFrame::parse(&sent).unwrap();
@@ -119,7 +119,7 @@ fn captured_pairs_replay() {
 }
 
 fn replay(request: &Request, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
-    // Only running-time counters have instances beyond a byte, and those are told apart further on.
+    // Only running-time counters have instances above 255; they are distinguished below.
     let instance = u8::try_from(request.instance).unwrap_or(u8::MAX);
     match (request.command, instance) {
         (0x70, slot) => {

@@ -1,7 +1,7 @@
-//! Every command and service of the manuals that the tool sends, reached by a named command line.
+//! Every command and service of the manuals that armctl sends is reached by a named command line.
 //!
-//! Each line is run with `--dry-run`, and must show frames of the command, instance, attribute and service beside it. `raw`
-//! is not among them: it reaches everything by numbers, and has a test of its own.
+//! Each line runs with `--dry-run`, and must show frames with the given command, instance, attribute and service. `raw`
+//! is not in the list, because it reaches everything by numbers; it has its own test.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -21,7 +21,7 @@ const WRITE: u8 = 0x34;
 const DX200: &str = "udp://127.0.0.1?model=dx200";
 const FS100: &str = "udp://127.0.0.1?model=fs100";
 
-/// A command line for a DX200, and frames that it shows (sections 3.3.1 to 3.3.42 and 3.4.1 to 3.4.5).
+/// A command line for a DX200, and the frames that it shows (sections 3.3.1 to 3.3.42 and 3.4.1 to 3.4.5).
 #[rustfmt::skip]
 const LINES: &[(&str, &[Head])] = &[
     ("alarm list --no-texts", &[(0x70, 1, 0, GET_ALL), (0x70, 4, 0, GET_ALL)]),
@@ -120,7 +120,7 @@ const LINES: &[(&str, &[Head])] = &[
     ("file cmos --start-only", &[(0, 0, 0, 0x16)]),
 ];
 
-/// The same where an FS100 is addressed differently.
+/// Command lines for an FS100, for commands with another address there.
 #[rustfmt::skip]
 const ON_FS100: &[(&str, &[Head])] = &[
     ("job show --task 5", &[(0x73, 6, 0, GET_ALL)]),
@@ -131,7 +131,7 @@ const ON_FS100: &[(&str, &[Head])] = &[
     ("job select A --task 5", &[(0x87, 15, 0, SET_ALL)]),
 ];
 
-/// The frames of a dry run.
+/// Frames of a dry run.
 fn frames(target: &str, line: &str) -> Vec<Vec<u8>> {
     let words = ["--json", "--dry-run", "-t", target, "yerc"].into_iter().chain(line.split_ascii_whitespace());
     let output = Command::new(env!("CARGO_BIN_EXE_armctl")).args(words).output().expect("armctl starts");
@@ -141,13 +141,13 @@ fn frames(target: &str, line: &str) -> Vec<Vec<u8>> {
     frames.iter().map(|frame| bytes(frame["hex"].as_str().expect("hexadecimal"))).collect()
 }
 
-/// The bytes of a frame; those that an answer decides (`??`) are 0, and none of its head is one of them.
+/// Bytes of a frame; bytes that depend on an answer (`??`) become 0. They are never in the header.
 fn bytes(hex: &str) -> Vec<u8> {
     let byte = |digits| if digits == "??" { 0 } else { u8::from_str_radix(digits, 16).expect("hexadecimal") };
     (0..hex.len()).step_by(2).map(|at| byte(&hex[at..at + 2])).collect()
 }
 
-/// Division and head of a frame; the division is 1 for robot commands, 2 for files.
+/// Division and header of a frame; the division is 1 for robot commands, 2 for files.
 fn head(frame: &[u8]) -> (u8, Head) {
     assert_eq!(&frame[..4], b"YERC");
     let word = |at: usize| u16::from_le_bytes([frame[at], frame[at + 1]]);
@@ -168,14 +168,14 @@ fn check(target: &str, lines: &[(&str, &[Head])]) -> BTreeSet<(u16, u8)> {
 }
 
 #[test]
-fn every_command_and_service_has_a_command_line() {
+fn every_command_and_service_is_reachable() {
     let mut reached = check(DX200, LINES);
     check(FS100, ON_FS100);
 
     let job = tempfile::Builder::new().suffix(".JBI").tempfile().expect("a temporary file");
     std::fs::write(job.path(), "/JOB\r\n//NAME A\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n").unwrap();
     let sent = frames(DX200, &format!("file put {} --as A.JBI", job.path().display()));
-    // The list of what is there with its acknowledgement, the file, and the list behind a last answer without a number.
+    // The list with its acknowledgement, the file, and the list after a last answer without a block number.
     let services: Vec<u8> = sent.iter().map(|frame| head(frame).1.3).collect();
     assert_eq!(services, [0x32, 0x32, 0x15, 0x15, 0x32, 0x32], "file put");
     reached.insert((0, 0x15));
@@ -185,7 +185,7 @@ fn every_command_and_service_has_a_command_line() {
     assert_eq!(commands, printed);
     let files: Vec<u8> = reached.iter().filter(|(command, _)| *command == 0).map(|(_, service)| *service).collect();
     assert_eq!(files, [0x09, 0x15, 0x16, 0x32]);
-    // What can be read and written is read and written, one by one and several at a time.
+    // Everything that can be read and written, single and multiple.
     for command in (0x78..=0x81).chain([0x8C]) {
         let services: Vec<u8> = reached.iter().filter(|(c, _)| *c == command).map(|(_, service)| *service).collect();
         assert_eq!(services.len(), 2, "{command:#x}: {services:x?}");
@@ -196,14 +196,14 @@ fn every_command_and_service_has_a_command_line() {
 }
 
 #[test]
-fn the_batch_backup_goes_by_its_path() {
+fn fetches_the_batch_backup_by_its_path() {
     let sent = frames(DX200, "file cmos --start-only");
     assert_eq!(&sent[0][32..], b"/SPDRV/CMOSBK.BIN");
 }
 
-/// Attributes that no command line names are reached by numbers.
+/// Attributes without a named command line are reached by numbers.
 #[test]
-fn raw_reaches_a_single_field() {
+fn raw_reads_a_single_field() {
     for (line, expected) in [
         ("raw --command 0x72 --instance 1 --attribute 2 --service 0x0E --strict", (0x72, 1, 2, GET)),
         ("raw --command 0x7F --instance 5 --attribute 13 --service 0x10 --data 01000000 --strict", (0x7F, 5, 13, SET)),
@@ -213,14 +213,14 @@ fn raw_reaches_a_single_field() {
         let sent = frames(DX200, line);
         let (request, before) = sent.split_last().expect("the request");
         assert_eq!(head(request), (1, expected), "{line}");
-        // A position that would be overwritten is read first.
+        // A position is read before it is overwritten.
         assert!(before.iter().all(|frame| head(frame).1.3 == GET_ALL), "{line}");
     }
 }
 
-/// FS 3.3.39 prints 25 words, DX 3.3.39 26: the reserved words lie before the form, all that follows shifts by one.
+/// FS 3.3.39 prints 25 words, DX 3.3.39 26: the reserved words precede the form, so the following words shift by one.
 #[test]
-fn a_cartesian_move_of_25_words_is_as_the_fs100_manual_prints_it() {
+fn cartesian_move_of_25_words_matches_the_fs100_manual() {
     let line = "move linear --to 1,-2,3,-4,5,-0 --speed 70mm/s --coordinate user --user 63 --tool 62 --form back,lower \
                 --extended-form w-ge180 --base-axes -1.5,2,3 --group R2";
     let words = |target: &str| -> Vec<i32> {

@@ -1,5 +1,5 @@
-//! The binary against boards that are not as they should be: wrong numbers in the URL, an owner that is there already, a
-//! target that is silent, resets, or talks nonsense. Each has its message, its hint and its exit code.
+//! The binary against faulty boards: wrong numbers in the URL, an existing owner, a target that is silent, resets, or
+//! answers nonsense. Each case has its message, hint and exit code.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -18,7 +18,7 @@ fn armctl(target: &str, line: &str) -> Command {
     command
 }
 
-/// Exit code, kind, code, message and hint of a failure, which is the only thing that is said.
+/// Exit code, kind, code, message and hint of a failure, which must be the only output.
 fn told(target: &str, line: &str) -> (i32, String, String, String, String) {
     let Output { status, stdout, stderr } = armctl(target, line).output().unwrap();
     let stderr = String::from_utf8(stderr).unwrap();
@@ -30,7 +30,7 @@ fn told(target: &str, line: &str) -> (i32, String, String, String, String) {
     (status.code().unwrap(), text("kind"), text("code"), message, text("hint"))
 }
 
-/// Asserts what is told, without its kind.
+/// Asserts the failure without its kind.
 #[track_caller]
 fn tells(target: &str, line: &str, exit: i32, code: &str, message: &str, hint: &str) {
     let (found_exit, _, found_code, found_message, found_hint) = told(target, line);
@@ -38,7 +38,7 @@ fn tells(target: &str, line: &str, exit: i32, code: &str, message: &str, hint: &
     assert_eq!(found, (exit, code, message, hint), "{line} on {target}");
 }
 
-/// `armctl sim yrcx` on ports of its own; it ends with the test.
+/// `armctl sim yrcx` on free ports; it ends with the test.
 struct Board {
     process: Child,
     target: String,
@@ -61,7 +61,7 @@ impl Board {
 
 impl Drop for Board {
     fn drop(&mut self) {
-        // A process that has ended already is as good.
+        // The process may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -70,7 +70,7 @@ impl Drop for Board {
 const SIZE: &str = "set the sizes that a probe of the target finds";
 
 #[test]
-fn numbers_that_the_board_does_not_have() {
+fn reports_wrong_instance_numbers() {
     let board = Board::start(&[]);
     let point = "exchange the instances of input and output, or probe the target for those it has";
     for (query, code, message, hint) in [
@@ -105,12 +105,12 @@ fn numbers_that_the_board_does_not_have() {
         assert_eq!((exit, &*kind, &*found), (3, "refused", code), "{query}: {message}");
         assert!(message.contains(part) && !hint.is_empty(), "{query}: {message}; {hint}");
     }
-    // After all that it still works as it should.
+    // The board still works afterwards.
     assert!(armctl(&board.target, "yrcx info servo").output().unwrap().status.success());
 }
 
 #[test]
-fn what_only_looks_says_what_is_wrong_too() {
+fn monitor_connections_report_the_same_errors() {
     let board = Board::start(&[]);
     let (exit, _, _, message, hint) = told(&board.with("in=101"), "yrcx io get");
     assert_eq!(exit, 3);
@@ -121,7 +121,7 @@ fn what_only_looks_says_what_is_wrong_too() {
 }
 
 #[test]
-fn an_owner_that_is_there_already() {
+fn reports_an_existing_owner() {
     let board = Board::start(&[]);
     let mut owner = armctl(&board.target, "yrcx info servo --watch 1h").spawn().unwrap();
     BufReader::new(owner.stdout.take().unwrap()).lines().next().unwrap().unwrap();
@@ -148,7 +148,7 @@ fn an_owner_that_is_there_already() {
     assert_eq!(owner.wait().unwrap().code(), Some(130));
 }
 
-/// The layer `owner` of `robots check`, and what `yrcx eip probe` says of an owner without and with `--try`.
+/// Layer `owner` of `robots check`, and the owner in the report of `yrcx eip probe` without and with `--try`.
 fn owner(target: &str) -> (Value, Value, Value) {
     let data = |line: &str| {
         let output = armctl(target, line).output().unwrap();
@@ -162,8 +162,8 @@ fn owner(target: &str) -> (Value, Value, Value) {
 }
 
 #[test]
-fn an_owner_is_found_where_the_board_says_so_but_once() {
-    // Who only reads sees what the board says of itself; what it refuses takes a try.
+fn finds_the_owner_from_a_single_report() {
+    // A read shows the state that the board reports. Only a try shows what the board refuses.
     for (fault, is_said) in [("trailing", true), ("unowned", false)] {
         let board = Board::start(&["--fault", fault]);
         assert_eq!(owner(&board.target), ("ok".into(), false.into(), false.into()), "{fault}");
@@ -179,7 +179,7 @@ fn an_owner_is_found_where_the_board_says_so_but_once() {
     }
 }
 
-/// Takes one connection after the other to a board; the bytes that clients sent come out.
+/// Relays connections to a board one by one, and returns the bytes from the clients.
 fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
     let (_, place) = board.target.split_once("://").unwrap();
     let board = place.split('?').next().unwrap().to_owned();
@@ -192,7 +192,7 @@ fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
             let mut server = TcpStream::connect(&board).unwrap();
             let (mut from, mut to) = (server.try_clone().unwrap(), client.try_clone().unwrap());
             thread::spawn(move || {
-                // Either end may go first.
+                // Either end may close first.
                 let _ = std::io::copy(&mut from, &mut to);
                 let _ = to.shutdown(Shutdown::Both);
             });
@@ -209,14 +209,14 @@ fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
     (target, sent)
 }
 
-/// A board that accepts an owner's connection is commanded from then on: what only looks never asks for one.
+/// A board that accepts an owner connection is commanded from then on, so monitoring commands must never request one.
 #[test]
-fn only_a_try_asks_for_an_owner_connection() {
+fn only_try_requests_an_owner_connection() {
     let board = Board::start(&[]);
     let (target, sent) = recorded(&board);
     let opens = || {
         let sent = std::mem::take(&mut *sent.lock().unwrap());
-        // ForwardOpen and its large form, for the connection manager (volume 1, 3-5.5.2).
+        // ForwardOpen and LargeForwardOpen, for the connection manager (volume 1, 3-5.5.2).
         [0x54, 0x5B].map(|service| sent.windows(6).filter(|bytes| **bytes == [service, 2, 0x20, 6, 0x24, 1]).count())
     };
     for line in ["yrcx eip probe", "robots check", "yrcx eip identity", "yrcx status"] {
@@ -233,7 +233,7 @@ fn only_a_try_asks_for_an_owner_connection() {
 }
 
 #[test]
-fn many_at_once_find_room_one_after_the_other() {
+fn serializes_concurrent_connections() {
     let board = Board::start(&[]);
     let mut looks = Vec::new();
     for _ in 0..30 {
@@ -250,7 +250,7 @@ fn many_at_once_find_room_one_after_the_other() {
 const NOBODY: &str = "check the address; check that the controller is on and its EtherNet/IP board enabled";
 
 #[test]
-fn a_board_that_misbehaves() {
+fn reports_faults_of_the_board() {
     const LINK: &str = "check the connection: `-v` counts received packets";
     for (fault, line, message, hint) in [
         ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NOBODY),
@@ -279,7 +279,7 @@ fn a_board_that_misbehaves() {
         assert!(exit == 5 && message.contains("cannot decode"), "{line}: {exit} {message}");
         assert_eq!(hint, "check that this is the address of an EtherNet/IP device");
     }
-    // Stale, doubled and miscounted images are passed over: a numbering that stands still is a silence.
+    // Stale, duplicate and miscounted images are skipped; a counter that does not change counts as silence.
     for (fault, works) in [("double", true), ("half-rate", true), ("stale", false), ("wrong-sequence", false)] {
         let board = Board::start(&["--fault", fault]);
         let output = armctl(&board.target, "yrcx info servo").output().unwrap();
@@ -289,12 +289,12 @@ fn a_board_that_misbehaves() {
 }
 
 #[test]
-fn a_change_whose_answer_is_lost_is_not_repeated() {
+fn never_repeats_a_change_whose_answer_is_lost() {
     let board = Board::start(&["--fault", "frozen"]);
     let (exit, kind, _, message, hint) = told(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(hint, "`yrcx status` shows whether servos and motor power are on");
-    // What is there is read first; without an answer nothing is written.
+    // The old value is read first; without an answer nothing is written.
     let board = Board::start(&["--fault", "reset"]);
     let (exit, kind, _, message, _) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (4, "no_answer"), "{message}");
@@ -309,7 +309,7 @@ fn a_change_whose_answer_is_lost_is_not_repeated() {
     assert_eq!(hint, "read the value with `yrcx eip get 0xf5 1 3`");
 }
 
-/// A TCP server that does with every connection what `serve` says; it ends with the process.
+/// A TCP server that runs `serve` for each connection; it ends with the process.
 fn stranger(serve: fn(TcpStream)) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("eip://{}", listener.local_addr().unwrap());
@@ -322,9 +322,9 @@ fn stranger(serve: fn(TcpStream)) -> String {
 }
 
 #[test]
-fn a_target_that_is_no_board() {
+fn reports_a_target_that_is_not_a_board() {
     let http = stranger(|mut stream| {
-        // Whoever asked may have gone.
+        // The client may have disconnected.
         let _ = stream.write_all(b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n");
         let _ = stream.read(&mut [0; 64]);
     });
@@ -333,7 +333,7 @@ fn a_target_that_is_no_board() {
     for line in ["yrcx info servo", "yrcx io get", "yrcx eip identity", "status", "yrcx eip set 0xF5 1 3 00"] {
         for target in [&http, &closes, &silent] {
             let (exit, kind, _, message, hint) = match line {
-                // What cannot be reached is a line of the report there.
+                // For discovery, an unreachable address is a line of the report.
                 "status" => {
                     let output = armctl(target, line).output().unwrap();
                     let envelope: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -351,7 +351,7 @@ fn a_target_that_is_no_board() {
     tells("eip://board.invalid", "yrcx io get", 4, "", "cannot find host 'board.invalid'", hint);
 }
 
-/// An answer to ListIdentity as volume 2, 2-4.2 lays it out, whose name would clear a terminal.
+/// An answer to ListIdentity (volume 2, 2-4.2) with a name that would clear a terminal.
 fn hostile_identity(context: &[u8]) -> Vec<u8> {
     let name = b"\x1b[2J\x07evil\r\n\"<&\xff";
     let mut item = [&[1, 0][..], &[0, 2, 0xAF, 0x12, 10, 0, 0, 9], &[0; 8]].concat();
@@ -365,7 +365,7 @@ fn hostile_identity(context: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn what_strangers_say_of_themselves_is_escaped() {
+fn escapes_the_identity_of_unknown_devices() {
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
     let address = socket.local_addr().unwrap().to_string();
     thread::spawn(move || {
@@ -396,14 +396,14 @@ fn what_strangers_say_of_themselves_is_escaped() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn everybody_of_a_network_is_asked() {
-    // A board that listens on all addresses hears what is sent to everybody of the loopback's network.
+fn discovers_all_devices_of_a_network() {
+    // A board on all addresses receives broadcasts of the loopback network.
     let Ok(socket) = UdpSocket::bind("0.0.0.0:0") else { return println!("skipped: no port") };
     let port = socket.local_addr().unwrap().port();
     thread::spawn(move || {
         let mut buffer = [0; 64];
         while let Ok((24.., from)) = socket.recv_from(&mut buffer) {
-            // The longest delay that devices may take stands in the first bytes of the context, in milliseconds.
+            // The first bytes of the context are the maximum response delay in milliseconds.
             assert_eq!(buffer[12..14], 500u16.to_le_bytes());
             socket.send_to(&hostile_identity(&buffer[12..20]), from).unwrap();
         }

@@ -1,5 +1,5 @@
-//! The program where it was not developed: terminals of any width and none, other locales, no home, a home that cannot
-//! be written, descriptors that are closed, and under the names of the families.
+//! The program in other environments: terminal widths, locales, no home folder, a read-only home folder, closed
+//! descriptors, and the names of the families as program names.
 #![cfg(unix)]
 
 use std::fs::File;
@@ -12,7 +12,7 @@ use serialport::{SerialPort as _, TTYPort};
 
 const BINARY: &str = env!("CARGO_BIN_EXE_armctl");
 
-/// A command without any variables of this process, in a folder of its own.
+/// A command in its own folder without environment variables of this process.
 fn armctl(line: &str, folder: &Path) -> Command {
     let mut command = Command::new(BINARY);
     command.args(line.split(' ')).current_dir(folder).env_clear().env("HOME", folder);
@@ -28,11 +28,11 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("stderr is UTF-8")
 }
 
-/// A terminal of this many columns.
+/// A terminal with this number of columns.
 struct Terminal {
     screen: TTYPort,
     name: String,
-    /// A terminal that nobody has open forgets what was written.
+    /// Keeps the terminal open, because a closed terminal discards its output.
     _open: TTYPort,
 }
 
@@ -57,7 +57,7 @@ impl Terminal {
         child.expect("the binary starts")
     }
 
-    /// What the command writes until `enough` of it is there, or it has ended.
+    /// Output of the command, until it contains `enough` or the command has ended.
     fn read(&mut self, child: &mut Child, enough: impl Fn(&str) -> bool) -> (String, Option<ExitStatus>) {
         let mut written = Vec::new();
         loop {
@@ -84,11 +84,11 @@ impl Terminal {
 }
 
 #[test]
-fn tables_fit_terminals_of_any_width() {
+fn tables_fit_terminals_of_every_width() {
     let folder = tempfile::tempdir().unwrap();
     for columns in [40, 80, 300] {
         let shown = Terminal::new(columns).run(armctl("--sim yerc alarm history --color never", folder.path()));
-        // What is wide on a terminal is shorter in characters.
+        // Wide characters: more columns than characters.
         assert!(shown.lines().all(|line| line.chars().count() <= usize::from(columns)), "{columns}:\n{shown}");
         assert!(shown.contains("SYNCHRONIZING") && shown.contains("2025/11/02 06:12"), "{columns}:\n{shown}");
         let is_table = shown.contains("LIST ");
@@ -97,7 +97,7 @@ fn tables_fit_terminals_of_any_width() {
 }
 
 #[test]
-fn a_long_text_goes_through_the_pager_on_a_terminal() {
+fn pages_long_texts_on_a_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
     let shown = |line: &str| {
         let mut command = armctl(line, folder.path());
@@ -116,31 +116,31 @@ fn a_long_text_goes_through_the_pager_on_a_terminal() {
 }
 
 #[test]
-fn a_mistake_is_told_in_lines_that_end_between_words() {
+fn wraps_error_messages_between_words() {
     let folder = tempfile::tempdir().expect("a folder");
     let shown = Terminal::new(80).run(armctl("--sim yrcx param get TOEL.1 --color never", folder.path()));
     assert!(shown.lines().all(|line| line.chars().count() <= 80) && shown.contains("did you mean TOLE?"), "{shown}");
 }
 
 #[test]
-fn a_watch_stays_in_its_place_on_a_terminal_that_can() {
+fn watch_redraws_in_place_on_capable_terminals() {
     let home = tempfile::tempdir().expect("a folder");
     let watch = |term: &str| {
         let mut command = armctl("--sim yerc status --watch 10ms --count 3", home.path());
         command.env("TERM", term);
         Terminal::new(80).run(command)
     };
-    // Nine lines up, and all below removed.
+    // Nine lines up, and all lines below removed.
     assert_eq!(watch("xterm").matches("\x1b[9A\r\x1b[J").count(), 2);
     assert!(!watch("dumb").contains('\x1b'));
 }
 
 #[test]
-fn colour_is_for_terminals_that_can() {
+fn uses_color_on_capable_terminals_only() {
     let folder = tempfile::tempdir().unwrap();
     let shown = |line: &str, variables: &[(&str, &str)]| {
         let mut command = armctl(line, folder.path());
-        // What is long waits in a pager for somebody to read it.
+        // The long text waits in the pager.
         command.env("PAGER", "cat").envs(variables.iter().copied());
         Terminal::new(80).run(command)
     };
@@ -157,7 +157,7 @@ fn colour_is_for_terminals_that_can() {
 }
 
 #[test]
-fn names_are_the_same_in_every_locale() {
+fn names_do_not_depend_on_the_locale() {
     let folder = tempfile::tempdir().unwrap();
     let listed = |locale: &str| {
         let command = armctl("--sim yerc file list -o csv", folder.path()).env("LC_ALL", locale).output();
@@ -171,7 +171,7 @@ fn names_are_the_same_in_every_locale() {
 }
 
 #[test]
-fn what_needs_no_home_works_without_one() {
+fn works_without_a_home_folder() {
     let folder = tempfile::tempdir().unwrap();
     let bare = |line: &str| armctl(line, folder.path()).env_remove("HOME").output().unwrap();
     for line in ["--sim yerc status", "--sim yrcx status", "--sim toyo status", "help", "explain toyo 28", "-h"] {
@@ -180,9 +180,9 @@ fn what_needs_no_home_works_without_one() {
 }
 
 #[test]
-fn a_home_that_cannot_be_written_is_said_by_name() {
+fn names_a_read_only_home_folder() {
     let folder = tempfile::tempdir().unwrap();
-    // Permissions do not keep an administrator out; what is no folder keeps out everybody.
+    // Permissions do not stop root, so use a file instead of a folder.
     let home = folder.path().join("home");
     std::fs::write(&home, "").unwrap();
     let run = |line: &str| armctl(line, folder.path()).env("HOME", &home).output().unwrap();
@@ -194,7 +194,7 @@ fn a_home_that_cannot_be_written_is_said_by_name() {
 }
 
 #[test]
-fn closed_descriptors_change_no_exit_code() {
+fn exit_codes_do_not_depend_on_closed_descriptors() {
     let folder = tempfile::tempdir().unwrap();
     let run = |line: &str, closed: &str| {
         let script = format!("exec {closed}; exec \"{BINARY}\" {line}");
@@ -217,7 +217,7 @@ fn closed_descriptors_change_no_exit_code() {
 }
 
 #[test]
-fn a_link_with_the_name_of_a_family_is_its_subcommand() {
+fn link_with_a_family_name_is_its_subcommand() {
     let folder = tempfile::tempdir().unwrap();
     for family in ["yerc", "yrcx", "toyo"] {
         let link = folder.path().join(family);
@@ -233,7 +233,7 @@ fn a_link_with_the_name_of_a_family_is_its_subcommand() {
 }
 
 #[test]
-fn long_work_shows_progress_and_leaves_the_terminal_as_it_was() {
+fn shows_progress_and_restores_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("long.toyo"), "OUT STN=0 PN1=.......1\n".repeat(300)).unwrap();
     std::fs::write(folder.path().join("big.toml"), "[[file]]\nname = \"BIG.DAT\"\nsize = 268435456\n").unwrap();

@@ -1,9 +1,9 @@
-//! The programs of `examples/`: each runs to its end and says what it did.
+//! Runs the programs of `examples/` to their end and checks their output.
 
 use std::path::Path;
 use std::process::Command;
 
-/// What an example says. `cargo test` builds it beside the binary.
+/// Output of an example. `cargo test` builds it next to the binary.
 #[track_caller]
 fn run(example: &str) -> String {
     let built = Path::new(env!("CARGO_BIN_EXE_armctl")).with_file_name("examples").join(example);
@@ -27,7 +27,7 @@ fn yerc_reads_fetches_and_moves() {
 }
 
 #[test]
-fn yrcx_looks_reads_and_moves() {
+fn yrcx_reads_and_moves() {
     let place = "[100000, 100000, 0, 0] um";
     assert_eq!(run("yrcx"), format!("servo on: true, alarm: false\npoint 1: {place}\nmoved to {place}\n"));
 }

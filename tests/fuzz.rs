@@ -1,6 +1,6 @@
-//! Anything at all is sent to the simulator and to the sessions: nobody panics, nothing grows, nobody waits for ever.
+//! Random datagrams to the simulator and to the sessions: no panic, no growth, no endless wait.
 //!
-//! The datagrams are noise, or frames that are nearly right: the harder ones to get wrong with.
+//! The datagrams are noise or nearly valid frames; nearly valid frames find more mistakes.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -18,12 +18,12 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// A header and as much data as a frame holds.
+/// A header and the maximum data of a frame.
 const LARGEST: usize = 32 + MAX_DATA;
-/// Longest wait between two datagrams: more than the simulator keeps an idle transfer, and a session waits.
+/// Longest pause between two datagrams: longer than the simulator keeps an idle transfer and a session waits.
 const LONGEST: u64 = 6000;
 
-/// What is done to a frame on its way.
+/// Damage of a frame in transit.
 #[derive(Debug, Clone)]
 enum Damage {
     None,
@@ -62,7 +62,7 @@ fn damage() -> impl Strategy<Value = Damage> {
     ]
 }
 
-/// Noise of a length; quicker to make than a choice for every byte.
+/// Noise of this length; faster to generate than a strategy per byte.
 fn noise(len: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Vec<u8>> {
     (len, any::<u64>()).prop_map(|(len, seed)| {
         let mut bytes = vec![0; len];
@@ -71,12 +71,12 @@ fn noise(len: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Vec<u8>>
     })
 }
 
-/// Numbers around every edge that block numbers have.
+/// Numbers around every limit of block numbers.
 fn block() -> impl Strategy<Value = u32> {
     prop_oneof![0_u32..5, (0_u32..5).prop_map(|block| block | LAST_BLOCK), any::<u32>()]
 }
 
-/// A frame of a client, mostly as the table has it.
+/// A client frame, mostly as in the table of commands.
 fn request() -> impl Strategy<Value = Vec<u8>> {
     let instance = prop_oneof![4 => 0_u16..40, 1 => any::<u16>()];
     let data = prop_oneof![
@@ -115,7 +115,7 @@ fn frame(
     RequestFrame { division, ack, id, block, command, instance, attribute, service, data }.emit()
 }
 
-/// One datagram for the simulator: after how many milliseconds, on which port, by whom, what.
+/// One datagram for the simulator: delay in milliseconds, port, sender, bytes.
 type Sent = (u64, bool, u64, Vec<u8>);
 
 fn sent() -> impl Strategy<Value = Sent> {
@@ -127,7 +127,7 @@ fn sent() -> impl Strategy<Value = Sent> {
     })
 }
 
-/// Everything that the simulator sends at `now`.
+/// All datagrams that the simulator sends at `now`.
 fn drain(simulator: &mut Simulator, now: Now) -> Vec<Outgoing> {
     std::iter::from_fn(|| simulator.transmit(now)).collect()
 }
@@ -136,7 +136,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn the_simulator_survives_any_datagrams(script in vec(sent(), 0..60), fs100: bool, busy in 0_u8..4) {
+    fn simulator_survives_random_datagrams(script in vec(sent(), 0..60), fs100: bool, busy in 0_u8..4) {
         let model = if fs100 { Model::Fs100 } else { Model::Dx200 };
         let mut simulator = Simulator::new(Start::for_model(model).with_busy(f64::from(busy) / 20.0));
         let (mut now, mut answers, mut received) = (Now::ZERO, Vec::new(), 0);
@@ -146,7 +146,8 @@ proptest! {
             simulator.receive(now, division, peer, &bytes);
             received += 1;
             answers.append(&mut drain(&mut simulator, now));
-            // Nobody can be made to flood somebody else: a batch backup answers later, but once.
+            // A client must not be able to make the simulator flood another one: a batch backup answers later, but
+            // once.
             prop_assert!(answers.len() <= received, "{} answers to {received} datagrams", answers.len());
             if let Some(wake) = simulator.wake() {
                 prop_assert!(wake > now, "due at {wake:?}, and it is {now:?}");
@@ -157,7 +158,7 @@ proptest! {
             let answer = AnswerFrame::parse(&outgoing.bytes).unwrap();
             prop_assert_eq!(answer.division, outgoing.division);
         }
-        // And it still works.
+        // The simulator still works.
         now += Duration::from_secs(60);
         drain(&mut simulator, now);
         let status = (0..100).find_map(|_| {
@@ -170,9 +171,9 @@ proptest! {
     }
 }
 
-/// Answers that are not fetched are not kept without end.
+/// The number of unfetched answers is limited.
 #[test]
-fn the_simulator_keeps_a_bounded_number_of_answers() {
+fn simulator_limits_its_cached_answers() {
     let mut simulator = Simulator::new(Start::default());
     for _ in 0..6000 {
         simulator.receive(Now::ZERO, Division::Robot, 0, &ReadStatus.request().frame(1));
@@ -180,7 +181,7 @@ fn the_simulator_keeps_a_bounded_number_of_answers() {
     assert_eq!(drain(&mut simulator, Now::ZERO).len(), 4096);
 }
 
-/// An answer to a session: its id and service from what the session sent last, the rest as it comes.
+/// An answer to a session: id and service of the last request, the rest random.
 type Answer = (u64, Option<u8>, u32, Status, Vec<u8>, Damage);
 
 fn answer() -> impl Strategy<Value = Answer> {
@@ -188,7 +189,7 @@ fn answer() -> impl Strategy<Value = Answer> {
         6 => Just(Status::OK),
         1 => select(vec![0xD8FA, 0xFFF6, 0xE444, 0xE29C, 0xE4A1, 0x2010]).prop_map(Status::refused),
         1 => (any::<u8>(), 0_u8..3, any::<u32>()).prop_map(|(code, size, added)| {
-            // What an answer of that size has room for.
+            // Limited to the size of such an answer.
             let added = if size == 0 { 0 } else if size == 1 { added & 0xFFFF } else { added };
             Status { code, added_size: size, added }
         }),
@@ -199,7 +200,7 @@ fn answer() -> impl Strategy<Value = Answer> {
     (wait, id, block(), status, data, damage())
 }
 
-/// Runs a session that is answered by a script, and then by silence, to its end.
+/// Runs a session that gets the answers of a script, and then silence, to its end.
 fn run<S: Session>(session: &mut S, script: Vec<Answer>, feed: impl Fn(&mut S)) -> Result<(), TestCaseError> {
     let deadline = Policy::default().patience();
     let (mut now, mut last, mut script) = (Now::ZERO, Vec::<u8>::new(), script.into_iter());
@@ -238,7 +239,7 @@ fn run<S: Session>(session: &mut S, script: Vec<Answer>, feed: impl Fn(&mut S)) 
                 answers += 1;
             }
             Step::Done(_) => {
-                // At most one frame for each answer, and the repeats of the last one.
+                // At most one frame per answer, and the repetitions of the last frame.
                 let most = answers + 2 + usize::try_from(Policy::default().retries).unwrap() * (answers + 1);
                 prop_assert!(sends <= most, "{sends} frames for {answers} answers");
                 prop_assert!(matches!(session.poll(now + deadline), Step::Done(_)), "the end does not last");
@@ -253,7 +254,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
-    fn an_exchange_ends_whatever_is_answered(script in vec(answer(), 0..40), repeatable: bool) {
+    fn exchange_ends_with_every_answer(script in vec(answer(), 0..40), repeatable: bool) {
         let frame = ReadStatus.request().frame(0);
         let request = RequestFrame::parse(&frame).unwrap();
         let mut session = Exchange::new(&request, repeatable, Policy::default(), &Ids::default());
@@ -261,7 +262,7 @@ proptest! {
     }
 
     #[test]
-    fn a_download_ends_whatever_is_answered(script in vec(answer(), 0..40), limit in 0_u64..3000) {
+    fn download_ends_with_every_answer(script in vec(answer(), 0..40), limit in 0_u64..3000) {
         let frame = files::FileName::new("A.JBI").unwrap().save().frame(0);
         let request = RequestFrame::parse(&frame).unwrap();
         let mut session = Download::new(&request, limit, Policy::default(), &Ids::default());
@@ -278,7 +279,7 @@ proptest! {
     }
 
     #[test]
-    fn an_upload_ends_whatever_is_answered(script in vec(answer(), 0..40), piece in MAX_DATA + 1..2000) {
+    fn upload_ends_with_every_answer(script in vec(answer(), 0..40), piece in MAX_DATA + 1..2000) {
         let frame = files::FileName::new("A.JBI").unwrap().load().frame(0);
         let request = RequestFrame::parse(&frame).unwrap();
         let mut session = Upload::new(&request, Policy::default(), &Ids::default());
@@ -287,7 +288,7 @@ proptest! {
     }
 
     #[test]
-    fn an_upload_of_a_known_end_ends_whatever_is_answered(script in vec(answer(), 0..40), size in 0_usize..2000) {
+    fn upload_of_known_length_ends_with_every_answer(script in vec(answer(), 0..40), size in 0_usize..2000) {
         let frame = files::FileName::new("A.JBI").unwrap().load().frame(0);
         let request = RequestFrame::parse(&frame).unwrap();
         let mut session = Upload::new(&request, Policy::default(), &Ids::default());

@@ -1,8 +1,7 @@
 //! Golden frames of the YERC family, from the FS100 and DX200 manuals (`data/yerc-frames.json` cites the section of each).
 //!
-//! Frames of the client are built from typed values and compared byte by byte; frames of the controller are read into
-//! typed values, compared with what was expected, and written again. If one of these fails, the code is wrong: do not
-//! change the bytes.
+//! Client frames are built from typed values and compared byte by byte. Controller frames are parsed into typed values,
+//! compared with the expected values, and written again. If a test fails, the code is wrong: do not change the bytes.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::needless_pass_by_value, reason = "queries are built where they are sent")]
@@ -49,7 +48,7 @@ fn every_vector_has_a_typed_case() {
 }
 
 #[test]
-fn frames_of_the_client_are_built_from_typed_values() {
+fn builds_client_frames_from_typed_values() {
     let vectors = vectors();
     for (id, frame) in client_frames() {
         let bytes = vectors[id].bytes();
@@ -70,7 +69,7 @@ fn frames_of_the_client_are_built_from_typed_values() {
 }
 
 #[test]
-fn frames_of_the_controller_are_read_into_typed_values() {
+fn parses_controller_frames_into_typed_values() {
     let vectors = vectors();
     for (id, expected) in controller_frames() {
         let bytes = vectors[id].bytes();
@@ -89,7 +88,7 @@ fn frames_of_the_controller_are_read_into_typed_values() {
 }
 
 #[test]
-fn invalid_frames_are_refused() {
+fn refuses_invalid_frames() {
     let vectors = vectors();
     for (id, refusal) in invalid_frames() {
         let bytes = vectors[id].bytes();
@@ -115,7 +114,7 @@ fn invalid_frames_are_refused() {
     }
 }
 
-/// Names of both files in the M vectors: the text of a job, filled up to whole blocks.
+/// Names of both files in the M vectors: the text of a job, padded to complete blocks.
 fn job_text(lines: usize, size: usize) -> Vec<u8> {
     let mut text = b"/JOB\r\n//NAME TESTJOB\r\n//INST\r\n///ATTR SC,RW\r\n///GROUP1 RB1\r\nNOP\r\n".to_vec();
     for line in 0..lines {
@@ -150,7 +149,7 @@ fn position(kind: PositionKind, user: u32, axes: [i32; 8]) -> Position {
 
 /// Id, and the frame built from typed values.
 fn client_frames() -> Vec<(&'static str, Vec<u8>)> {
-    // The outline's form of a register write, which no query builds: 3.2.2 against 3.3.10.
+    // Form of a register write that only the outline shows and no query builds: 3.2.2 against 3.3.10.
     let outline = Request { command: 0x79, instance: 10, attribute: 0, service: 2, data: vec![0x34, 0x12] };
     let mut frames = vec![
         ("M01", send(0, ReadStatus)),
@@ -227,7 +226,7 @@ fn write_frames() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 fn order_frames() -> Vec<(&'static str, Vec<u8>)> {
-    // Full-width characters in the pendant's language, "robot stopped".
+    // Full-width characters in the pendant language, "robot stopped".
     let message = b"\x83\x8d\x83\x7b\x83\x62\x83\x67\x92\xe2\x8e\x7e";
     let straight = CartesianMove {
         layout: MoveLayout::Words26,
@@ -277,11 +276,11 @@ fn order_frames() -> Vec<(&'static str, Vec<u8>)> {
 
 type Read = Box<dyn Fn(&[u8]) -> Vec<u8>>;
 
-/// What a frame of the controller is expected to say.
+/// Expected content of a controller frame.
 struct Expected {
     block: u32,
     status: Status,
-    /// Reads the data, asserts its value, writes it again.
+    /// Parses the data, asserts its value, writes it again.
     read: Read,
 }
 
@@ -289,7 +288,7 @@ fn answer(read: impl Fn(&[u8]) -> Vec<u8> + 'static) -> Expected {
     Expected { block: LAST_BLOCK, status: Status::OK, read: Box::new(read) }
 }
 
-/// A write that was carried out: nothing to read.
+/// Successful write: no data.
 fn done(query: impl Query<Answer = ()> + 'static) -> Expected {
     answer(move |data| {
         query.decode(data).unwrap();
@@ -313,7 +312,7 @@ fn file_data(block: u32, content: Vec<u8>) -> Expected {
     Expected { block, status: Status::OK, read }
 }
 
-/// The names of the M list: 69 jobs.
+/// Names of the M list: 69 jobs.
 fn list_text() -> Vec<u8> {
     (0..69).flat_map(|n| format!("JOB{n:05}.JBI\r\n").into_bytes()).collect()
 }
@@ -563,7 +562,7 @@ fn check_header(name: &str, vector: &Vector, size: usize, ack: bool, id: u8, blo
     assert_eq!(number(&fields["division"]), division, "{name}");
 }
 
-/// The explanation covers every byte once and finds nothing wrong.
+/// The explanation covers every byte once and has no problem.
 fn explain(id: &str, frame: &[u8], sender: Sender) {
     assert_eq!(Sender::guess(frame), sender, "{id}");
     let description = describe(frame, sender, None);

@@ -1,5 +1,5 @@
-//! Sessions, transports and simulators against lines that lose, double and delay, in virtual time, and against ends that
-//! others wrote.
+//! Sessions, transports and simulators on links with loss, duplication and delay, in virtual time, and with programs of
+//! other authors.
 
 mod eip;
 mod faults;

@@ -1,6 +1,6 @@
-//! `armctl serve metrics` and `armctl publish` as services: what `promtool` and a real Prometheus say of pages and of what
-//! is in `docs/monitoring/`, what a service manager and the journal are told, and how services end. What needs a program that is
-//! not installed is skipped, and says so.
+//! `armctl serve metrics` and `armctl publish` as services: `promtool` and Prometheus read the pages and the files of
+//! `docs/monitoring/`; notifications to the service manager and the journal; the end of a service. Tests that need a
+//! missing program are skipped with a message.
 
 #![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 
@@ -19,7 +19,7 @@ use tempfile::TempDir;
 
 use crate::support::simulator::Simulator;
 
-/// A process that is ended with the test.
+/// A process that ends with the test.
 struct Service {
     process: Child,
 }
@@ -63,7 +63,7 @@ fn armctl(folder: &Path) -> Command {
     command
 }
 
-/// Serves metrics somewhere; says where.
+/// Serves metrics on a free port and returns its address.
 fn serve(mut command: Command) -> (Service, SocketAddr) {
     command.args(["serve", "metrics", "--listen", "127.0.0.1:0", "--watch", "100ms"]).stdout(Stdio::piped());
     let mut process = command.spawn().expect("it starts");
@@ -74,7 +74,7 @@ fn serve(mut command: Command) -> (Service, SocketAddr) {
     (Service { process }, place)
 }
 
-/// Head and body of what is at a path.
+/// Header and body of the page at a path.
 fn get(at: SocketAddr, path: &str, accept: &str) -> (String, String) {
     let mut stream = TcpStream::connect(at).expect("somebody listens");
     write!(stream, "GET {path} HTTP/1.1\r\nHost: {at}\r\nAccept: {accept}\r\nConnection: close\r\n\r\n").expect("sent");
@@ -88,9 +88,9 @@ fn page(at: SocketAddr) -> String {
     get(at, "/metrics", "text/plain").1
 }
 
-/// Asks until what comes is what is waited for.
+/// Repeats a request until the answer is as expected.
 fn until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
-    /// Whoever waits as long as that waits for ever.
+    /// Time limit for a wait.
     const PATIENCE: Duration = Duration::from_secs(120);
 
     let began = Instant::now();
@@ -103,7 +103,7 @@ fn until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Whether a program is there; a test that needs it says why it does nothing.
+/// Whether a program is installed; prints the reason if a test is skipped.
 fn is_there(program: &str) -> bool {
     let found = Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
     if !found {
@@ -112,7 +112,7 @@ fn is_there(program: &str) -> bool {
     found
 }
 
-/// Whether a process can have a network and mounts of its own.
+/// Whether a process can have its own network and mounts.
 fn has_namespaces() -> bool {
     let alone = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
     let has = alone.is_ok_and(|status| status.success());
@@ -136,7 +136,7 @@ fn promtool(words: &[&str]) {
     succeeded(&output);
 }
 
-/// One simulator of each family and one robot that nobody is.
+/// One simulator of each family and one unreachable robot.
 fn mixed() -> (Vec<Simulator>, TempDir) {
     let simulators: Vec<Simulator> = ["yerc", "yrcx", "toyo"].map(Simulator::start).into();
     let urls: Vec<&str> = simulators.iter().map(|simulator| simulator.url.as_str()).collect();
@@ -150,7 +150,7 @@ fn mixed() -> (Vec<Simulator>, TempDir) {
     (simulators, folder)
 }
 
-/// Waits until something is known of all four.
+/// Waits until all four robots are known.
 fn known(at: SocketAddr) -> String {
     until("all robots are known", || {
         let page = page(at);
@@ -159,13 +159,13 @@ fn known(at: SocketAddr) -> String {
 }
 
 #[test]
-fn pages_are_in_the_form_that_is_asked_for() {
+fn serves_pages_in_the_requested_format() {
     let (_simulators, folder) = mixed();
     let (_service, at) = serve(armctl(folder.path()));
     let text = known(at);
     assert!(text.contains("armctl_robot_up{robot=\"cell3\",family=\"yerc\"} 1\n"), "{text}");
     assert!(text.contains("armctl_robot_up{robot=\"gone\",family=\"toyo\"} 0\n"), "{text}");
-    // What the page of the documentation shows is there.
+    // The page of the documentation shows existing metrics.
     let shown = std::fs::read_to_string(docs("README.md")).expect("the page is there");
     let shown = shown.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a page");
     for line in shown.lines() {
@@ -185,7 +185,7 @@ fn pages_are_in_the_form_that_is_asked_for() {
 }
 
 #[test]
-fn rules_and_configuration_are_what_prometheus_takes() {
+fn prometheus_accepts_rules_and_configuration() {
     if !is_there("promtool") {
         return;
     }
@@ -199,7 +199,7 @@ fn rules_and_configuration_are_what_prometheus_takes() {
 }
 
 #[test]
-fn the_dashboard_asks_for_what_is_there() {
+fn dashboard_queries_existing_metrics() {
     let text = std::fs::read_to_string(docs("dashboard.json")).expect("it is there");
     let dashboard: Value = serde_json::from_str(&text).expect("JSON");
     let panels = dashboard["panels"].as_array().expect("panels");
@@ -228,7 +228,7 @@ fn the_dashboard_asks_for_what_is_there() {
 }
 
 #[test]
-fn a_prometheus_reads_it_and_its_alerts_come_and_go() {
+fn prometheus_scrapes_metrics_and_fires_alerts() {
     if !is_there("prometheus") {
         return;
     }
@@ -252,11 +252,12 @@ fn a_prometheus_reads_it_and_its_alerts_come_and_go() {
     };
     until("three answer", || (names(ask("armctl_robot_up == 1")) == ["cell3", "loader", "press"]).then_some(()));
     until("it is read", || ask("up{job=\"armctl\"}").iter().any(|(_, value)| value == "1").then_some(()));
-    // X, Y and Z of one, four axes of another; a YRCX tells no position where no session has its command.
+    // X, Y and Z of one robot, four axes of another. A YRCX reports no position if no session has its command
+    // connection.
     until("positions are there", || (ask("armctl_axis_position_meters").len() == 3 + 4).then_some(()));
     let rate = "histogram_quantile(0.99, sum by (robot, le) (rate(armctl_poll_duration_seconds_bucket[1m])))";
     until("a histogram is one", || ask(rate).iter().any(|(_, value)| value != "NaN").then_some(()));
-    // In OpenMetrics a counter's family has no `_total`.
+    // In OpenMetrics, the family name of a counter has no `_total`.
     until("its type is known", || {
         let told = get(prometheus, "/api/v1/metadata?metric=armctl_polls", "*/*").1;
         told.contains("\"counter\"").then_some(())
@@ -270,7 +271,7 @@ fn a_prometheus_reads_it_and_its_alerts_come_and_go() {
     until("and all are in the list", || (names(ask(pending)).len() == 4).then_some(()));
 }
 
-/// Starts a Prometheus that reads metrics at an address five times a second.
+/// Starts a Prometheus that reads metrics at an address five times per second.
 fn prometheus(folder: &Path, at: SocketAddr) -> (Service, SocketAddr) {
     let config = std::fs::read_to_string(docs("prometheus.yml")).expect("it is there");
     let config = config.replace("127.0.0.1:9464", &at.to_string()).replace(": 5s", ": 200ms");
@@ -291,7 +292,7 @@ fn prometheus(folder: &Path, at: SocketAddr) -> (Service, SocketAddr) {
 fn query(at: SocketAddr, question: &str) -> Option<Value> {
     let escaped: String = question.bytes().map(|byte| format!("%{byte:02x}")).collect();
     let (head, body) = get(at, &format!("/api/v1/query?query={escaped}"), "application/json");
-    // Long answers come in pieces, each with its length on a line before it.
+    // A long answer is in chunks, each after a line with its length.
     let body = if head.to_lowercase().contains("transfer-encoding: chunked") { joined(&body) } else { body };
     serde_json::from_str(&body).ok()
 }
@@ -310,7 +311,7 @@ fn joined(mut pieces: &str) -> String {
 }
 
 #[test]
-fn robots_come_and_go_while_it_runs() {
+fn follows_added_and_removed_robots() {
     let simulator = Simulator::start("toyo");
     let folder = plant(&[("loader", "toyo", &simulator.url)]);
     let (_service, at) = serve(armctl(folder.path()));
@@ -326,8 +327,8 @@ fn robots_come_and_go_while_it_runs() {
     assert!(page(at).contains("armctl_inventory_last_reload_successful 1\n"));
 }
 
-/// Runs as a service among robots of which one answers; sees that the manager is told so, with what this service says
-/// besides, and that SIGTERM ends it.
+/// Runs as a service with one reachable robot. Checks the notifications to the manager, additional ones of this
+/// service, and the end at SIGTERM.
 fn is_managed(words: &[&str], besides: &str) {
     let folder = plant(&[("cell3", "yerc", "sim:"), ("gone", "toyo", "tcp://127.0.0.1:1")]);
     let path = folder.path().join("notify");
@@ -348,14 +349,14 @@ fn is_managed(words: &[&str], besides: &str) {
 }
 
 #[test]
-fn a_service_manager_is_told_and_sigterm_ends_it_well() {
+fn notifies_the_service_manager_and_ends_on_sigterm() {
     is_managed(&["serve", "metrics", "--listen", "127.0.0.1:0"], "");
-    // A broker that is not there holds up nobody who waits for the service.
+    // A missing broker does not delay the service manager.
     is_managed(&["publish", "mqtt://127.0.0.1:1"], "; not connected to mqtt://127.0.0.1:1");
 }
 
 #[test]
-fn idle_connections_do_not_hold_up_a_page() {
+fn idle_connections_do_not_block_a_page() {
     let folder = plant(&[("cell3", "yerc", "sim:")]);
     let (_service, at) = serve(armctl(folder.path()));
     let silent: Vec<TcpStream> = (0..64)
@@ -368,7 +369,7 @@ fn idle_connections_do_not_hold_up_a_page() {
         })
         .collect();
     assert!(page(at).contains("armctl_"), "there is a page");
-    // Those that came last are open still: no time has passed that would have closed them.
+    // The newest connections are still open, because their time limit has not passed.
     for mut stream in silent.into_iter().skip(40) {
         stream.set_nonblocking(true).expect("set");
         let read = stream.read(&mut [0; 1]).map_err(|error| error.kind());
@@ -376,7 +377,7 @@ fn idle_connections_do_not_hold_up_a_page() {
     }
 }
 
-/// The log of a service, as a journal if it is one, until it has a line with all of these.
+/// Log of a service, as a journal if it is one, once it has a line with all of these texts.
 struct Log {
     path: PathBuf,
     _service: Service,
@@ -387,7 +388,7 @@ impl Log {
         let path = folder.join("log");
         let file = std::fs::File::create(&path).expect("a file");
         let stat = file.metadata().expect("it is there");
-        // A variable that a terminal has passed on is not the journal.
+        // A variable inherited from a terminal is not that of the journal.
         let inode = if is_journal { stat.ino() } else { stat.ino() + 1 };
         command.env("JOURNAL_STREAM", format!("{}:{inode}", stat.dev())).stderr(file).stdout(Stdio::null());
         Self { path, _service: Service { process: command.spawn().expect("it starts") } }
@@ -402,7 +403,7 @@ impl Log {
 }
 
 #[test]
-fn the_journal_gets_priorities_and_fields_and_a_file_gets_words() {
+fn journal_gets_priorities_and_fields_and_a_file_gets_text() {
     let metrics = ["serve", "metrics", "--listen", "127.0.0.1:0"];
     for words in [&metrics[..], &["publish", "mqtt://127.0.0.1:1"]] {
         let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
@@ -431,9 +432,9 @@ fn the_journal_gets_priorities_and_fields_and_a_file_gets_words() {
     assert!(line.starts_with("warning: gone (tcp://127.0.0.1:1)") && !line.contains("kind="), "{line}");
 }
 
-/// In a namespace of its own, where the journal is this test.
+/// In its own namespace, where the journal is this test.
 #[test]
-fn entries_of_the_journal_have_fields_of_their_own() {
+fn journal_entries_have_fields() {
     if !has_namespaces() {
         return;
     }
@@ -460,10 +461,10 @@ fn entries_of_the_journal_have_fields_of_their_own() {
 }
 
 #[test]
-fn a_port_that_others_reach_is_warned_of() {
+fn warns_about_a_reachable_port() {
     let folder = plant(&[("cell3", "yerc", "sim:")]);
     let log = folder.path().join("log");
-    // In a network of its own, where nobody is.
+    // In its own empty network.
     if !has_namespaces() {
         return;
     }
@@ -477,7 +478,7 @@ fn a_port_that_others_reach_is_warned_of() {
 }
 
 #[test]
-fn a_port_in_use_is_refused() {
+fn reports_a_port_in_use() {
     let taken = TcpListener::bind("127.0.0.1:0").expect("a port");
     let folder = plant(&[("cell3", "yerc", "sim:")]);
     let words =
@@ -489,11 +490,11 @@ fn a_port_in_use_is_refused() {
 }
 
 #[test]
-fn units_are_such_as_systemd_takes() {
+fn systemd_accepts_the_units() {
     let folder = tempfile::tempdir().expect("a folder");
     let hardening = ["armctl-metrics.service", "armctl-publish.service"].map(|name| {
         let text = std::fs::read_to_string(docs(name)).expect("it is there");
-        // Ready, watched, started anew, and its command line is one.
+        // Ready, watched, restarted, and with a valid command line.
         for wanted in ["Type=notify", "WatchdogSec=", "Restart=on-failure", "DynamicUser=yes", "NoNewPrivileges=yes"] {
             assert!(text.contains(wanted), "{name}: {wanted}");
         }

@@ -1,8 +1,8 @@
-//! The pictures of the terminal in `docs/pictures/` are what the program prints.
+//! The pictures of the terminal in `docs/pictures/` show the output of the program.
 //!
-//! Each is a session that is typed into a shell, in a folder of its own, and drawn as a terminal of [`COLUMNS`] shows it.
-//! `ARMCTL_BLESS=1 cargo test --test terminal pictures::` draws them anew. What would differ from run to run is settled: the
-//! simulators begin as files say, and [`settled`] puts one time for all.
+//! Each picture is a shell session in its own folder, drawn as a terminal of [`COLUMNS`] shows it. `ARMCTL_BLESS=1
+//! cargo test --test terminal pictures::` draws them again. Output that changes between runs is fixed: the simulators
+//! start with states from files, and [`settled`] replaces all times by one.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -10,10 +10,10 @@ use std::process::{Command, Stdio};
 
 use anstyle_svg::Term;
 
-/// Width of the terminal; longer lines wrap as they do there.
+/// Width of the terminal; longer lines wrap.
 const COLUMNS: usize = 90;
 
-/// The pictures: name, and what is typed.
+/// Pictures: name, and typed commands.
 const PICTURES: [(&str, &[&str]); 5] = [
     ("fleet", &["armctl status"]),
     ("alarm", &["armctl -r weld2 yerc alarm list", "armctl -r tray toyo alarm list", "armctl explain yrcx 12.600"]),
@@ -34,7 +34,7 @@ const PICTURES: [(&str, &[&str]); 5] = [
 /// The panel of `armctl teach`, which its own test draws.
 const DRAWN_ELSEWHERE: [&str; 1] = ["teach"];
 
-/// What lies in the folder.
+/// Files in the folder.
 const FILES: [(&str, &str); 5] = [
     (
         "robots.toml",
@@ -85,7 +85,7 @@ fn pictures_are_current() {
 }
 
 #[test]
-fn every_picture_is_shown_somewhere() {
+fn every_picture_is_used() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let pages = ["README.md", "docs/yerc.md", "docs/yrcx.md", "docs/toyo.md", "docs/safety.md"];
     let pages = pages.map(|page| std::fs::read_to_string(root.join(page)).expect("the page is there"));
@@ -96,7 +96,7 @@ fn every_picture_is_shown_somewhere() {
     assert_eq!(files, PICTURES.len() + DRAWN_ELSEWHERE.len(), "a picture that nobody draws");
 }
 
-/// What stands on the terminal: the commands behind their prompts, and all they print.
+/// Content of the terminal: the commands after their prompts, and their output.
 fn session(typed: &[&str]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, content) in FILES {
@@ -118,7 +118,7 @@ fn session(typed: &[&str]) -> String {
     shown
 }
 
-/// Text with one time for all that a motion may take.
+/// Text with the same duration for all motions.
 fn settled(text: &str) -> String {
     let Some((before, rest)) = text.split_once("moved to point 19 in ") else { return text.to_owned() };
     let (time, after) = rest.split_once(" s\n").expect("a time ends with its unit");
@@ -136,7 +136,7 @@ fn drawn(shown: &str) -> String {
 const GREY: anstyle::Color = anstyle::Color::Rgb(anstyle::RgbColor(0xcc, 0xcc, 0xcc));
 const NIGHT: anstyle::Color = anstyle::Color::Rgb(anstyle::RgbColor(0x16, 0x1b, 0x22));
 
-/// A line as the terminal breaks it: where it is full, whatever stands there.
+/// A line, broken at the terminal width.
 fn wrapped(line: &str) -> String {
     let mut out = String::new();
     let mut column = 0;
@@ -157,7 +157,7 @@ fn wrapped(line: &str) -> String {
 }
 
 #[test]
-fn lines_wrap_as_on_a_terminal() {
+fn wraps_lines_as_a_terminal() {
     let line = format!("\u{1b}[1m{}\u{1b}[0m", "x".repeat(COLUMNS));
     assert_eq!(wrapped(&line), line);
     assert_eq!(wrapped(&format!("{line}y")), format!("{line}\ny"));

@@ -1,4 +1,4 @@
-//! Properties of the YERC codec: what is written reads back, and no bytes at all make it panic.
+//! Properties of the YERC codec: values round-trip, and no bytes cause a panic.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -119,7 +119,7 @@ fn datagram() -> impl Strategy<Value = Vec<u8>> {
 
 proptest! {
     #[test]
-    fn frames_read_back(request in request(), id: u8, block: u32, ack: bool, code: u8, added_size in 0_u8..3, added: u32) {
+    fn round_trips_frames(request in request(), id: u8, block: u32, ack: bool, code: u8, added_size in 0_u8..3, added: u32) {
         let file = request.division() == Division::File;
         let frame = RequestFrame {
             division: request.division(),
@@ -142,7 +142,7 @@ proptest! {
     }
 
     #[test]
-    fn payloads_read_back(
+    fn round_trips_payloads(
         words: [u32; 2], alarm in alarm(), name in text(), more: [u32; 3], names in vec(text::<4>(), 8),
         start in text(), elapsed in text(), version in text(), model in text(), parameters in text(),
     ) {
@@ -161,7 +161,7 @@ proptest! {
     }
 
     #[test]
-    fn axes_and_positions_read_back_at_any_length(values in vec(any::<i32>(), 0..=8), position in position()) {
+    fn round_trips_axes_and_positions_of_every_length(values in vec(any::<i32>(), 0..=8), position in position()) {
         let axes = Axes::new(&values).unwrap();
         let fitted = Position { axes, ..position };
         prop_assert_eq!(Position::parse(&fitted.emit_fitted()), Ok(fitted));
@@ -172,7 +172,7 @@ proptest! {
     }
 
     #[test]
-    fn moves_read_back(target in cartesian(), words in any::<[u32; 5]>(), axes: [i32; 8], tail: [i32; 9]) {
+    fn round_trips_moves(target in cartesian(), words in any::<[u32; 5]>(), axes: [i32; 8], tail: [i32; 9]) {
         prop_assert_eq!(CartesianMove::parse(&target.emit()), Ok(target));
         prop_assert_eq!(target.emit().len(), target.layout.size());
         let pulses = PulseMove {
@@ -189,7 +189,7 @@ proptest! {
     }
 
     #[test]
-    fn values_read_back_even_with_bytes_behind(value in value(), extra in vec(any::<u8>(), 0..8)) {
+    fn round_trips_values_with_extra_bytes(value in value(), extra in vec(any::<u8>(), 0..8)) {
         let mut data = value.emit();
         prop_assert_eq!(data.len(), value.kind().size());
         data.extend(extra);
@@ -197,7 +197,7 @@ proptest! {
     }
 
     #[test]
-    fn positions_read_back_as_text(position in position(), axes: [i32; 8], other in kind()) {
+    fn round_trips_positions_as_text(position in position(), axes: [i32; 8], other in kind()) {
         prop_assert_eq!(position.to_string().parse(), Ok(position));
         let base = BasePosition { kind: other, axes: Axes::full(axes) };
         prop_assert_eq!(base.to_string().parse(), Ok(base));
@@ -206,14 +206,14 @@ proptest! {
     }
 
     #[test]
-    fn units_read_back(value: i32) {
+    fn round_trips_units(value: i32) {
         for unit in [units::MILLIMETRE, units::DEGREE, units::PERCENT, units::MILLIMETRE_PER_SECOND, units::PULSE] {
             prop_assert_eq!(unit.parse(&unit.show(value).to_string()), Ok(value));
         }
     }
 
     #[test]
-    fn texts_never_panic(typed in any::<String>(), bytes in vec(any::<u8>(), 0..100)) {
+    fn parsers_never_panic_on_random_text(typed in any::<String>(), bytes in vec(any::<u8>(), 0..100)) {
         for unit in [units::MILLIMETRE, units::PULSE] {
             let _ = unit.parse(&typed);
         }
@@ -225,7 +225,7 @@ proptest! {
     }
 
     #[test]
-    fn positions_of_random_pairs_never_panic(pairs in vec("(x|y|z|rx|1|8|9|tool|form|ext)=[-+0-9.xa-f]{0,12}", 0..12)) {
+    fn positions_never_panic_on_random_pairs(pairs in vec("(x|y|z|rx|1|8|9|tool|form|ext)=[-+0-9.xa-f]{0,12}", 0..12)) {
         for head in ["base", "pulse", "type7", "type0", "type99999999999"] {
             let typed = format!("{head}:{}", pairs.join(","));
             if let Ok(position) = typed.parse::<Position>() {
@@ -235,7 +235,7 @@ proptest! {
     }
 
     #[test]
-    fn any_datagram_is_explained(frame in datagram(), asked in request()) {
+    fn explains_every_datagram(frame in datagram(), asked in request()) {
         for sender in [Sender::guess(&frame), Sender::Client, Sender::Controller] {
             for request in [None, Some(&asked)] {
                 let description = describe(&frame, sender, request);
@@ -251,7 +251,7 @@ proptest! {
     }
 
     #[test]
-    fn any_request_is_judged(request in request()) {
+    fn validates_every_request(request in request()) {
         for model in Model::ALL {
             if let Err(error) = request.check(model) {
                 prop_assert!(!error.to_string().is_empty());
@@ -261,7 +261,7 @@ proptest! {
     }
 
     #[test]
-    fn any_answer_is_decoded_or_refused(data in vec(any::<u8>(), 0..=479), numbers in vec(any::<u16>(), 1..20)) {
+    fn decodes_or_refuses_every_answer(data in vec(any::<u8>(), 0..=479), numbers in vec(any::<u16>(), 1..20)) {
         let _ = (Alarm::parse(&data), Alarm::parse_with_texts(&data), JobInfo::parse(&data), AxisNames::parse(&data));
         let _ = (ManagementTime::parse(&data).map(|time| time.seconds()), SystemInfo::parse(&data), Axes::parse(&data));
         if let Ok(alarm) = Alarm::parse(&data) {
@@ -280,7 +280,7 @@ proptest! {
     }
 
     #[test]
-    fn plans_read_everything_once(picks in vec((0_usize..9, 0_u16..300), 0..200)) {
+    fn plans_read_every_item_once(picks in vec((0_usize..9, 0_u16..300), 0..200)) {
         let kinds: Vec<VariableKind> = VariableKind::all().collect();
         let mut references: Vec<Reference> = picks.into_iter().map(|(kind, number)| Reference::new(kinds[kind], number)).collect();
         let steps = plan_reads(&references);
@@ -299,7 +299,7 @@ proptest! {
     }
 
     #[test]
-    fn plans_write_only_what_is_named(picks in vec((0_u16..400, 1_u8..), 0..200)) {
+    fn plans_write_only_named_items(picks in vec((0_u16..400, 1_u8..), 0..200)) {
         let values: Vec<(u16, Value)> = picks.iter().map(|&(number, value)| (number, Value::Byte(value))).collect();
         let mut cells = [0_u8; 500];
         for step in plan_writes(&values).unwrap() {
@@ -320,7 +320,7 @@ proptest! {
     }
 
     #[test]
-    fn signal_plans_keep_to_the_table(numbers in vec(0_u16..1000, 0..60), groups in vec(prop_oneof![1_u16..=128, 1001_u16..=1128, 8201_u16..=8220], 0..60)) {
+    fn signal_plans_match_the_table(numbers in vec(0_u16..1000, 0..60), groups in vec(prop_oneof![1_u16..=128, 1001_u16..=1128, 8201_u16..=8220], 0..60)) {
         for model in Model::ALL {
             for step in plan_register_reads(model, &numbers).unwrap() {
                 prop_assert_eq!(step.request().check(model), Ok(()));
@@ -332,7 +332,7 @@ proptest! {
     }
 
     #[test]
-    fn written_variables_pass_the_table(number: u16, value in value()) {
+    fn written_variables_match_the_table(number: u16, value in value()) {
         if let Ok(query) = WriteVariable::new(number, value.clone()) {
             prop_assert_eq!(query.request().check(Model::Dx200), Ok(()));
             prop_assert_eq!(query.request().data, value.emit());
@@ -340,7 +340,7 @@ proptest! {
     }
 }
 
-/// The data a controller would answer, where the first byte of each element is `first_byte` of its number.
+/// Data of an answer in which the first byte of each element is `first_byte` of its number.
 fn answer(step: &impl Query, first_byte: impl Fn(u16) -> u8) -> Vec<u8> {
     let request = step.request();
     let size = request.row().unwrap().size();

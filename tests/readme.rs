@@ -1,12 +1,11 @@
 //! Runs the console blocks of the README and of `docs/` with the built binary and compares what they print.
 //!
-//! The blocks below one `##` heading, and those before the first one, are one shell session, in a folder of its own, with
-//! a home of its own and no `ARMCTL_…` variables. `...` on a line of its own stands for any lines, `[..]` for any text
-//! within a line. A command may only fail where the next one is `echo $?`, and its envelopes follow their schemas.
-//! Sections that name `udp://127.0.0.1:10040`, `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator of their
-//! own, on ports that the system chooses.
-//! TOML blocks that begin with `# NAME.toml` are files of that name in the folders of that page's sessions. Blocks
-//! marked `sh` are not run: installation, real controllers.
+//! The blocks below one `##` heading, and those before the first one, are one shell session in its own folder with its
+//! own home and without `ARMCTL_…` variables. `...` on a separate line matches any lines, `[..]` any text within a
+//! line. A command can fail only if the next command is `echo $?`. Envelopes must match their schemas. Sections with
+//! `udp://127.0.0.1:10040`, `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator on free ports. TOML
+//! blocks that begin with `# NAME.toml` become files in the folders of the page's sessions. Blocks with the language
+//! `sh` (installation, real controllers) are not run.
 //!
 //! `ARMCTL_BLESS=1 cargo test --test terminal readme::` writes what was printed into the blocks that differ.
 #![cfg(unix)]
@@ -22,10 +21,10 @@ use snapbox::IntoData as _;
 
 use crate::support::schemas;
 
-/// Families, and where blocks find the simulator of each, as a reader starts it without arguments.
+/// Families, and the addresses of their simulators in the blocks.
 const DOCUMENTED: [(&str, &str); 3] =
     [("yerc", "udp://127.0.0.1:10040"), ("toyo", "tcp://127.0.0.1:4001"), ("yrcx", "eip://127.0.0.1:44818")];
-/// Separates the commands of a block in the output of its shell.
+/// Separator of the commands of a block in the shell output.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
 const PAGES: [&str; 13] = [
@@ -45,13 +44,13 @@ const PAGES: [&str; 13] = [
 ];
 
 #[test]
-fn console_blocks_print_what_they_show() {
+fn console_blocks_match_the_output() {
     let bless = std::env::var_os("ARMCTL_BLESS").is_some();
     let mut pages: Vec<Page> = PAGES.iter().map(|name| Page::read(name)).collect();
     let sessions: Vec<Session> = pages.iter().flat_map(Page::sessions).collect();
     let ended = side_by_side(&sessions, |session| run(&session.shown, &session.files));
     let mut wrong = Vec::new();
-    // From the end, so that blessing one section leaves the places of those before it.
+    // From the end, so that a written section does not move the earlier ones.
     for (session, ended) in sessions.iter().zip(ended).rev() {
         let place = format!("{}, {}", PAGES[session.page], session.heading);
         let printed = match ended {
@@ -85,7 +84,7 @@ struct Page {
     text: String,
 }
 
-/// What stands below one heading: a shell session.
+/// The blocks below one heading: a shell session.
 struct Session {
     page: usize,
     heading: String,
@@ -119,7 +118,7 @@ impl Page {
     }
 }
 
-/// Does the work on each item, on as many threads as there are cores and a few more, as the work mostly waits.
+/// Runs the work for each item on some more threads than there are cores, because the work mostly waits.
 fn side_by_side<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let threads = std::thread::available_parallelism().map_or(1, usize::from) * 3;
@@ -141,7 +140,7 @@ fn side_by_side<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) ->
 }
 
 #[test]
-fn links_lead_somewhere() {
+fn every_link_has_a_target() {
     let anchor = |heading: &str| -> String {
         let kept = heading.to_lowercase();
         kept.chars()
@@ -172,10 +171,10 @@ fn links_lead_somewhere() {
 }
 
 #[test]
-fn recipes_work_with_jq_itself() {
+fn recipes_work_with_jq() {
     const PAGE: &str = "docs/scripting.md";
     if Command::new("jq").arg("--version").stdout(Stdio::null()).status().is_err() {
-        // `.ci/run` installs it; elsewhere the recipes run with --jq alone.
+        // `.ci/run` installs jq; elsewhere the recipes run only with --jq.
         return;
     }
     let text = std::fs::read_to_string(root().join(PAGE)).expect("the page is there");
@@ -200,13 +199,13 @@ fn recipes_work_with_jq_itself() {
     assert!(recipes > 10, "{PAGE} has only {recipes} recipes");
 }
 
-/// A block with `--json | jq -rc FILTER` wherever it has `--jq FILTER`, and how often that is.
+/// A block with `--json | jq -rc FILTER` instead of `--jq FILTER`, and the number of replacements.
 fn piped(block: &str) -> (String, usize) {
     let mut parts = block.split(" --jq ");
     let mut made = parts.next().unwrap_or_default().to_owned();
     let mut found = 0;
     for part in parts {
-        // Where the filter is quoted it ends with its quote, else with the word.
+        // A quoted filter ends with its quote, another one with the word.
         let end = match part.strip_prefix('\'') {
             Some(quoted) => quoted.find('\'').map(|end| end + 2),
             None => part.find(|c: char| c.is_whitespace() || c == ')'),
@@ -218,7 +217,7 @@ fn piped(block: &str) -> (String, usize) {
     (made, found)
 }
 
-/// What the commands of a page printed, with numbers as every jq writes them, and without times.
+/// Output of the commands of a page, with numbers in a common notation and without times.
 fn printed(page: &str) -> String {
     let lines = page.lines().filter(|line| !line.starts_with("$ ") && !line.starts_with("> "));
     let mut printed: String = lines.flat_map(|line| [line, "\n"]).collect();
@@ -229,7 +228,7 @@ fn printed(page: &str) -> String {
     untimed.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Whether a line that is an envelope, or several, is what the schemas promise.
+/// Checks a line with one or several envelopes against the schemas.
 fn promise(line: &str) -> Result<(), String> {
     let envelopes = match serde_json::from_str(line) {
         Ok(serde_json::Value::Array(several)) => several,
@@ -240,7 +239,7 @@ fn promise(line: &str) -> Result<(), String> {
     envelopes.try_for_each(|envelope| schemas::check(envelope).map_err(|why| format!("{why} in\n{line}")))
 }
 
-/// The commands of the first block below a heading of the README.
+/// Commands of the first block below a heading of the README.
 fn first_block(heading: &str) -> Vec<String> {
     let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
     let (_, after) = readme.split_once(heading).expect("a section that says how to start");
@@ -250,7 +249,7 @@ fn first_block(heading: &str) -> Vec<String> {
 }
 
 #[test]
-fn two_commands_try_it_and_four_lead_to_a_robot() {
+fn readme_starts_with_two_commands_and_reaches_a_robot_with_four() {
     assert_eq!(first_block("## Try it"), ["cargo run -- --sim yerc status", "cargo test"]);
     assert_eq!(
         first_block("## Get started"),
@@ -262,7 +261,7 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Where the sections are, each with its heading.
+/// Ranges of the sections, with their headings.
 fn sections(text: &str) -> Vec<Range<usize>> {
     let headings = text.match_indices("\n## ").map(|(at, _)| at + 1);
     let starts: Vec<usize> = std::iter::once(0).chain(headings).collect();
@@ -270,13 +269,13 @@ fn sections(text: &str) -> Vec<Range<usize>> {
     starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
 }
 
-/// Name and content of the files that a page shows.
+/// Names and contents of the files on a page.
 fn files(text: &str) -> Vec<(String, String)> {
     let named = |block: &str| Some((block.lines().next()?.strip_prefix("# ")?.to_owned(), block.to_owned()));
     blocks(text, "toml").into_iter().filter_map(|range| named(&text[range])).collect()
 }
 
-/// Where the insides of the blocks of a language are.
+/// Ranges of the contents of the blocks of a language.
 fn blocks(text: &str, language: &str) -> Vec<Range<usize>> {
     let mut blocks = Vec::new();
     let mut inside = None;
@@ -296,7 +295,7 @@ fn blocks(text: &str, language: &str) -> Vec<Range<usize>> {
     blocks
 }
 
-/// Runs the commands of a section's blocks in one session; what comes back is the blocks as they should read.
+/// Runs the commands of a section's blocks in one session, and returns the blocks with their output.
 fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     for (name, content) in files {
@@ -312,7 +311,7 @@ fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, Str
     }
     let output = shell(&script, folder.path())?;
     let output = simulators.iter().fold(output, |output, simulator| simulator.documented(&output));
-    // What a command printed stands before its mark, its exit code behind it.
+    // The output of a command precedes its mark, its exit code follows it.
     let mut rest = output.as_str();
     let mut pages = Vec::new();
     for block in &blocks {
@@ -332,7 +331,7 @@ fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, Str
     Ok(pages)
 }
 
-/// The commands of a block: lines that begin with `$ `, continued by lines that begin with `> `.
+/// Commands of a block: lines that begin with `$ `, continued by lines that begin with `> `.
 fn commands(block: &str) -> Vec<String> {
     let mut commands: Vec<String> = Vec::new();
     for line in block.lines() {
@@ -363,7 +362,7 @@ fn shell(script: &str, folder: &Path) -> Result<String, String> {
     String::from_utf8(output.stdout).map_err(|error| error.to_string())
 }
 
-/// A simulator on ports of its own; it ends with the block.
+/// A simulator on free ports; it ends with the block.
 struct Simulator {
     process: Child,
     target: String,
@@ -390,7 +389,7 @@ impl Simulator {
     }
 
     fn documented(&self, output: &str) -> String {
-        // Addresses stand in messages without their scheme as well.
+        // Messages also contain addresses without the scheme.
         let address = |url: &str| url.split_once("://").map_or_else(String::new, |(_, address)| address.to_owned());
         output.replace(&self.target, self.documented).replace(&address(&self.target), &address(self.documented))
     }
@@ -398,7 +397,7 @@ impl Simulator {
 
 impl Drop for Simulator {
     fn drop(&mut self) {
-        // A process that has ended already is as good.
+        // The process may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

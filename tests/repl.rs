@@ -1,4 +1,4 @@
-//! `armctl repl` on a terminal: prompt, completion, history, Ctrl-C, questions, the link that others share, every way out.
+//! `armctl repl` on a terminal: prompt, completion, history, Ctrl-C, questions, shared link, every exit.
 #![cfg(unix)]
 
 use std::process::Command;
@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-/// A user with a home of his own.
+/// A user with a home folder.
 struct Desk {
     folder: TempDir,
 }
@@ -26,14 +26,14 @@ impl Desk {
         command
     }
 
-    /// At the prompt.
+    /// Starts the prompt.
     fn repl(&self, line: &str) -> Terminal {
         let mut repl = Terminal::start(self.command(line), 100, 30).expect("a terminal");
         repl.says("ends the prompt.");
         repl
     }
 
-    /// The data of a command elsewhere.
+    /// Data of a command in another process.
     fn data(&self, line: &str) -> Value {
         let output = self.command(&format!("{line} --json")).output().expect("it runs");
         assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
@@ -42,7 +42,7 @@ impl Desk {
 }
 
 #[test]
-fn the_prompt_tells_how_the_robot_is_and_lines_change_it() {
+fn prompt_shows_the_robot_state() {
     let desk = Desk::new();
     let mut repl = desk.repl("yerc --sim");
     repl.says("sim [simulated, servo on] yerc>");
@@ -59,7 +59,7 @@ fn the_prompt_tells_how_the_robot_is_and_lines_change_it() {
 }
 
 #[test]
-fn words_and_names_that_the_robot_holds_are_completed() {
+fn completes_words_and_names_of_the_robot() {
     let desk = Desk::new();
     let mut repl = desk.repl("toyo repl --sim");
     repl.press("param get soft-limit-p\t\r");
@@ -72,7 +72,7 @@ fn words_and_names_that_the_robot_holds_are_completed() {
 }
 
 #[test]
-fn ctrl_c_stops_the_motion_and_not_the_prompt() {
+fn ctrl_c_stops_the_motion_but_not_the_prompt() {
     let desk = Desk::new();
     let mut repl = desk.repl("yerc repl --sim");
     repl.press("move relative --z 400 --speed 1mm/s\r");
@@ -84,7 +84,7 @@ fn ctrl_c_stops_the_motion_and_not_the_prompt() {
     repl.says("HOLD is off");
     repl.says("yerc> ");
     repl.press("half a line");
-    // The grey rest of a line that was typed before comes and goes meanwhile.
+    // The grey suggestion of an earlier line comes and goes.
     repl.says("a line");
     repl.press("\x03");
     repl.says("yerc> ");
@@ -110,11 +110,11 @@ fn ctrl_c_twice_at_the_prompt_leaves() {
 }
 
 #[test]
-fn asked_to_end_it_leaves_the_terminal_as_it_was() {
+fn termination_restores_the_terminal() {
     for signal in ["TERM", "HUP", "QUIT"] {
         let desk = Desk::new();
         let mut repl = desk.repl("yrcx repl --sim");
-        // Before that the terminal itself echoes.
+        // Before that, the terminal itself echoes.
         repl.says("yrcx>");
         repl.press("half a line");
         repl.says("half a line");
@@ -126,7 +126,7 @@ fn asked_to_end_it_leaves_the_terminal_as_it_was() {
 }
 
 #[test]
-fn a_real_robot_is_moved_when_the_question_is_answered_over_a_link_that_others_share() {
+fn moves_a_real_robot_after_the_question_over_a_shared_link() {
     let (desk, simulator) = (Desk::new(), Simulator::start("toyo"));
     let mut repl = desk.repl(&format!("-t {} repl", simulator.url));
     repl.press("home\r");
@@ -142,7 +142,7 @@ fn a_real_robot_is_moved_when_the_question_is_answered_over_a_link_that_others_s
 }
 
 #[test]
-fn lines_are_remembered_until_the_next_time() {
+fn stores_the_line_history() {
     let desk = Desk::new();
     for (typed, shown) in [("explain yerc 2060\r", "0x2060"), ("\x1b[A\r", "0x2060")] {
         let mut repl = desk.repl("repl");

@@ -1,5 +1,5 @@
-//! What must not happen to a machine, tried with the program itself against controllers that answer by half: orders that
-//! leave twice, motions that nobody allowed, axes that move to 0 unasked, a Ctrl-C that stops nothing.
+//! Dangerous cases, with the program against faulty controllers: commands sent twice, motions without confirmation,
+//! unread axes moved to 0, a Ctrl-C that does not stop the robot.
 
 #![cfg(unix)]
 
@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use crate::support::simulator::Simulator;
 
-/// Command, instance and service of a request, and its data.
+/// Command, instance, service and data of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Asked {
     command: u16,
@@ -35,18 +35,18 @@ impl Asked {
     }
 }
 
-/// What a controller does with a request.
+/// Reaction of a controller to a request.
 enum Reaction {
     Silence,
     Answer(Vec<u8>),
     Refuse(u16),
 }
 
-/// Two UDP ports, and all that arrived there.
+/// Two UDP ports, and all requests that arrived there.
 struct Controller {
     url: String,
     asked: Arc<Mutex<Vec<Asked>>>,
-    /// Says every request.
+    /// Signals every request.
     news: Receiver<Asked>,
     over: Arc<AtomicBool>,
     servers: Vec<JoinHandle<()>>,
@@ -82,7 +82,7 @@ impl Controller {
         Self { url, asked, news, over, servers }
     }
 
-    /// Starts a command line, without a terminal.
+    /// Starts a command line without a terminal.
     fn start(&self, words: &str) -> Child {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
         command.args(["-t", &self.url, "yerc"]).args(words.split_ascii_whitespace());
@@ -99,7 +99,7 @@ impl Controller {
         while !wanted(&self.news.recv_timeout(Duration::from_secs(30)).expect("the request comes")) {}
     }
 
-    /// The requests that were no reads.
+    /// Requests that are not reads.
     fn changes(&self) -> Vec<Asked> {
         self.asked.lock().expect("no panic").iter().filter(|asked| !asked.is_read()).cloned().collect()
     }
@@ -133,7 +133,7 @@ fn words(words: &[i32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// A robot R1 on servo power that moves once it was told to, and stops on HOLD.
+/// A robot R1 with servo power that moves after a motion command, and stops at HOLD.
 fn robot(mut peculiar: impl FnMut(&Asked) -> Option<Reaction> + Send + 'static) -> Controller {
     let (mut x, mut moving) = (0, false);
     Controller::new(move |asked| {
@@ -174,7 +174,7 @@ fn stderr(output: &Output) -> String {
 const MOVE: &str = "move pulse joint --pulses 90000,0,0,0,0,0 --speed 10% --yes";
 const HOLD_ON: &[u8] = &[1, 0, 0, 0];
 
-/// Every order, and what its message names as the one that tells the outcome.
+/// Every command, and the query for its outcome in the message.
 const ORDERS: [(&str, &str); 24] = [
     ("servo on --yes", "yerc status"),
     ("servo off --yes", "yerc status"),
@@ -203,11 +203,11 @@ const ORDERS: [(&str, &str); 24] = [
 ];
 
 #[test]
-fn an_order_leaves_once_and_its_outcome_is_told_unknown() {
+fn sends_a_command_once_and_reports_an_unknown_outcome() {
     std::thread::scope(|scope| {
         for (order, hint) in ORDERS {
             scope.spawn(move || {
-                // What is asked before is refused, which says nothing against the order.
+                // A refused read before the command does not prevent the command.
                 let controller =
                     Controller::new(|asked| if asked.is_read() { Reaction::Refuse(0xA001) } else { Reaction::Silence });
                 let output = controller.run(&format!("{order} --timeout 700ms --retries 9"));
@@ -219,9 +219,9 @@ fn an_order_leaves_once_and_its_outcome_is_told_unknown() {
     });
 }
 
-/// The timeout is that of one try, and retries are further tries.
+/// The timeout applies to each try; retries are additional tries.
 #[test]
-fn a_read_is_tried_once_more_than_retries_says() {
+fn sends_a_read_once_plus_retries() {
     for (retries, within) in [(0, "300ms"), (2, "900ms"), (4, "1.5s")] {
         let controller = Controller::new(|_| Reaction::Silence);
         let output = controller.run(&format!("status --timeout 300ms --retries {retries}"));
@@ -233,16 +233,16 @@ fn a_read_is_tried_once_more_than_retries_says() {
     }
 }
 
-/// One signal of a group is read with its seven neighbours, set, and written: without the first nothing is written.
+/// To set one signal, its group of eight is read, changed and written. Without the read nothing is written.
 #[test]
-fn a_signal_is_not_written_when_its_group_could_not_be_read() {
+fn does_not_write_a_signal_of_an_unread_group() {
     let controller = Controller::new(|_| Reaction::Silence);
     let output = controller.run("io set 27010=on --timeout 400ms");
     assert_eq!((output.status.code(), controller.changes()), (Some(4), Vec::new()), "{}", stderr(&output));
 }
 
 #[test]
-fn nothing_moves_unasked_and_a_dry_run_sends_nothing() {
+fn motion_needs_confirmation_and_dry_run_sends_nothing() {
     let controller = robot(|_| None);
     for order in [
         "servo on",
@@ -264,7 +264,7 @@ fn nothing_moves_unasked_and_a_dry_run_sends_nothing() {
 }
 
 #[test]
-fn a_read_only_robot_takes_no_order_even_with_yes() {
+fn read_only_robot_refuses_commands_even_with_yes() {
     let controller = robot(|_| None);
     let folder = tempfile::tempdir().unwrap();
     let inventory = folder.path().join("robots.toml");
@@ -282,12 +282,12 @@ fn a_read_only_robot_takes_no_order_even_with_yes() {
         assert!(stderr(&output).contains("read-only"), "{order}: {}", stderr(&output));
     }
     assert_eq!(*controller.asked.lock().unwrap(), []);
-    // To stop it is always allowed.
+    // A stop is always allowed.
     assert_eq!(run("hold on").status.code(), Some(0));
     assert_eq!(run("status").status.code(), Some(0));
 }
 
-/// Patterns may meet as many robots as there are patterns: what counts is that each robot was named.
+/// A pattern can match any number of robots, so each robot must be named.
 #[test]
 fn patterns_do_not_move_robots() {
     let controllers = [robot(|_| None), robot(|_| None)];
@@ -312,9 +312,9 @@ fn patterns_do_not_move_robots() {
     assert!(controllers.iter().all(|controller| controller.changes().len() == 1));
 }
 
-/// A base that is busy, or a screen that is open, says nothing about where its axes stand.
+/// A busy base, or an open screen, does not mean that its axes are at 0.
 #[test]
-fn axes_that_could_not_be_read_are_not_sent_to_zero() {
+fn does_not_move_unread_axes_to_zero() {
     for (instance, code) in [(11, 0xD8FA), (11, 0x2150), (11, 0xCFFF), (1, 0x3070)] {
         let controller =
             robot(move |asked| (asked.command == 0x75 && asked.instance == instance).then_some(Reaction::Refuse(code)));
@@ -323,7 +323,7 @@ fn axes_that_could_not_be_read_are_not_sent_to_zero() {
         assert!(stderr(&output).contains("nothing was sent"), "{code:#x}: {}", stderr(&output));
         assert_eq!(controller.changes(), [], "{code:#x}");
     }
-    // Who names every axis needs no look at the others.
+    // If the line names every axis, the other axes need not be read.
     let controller = robot(|asked| (asked.command == 0x75).then_some(Reaction::Refuse(0x2150)));
     let all = "move pulse joint --pulses 1,2,3,4,5,6,0,0 --base-axes 0,0,0 --speed 10% --yes --no-wait";
     let output = controller.run(all);
@@ -331,7 +331,7 @@ fn axes_that_could_not_be_read_are_not_sent_to_zero() {
 }
 
 #[test]
-fn a_look_before_a_move_that_gets_no_answer_ends_in_no_move() {
+fn unanswered_read_before_a_move_prevents_the_move() {
     for instance in [1, 11] {
         let silent =
             move |asked: &Asked| (asked.command == 0x75 && asked.instance == instance).then_some(Reaction::Silence);
@@ -341,9 +341,9 @@ fn a_look_before_a_move_that_gets_no_answer_ends_in_no_move() {
     }
 }
 
-/// From the moment the order is on the line, Ctrl-C is HOLD on: answered, unanswered, and under way.
+/// From the time when the command is sent, Ctrl-C sends HOLD on: with an answer, without one, and during the motion.
 #[test]
-fn ctrl_c_stops_first() {
+fn ctrl_c_stops_the_robot_first() {
     for (name, orders_are_answered, polls) in [("unanswered", false, 0), ("accepted", true, 0), ("under way", true, 3)]
     {
         let controller =
@@ -362,9 +362,9 @@ fn ctrl_c_stops_first() {
     }
 }
 
-/// The stop is repeated until it is confirmed, whatever the options say.
+/// The stop is repeated until it is confirmed, with all options.
 #[test]
-fn a_lost_stop_is_sent_again() {
+fn repeats_a_lost_stop() {
     let mut lost = 12;
     let controller = robot(move |asked| {
         lost -= i32::from(asked.command == 0x83);
@@ -379,9 +379,9 @@ fn a_lost_stop_is_sent_again() {
     assert_eq!(controller.changes().iter().filter(|asked| asked.command == 0x83).count(), 13);
 }
 
-/// Nobody answers: the order is sent for three seconds, and that it is not confirmed is told.
+/// Without an answer, the stop is sent for three seconds, and the missing confirmation is reported.
 #[test]
-fn a_hold_that_nobody_confirms_is_sent_again_and_told() {
+fn repeats_and_reports_an_unconfirmed_hold() {
     let controller = Controller::new(|_| Reaction::Silence);
     let output = controller.run("hold on --timeout 60s --retries 0");
     assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
@@ -389,18 +389,18 @@ fn a_hold_that_nobody_confirms_is_sent_again_and_told() {
     assert_eq!(controller.changes().len(), 15);
 }
 
-/// A second Ctrl-C, or TERM, ends the process wherever it is: here, while nobody confirms the stop.
+/// A second Ctrl-C, or TERM, ends the process at once: here during an unconfirmed stop.
 #[test]
-fn a_second_ctrl_c_ends_it_at_once() {
+fn second_ctrl_c_ends_the_process_at_once() {
     for signal in ["INT", "TERM"] {
         let controller = robot(|asked| (asked.command == 0x83).then_some(Reaction::Silence));
         let mut child = controller.start(&format!("{MOVE} --timeout 600s"));
         controller.wait_for(|asked| asked.command == 0x72);
         interrupt(&child);
         controller.wait_for(|asked| asked.command == 0x83);
-        // One that comes on the heels of the first counts as the same.
+        // A signal shortly after the first one counts as the same.
         while child.try_wait().unwrap().is_none() {
-            // It may have ended meanwhile.
+            // The process may have ended in the meantime.
             let pid = child.id().to_string();
             let _sent = Command::new("kill").args(["-s", signal, &pid]).stderr(Stdio::null()).status();
             std::thread::yield_now();
@@ -412,7 +412,7 @@ fn a_second_ctrl_c_ends_it_at_once() {
 }
 
 #[test]
-fn a_stop_that_fails_is_told() {
+fn reports_a_failed_stop() {
     let controller = robot(|asked| (asked.command == 0x83).then_some(Reaction::Refuse(0x2100)));
     let child = controller.start(MOVE);
     controller.wait_for(|asked| asked.command == 0x72);
@@ -423,7 +423,7 @@ fn a_stop_that_fails_is_told() {
 }
 
 #[test]
-fn on_interrupt_leave_sends_nothing_and_says_so() {
+fn on_interrupt_leave_sends_nothing_and_reports_it() {
     let controller = robot(|_| None);
     let child = controller.start(&format!("{MOVE} --on-interrupt leave"));
     controller.wait_for(|asked| asked.command == 0x72);
@@ -434,9 +434,9 @@ fn on_interrupt_leave_sends_nothing_and_says_so() {
     assert_eq!(controller.changes().len(), 1);
 }
 
-/// What others set in motion is not stopped by a Ctrl-C before the own order left.
+/// A Ctrl-C before the own command does not stop the motion of another client.
 #[test]
-fn ctrl_c_before_the_order_leaves_the_robot_alone() {
+fn ctrl_c_before_the_command_sends_nothing() {
     let controller = robot(|asked| (asked.command == 0x75).then_some(Reaction::Silence));
     let child = controller.start(&format!("{MOVE} --timeout 20s"));
     controller.wait_for(|asked| asked.command == 0x75);
@@ -446,20 +446,20 @@ fn ctrl_c_before_the_order_leaves_the_robot_alone() {
     assert!(stderr(&output).contains("no motion command was sent"), "{}", stderr(&output));
 }
 
-/// A capture file that cannot be begun is told before anything is sent.
+/// A capture file that cannot be written is reported before anything is sent.
 #[test]
 #[cfg(target_os = "linux")]
-fn a_full_disk_under_a_trace_is_told_before_the_order() {
+fn reports_a_full_disk_of_a_trace_before_the_command() {
     let controller = robot(|_| None);
     let output = controller.run("servo off --yes --trace /dev/full");
     assert_eq!((output.status.code(), controller.changes()), (Some(1), Vec::new()), "{}", stderr(&output));
 }
 
-/// A controller serves one transfer at a time, and holds one that is broken off open until its timer ends.
+/// A controller serves one transfer at a time, and keeps an interrupted one open until its timer ends.
 #[test]
-fn a_transfer_that_is_broken_off_keeps_no_other_command_waiting() {
+fn interrupted_transfer_does_not_block_other_commands() {
     let folder = tempfile::tempdir().unwrap();
-    // So large that no transfer ends before it is broken off.
+    // Large enough that no transfer ends before its interruption.
     std::fs::write(folder.path().join("state.toml"), "[[file]]\nname = \"BIG.DAT\"\nsize = 67108864\n").unwrap();
     std::fs::write(folder.path().join("UP.CND"), vec![b'x'; 16 << 20]).unwrap();
     let state = folder.path().join("state.toml");
@@ -479,7 +479,7 @@ fn a_transfer_that_is_broken_off_keeps_no_other_command_waiting() {
     let mut child = command("file get BIG.DAT --dir -").spawn().unwrap();
     child.stdout.as_mut().unwrap().read_exact(&mut [0; 1000]).unwrap();
     interrupt(&child);
-    // What it still says shall not fill the pipe.
+    // Its remaining output must not fill the pipe.
     let mut rest = Vec::new();
     child.stdout.take().unwrap().read_to_end(&mut rest).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));

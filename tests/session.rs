@@ -1,4 +1,4 @@
-//! `armctl session` as its user has it: processes, sockets, signals. What is waited for is a condition, never a time.
+//! `armctl session` with processes, sockets and signals. Tests wait for conditions, never for times.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -13,7 +13,7 @@ use std::process::{Child, ChildStderr, Command, Output, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A user with an inventory and a runtime folder of his own.
+/// A user with an inventory and a runtime folder.
 struct Desk {
     folder: TempDir,
     program: PathBuf,
@@ -46,19 +46,19 @@ impl Desk {
         self.command(words).output().unwrap()
     }
 
-    /// The data of a command that succeeds.
+    /// Data of a command that succeeds.
     fn data(&self, words: &str) -> Value {
         let output = self.run(&format!("{words} --json"));
         assert!(output.status.success(), "{words}: {}", stderr(&output));
         serde_json::from_slice::<Value>(&output.stdout).unwrap()["data"].clone()
     }
 
-    /// The first session of the list.
+    /// First session of the list.
     fn listed(&self) -> Value {
         self.data("session list")["sessions"][0].clone()
     }
 
-    /// Looks at the first session until it is as it shall be.
+    /// Polls the first session until it has the expected state.
     fn until(&self, condition: impl Fn(&Value) -> bool) -> Value {
         loop {
             let session = self.listed();
@@ -68,7 +68,7 @@ impl Desk {
         }
     }
 
-    /// Files of sessions with this extension.
+    /// Session files with this extension.
     fn files(&self, extension: &str) -> Vec<PathBuf> {
         let Ok(found) = std::fs::read_dir(self.folder.path().join("run/armctl")) else { return Vec::new() };
         found
@@ -80,12 +80,12 @@ impl Desk {
 
 impl Drop for Desk {
     fn drop(&mut self) {
-        // What runs in the background must not outlive the test.
+        // Background processes must not outlive the test.
         self.run("session close --all --force");
     }
 }
 
-/// A process, and what it says on stderr.
+/// A process and its stderr lines.
 struct Running {
     process: Child,
     stderr: BufReader<ChildStderr>,
@@ -93,7 +93,7 @@ struct Running {
 }
 
 impl Running {
-    /// Starts it, and waits for the first line on stdout where one is wanted.
+    /// Starts it, and waits for the first line on stdout if required.
     fn start(mut command: Command, speaks: bool) -> Self {
         let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut first = String::new();
@@ -111,7 +111,7 @@ impl Running {
         session
     }
 
-    /// Waits until it has said this.
+    /// Waits for this text on stderr.
     fn says(&mut self, part: &str) {
         let mut line = String::new();
         while !line.contains(part) {
@@ -121,7 +121,7 @@ impl Running {
         }
     }
 
-    /// The next line that begins like this.
+    /// The next line that begins with this text.
     fn line(&mut self, beginning: &str) -> String {
         let mut line = String::new();
         while !line.starts_with(beginning) {
@@ -136,7 +136,7 @@ impl Running {
         assert!(Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
     }
 
-    /// Its exit code, and what else it had to say.
+    /// Exit code and remaining output.
     fn end(mut self) -> (Option<i32>, String) {
         let mut rest = String::new();
         self.stderr.read_to_string(&mut rest).unwrap();
@@ -152,12 +152,12 @@ impl Drop for Running {
     }
 }
 
-/// A simulator on this address, or on one of its own; its target is the first thing that it says.
+/// A simulator on this address, or on a free one. Its target is its first output.
 fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
     serving(desk, &format!("{family} --bind {address}"))
 }
 
-/// A simulator that is started like this.
+/// A simulator with these arguments.
 fn serving(desk: &Desk, words: &str) -> Running {
     let mut command = desk.command(&format!("sim {words} --console --jq .data.target"));
     command.stdin(Stdio::piped());
@@ -170,7 +170,7 @@ fn serving(desk: &Desk, words: &str) -> Running {
     simulator
 }
 
-/// A simulated YRCX, and a user who knows it as `cell`. A busy machine is late: nobody shall think that the other is gone.
+/// A simulated YRCX, and a user with the robot `cell`. The long timeout allows for a busy machine.
 fn cell() -> (Running, Desk) {
     let simulator = simulator(&Desk::new(&[]), "yrcx", "127.0.0.1:0");
     let desk = Desk::new(&[("cell", "yrcx", &format!("{}?rpi=5ms&multiplier=512", simulator.first))]);
@@ -180,7 +180,7 @@ fn cell() -> (Running, Desk) {
 /// A motion that takes minutes.
 const SLOW: &str = "-r cell yrcx move --to 900,0,0,0 --speed-of-max 0.1 --yes";
 
-/// Such a motion, once the controller carries it out.
+/// Such a motion, once the controller executes it.
 fn moving(desk: &Desk) -> Running {
     let mut moving = Running::start(desk.command(&format!("{SLOW} -vv")), false);
     moving.says("<- WO 0100");
@@ -202,7 +202,7 @@ fn mode(path: &Path) -> u32 {
 }
 
 #[test]
-fn a_tab_asks_a_controller_through_its_session_alone() {
+fn completion_asks_a_controller_only_through_its_session() {
     let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
     let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
     let tab = |words: &str| {
@@ -213,7 +213,7 @@ fn a_tab_asks_a_controller_through_its_session_alone() {
     assert!(tab("armctl -r c").starts_with("+cell\tudp://"));
     assert_eq!(tab("armctl -r cell yerc job select TE"), "", "it opens no link of its own");
     let _session = Running::session(&desk, "cell");
-    // A busy machine may be late for a Tab.
+    // A busy machine may be slow to complete.
     while tab("armctl -r cell yerc job select TE") != "+TESTJOB\n" {}
     while !tab("yerc -r cell file get TOOL").contains("+TOOL.CND\tcnd") {}
     assert_eq!(tab("armctl -r cell --no-session yerc job select TE"), "");
@@ -221,7 +221,7 @@ fn a_tab_asks_a_controller_through_its_session_alone() {
 }
 
 #[test]
-fn commands_go_through_a_session_by_themselves() {
+fn commands_use_a_session_automatically() {
     let (_simulator, desk) = cell();
     let session = Running::session(&desk, "cell");
     let folder = desk.folder.path().join("run/armctl");
@@ -234,7 +234,7 @@ fn commands_go_through_a_session_by_themselves() {
         assert!(!stderr.contains("closed"), "no fault of the link: {stderr}");
     }
     assert_eq!(desk.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");
-    // The same device by its URL is the same session; another way to it is none.
+    // The same device by its URL has the same session; another URL has none.
     let url = desk.listed()["target"].as_str().unwrap().to_owned();
     assert!(stderr(&desk.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
     fails(&desk.run("-r cell --no-session --yes yrcx info servo"), 3, "[0x0106]");
@@ -246,7 +246,7 @@ fn commands_go_through_a_session_by_themselves() {
 }
 
 #[test]
-fn one_client_moves_and_another_one_stops_it() {
+fn one_client_moves_and_another_stops() {
     let (_simulator, desk) = cell();
     let _session = Running::session(&desk, "cell");
     let moving = moving(&desk);
@@ -268,7 +268,7 @@ fn one_client_moves_and_another_one_stops_it() {
 }
 
 #[test]
-fn an_interrupt_stops_a_motion_in_a_session_too() {
+fn interrupt_stops_a_motion_in_a_session() {
     let (_simulator, desk) = cell();
     let _session = Running::session(&desk, "cell");
     let moving = moving(&desk);
@@ -278,7 +278,7 @@ fn an_interrupt_stops_a_motion_in_a_session_too() {
 }
 
 #[test]
-fn what_a_dead_client_has_left_is_told_and_dealt_with() {
+fn reports_and_handles_state_of_a_dead_client() {
     let (_simulator, desk) = cell();
     let mut session = Running::session(&desk, "cell");
     let mut moving = Running::start(desk.command(&format!("{SLOW} --on-interrupt leave -vv")), false);
@@ -294,7 +294,7 @@ fn what_a_dead_client_has_left_is_told_and_dealt_with() {
     assert!(stderr(&output).contains("a client ended and left a command running"), "{}", stderr(&output));
 
     assert!(desk.run("-r cell yrcx stop").status.success());
-    // The motion ends a moment after the stop; until then its words are taken.
+    // The motion ends a moment after the stop; until then its output is read.
     let mut next = (0..100).map(|_| desk.run("-r cell yrcx info servo"));
     let next = next.find(|next| next.status.success()).expect("the motion ends");
     assert!(stderr(&next).contains("another client left move-mm "), "{}", stderr(&next));
@@ -302,7 +302,7 @@ fn what_a_dead_client_has_left_is_told_and_dealt_with() {
 }
 
 #[test]
-fn a_jog_whose_client_is_killed_is_stopped() {
+fn stops_the_jog_of_a_killed_client() {
     let (_simulator, desk) = cell();
     let mut session = Running::session(&desk, "cell");
     let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
@@ -315,7 +315,7 @@ fn a_jog_whose_client_is_killed_is_stopped() {
 }
 
 #[test]
-fn a_motion_without_waiting_goes_on_after_its_command() {
+fn motion_with_no_wait_continues_after_its_command() {
     let (_simulator, desk) = cell();
     let _session = Running::session(&desk, "cell");
     let moved = desk.run("-r cell yrcx move --to 10,0,0,0 --speed-of-max 1 --yes --no-wait");
@@ -328,9 +328,9 @@ fn a_motion_without_waiting_goes_on_after_its_command() {
     assert_eq!(desk.data("-r cell yrcx status --full")["position"]["x_mm"], 10.0);
 }
 
-/// The holder of a session is killed while a command goes through it: the command says so, and that its outcome is unknown.
+/// The session process is killed during a command: the command reports this and an unknown outcome.
 #[test]
-fn a_command_whose_holder_is_killed_says_so() {
+fn command_reports_its_killed_session() {
     for (family, words, until) in [
         ("yerc", "move relative --x 200 --speed 5mm/s --yes", "answer to 0x8a cartesian move: ok"),
         ("yerc", "file put UP.CND --yes", "data: file load, block 3"),
@@ -352,7 +352,7 @@ fn a_command_whose_holder_is_killed_says_so() {
 }
 
 #[test]
-fn a_session_that_is_killed_takes_the_outcome_with_it() {
+fn killed_session_makes_the_outcome_unknown() {
     let (_simulator, desk) = cell();
     let session = Running::session(&desk, "cell");
     let moving = moving(&desk);
@@ -367,7 +367,7 @@ fn a_session_that_is_killed_takes_the_outcome_with_it() {
         "the session process has ended, so the command runs \
         without it"
     ));
-    // A stale socket is no obstacle. The adapter notices after a moment that its owner is gone.
+    // A stale socket does not prevent a new session. The adapter detects the lost owner after a moment.
     while !desk.run("-r cell session open --background").status.success() {}
     assert_eq!(desk.listed()["link"], "up");
     let killed = desk.listed()["pid"].to_string();
@@ -378,7 +378,7 @@ fn a_session_that_is_killed_takes_the_outcome_with_it() {
 }
 
 #[test]
-fn a_session_that_is_asked_to_end_tells_its_clients() {
+fn closing_session_notifies_its_clients() {
     let (_simulator, desk) = cell();
     let session = Running::session(&desk, "cell");
     let moving = moving(&desk);
@@ -394,7 +394,7 @@ fn a_session_that_is_asked_to_end_tells_its_clients() {
 }
 
 #[test]
-fn a_lost_link_is_opened_again() {
+fn reopens_a_lost_link() {
     let (simulator, desk) = cell();
     let mut session = Running::session(&desk, "cell");
     let address = simulator.first.trim_start_matches("eip://").to_owned();
@@ -410,8 +410,8 @@ fn a_lost_link_is_opened_again() {
 }
 
 #[test]
-fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
-    // As patient as each can be: a busy machine is late.
+fn session_keeps_each_fieldbus_and_its_end_is_an_alarm() {
+    // The longest timeouts, for a busy machine.
     for (words, patience, alarm) in
         [("--bus devicenet", "&rate=10s", "12.541"), ("--bus profibus", "&watchdog=60s&slot=500ms", "12.561")]
     {
@@ -433,9 +433,9 @@ fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
 }
 
 #[test]
-fn a_motion_whose_link_was_lost_says_how_the_stop_input_stands_after_it_came_back() {
+fn reports_the_stop_input_after_a_lost_link_returns() {
     const TOLD: &str = "the connection was lost; the connection is up again, and the stop input SI(06) is on";
-    // Through a session, and on a connection of the command's own.
+    // Through a session, and on a direct connection of the command.
     for is_held in [true, false] {
         let (simulator, desk) = cell();
         let mut session = is_held.then(|| Running::session(&desk, "cell"));
@@ -451,7 +451,7 @@ fn a_motion_whose_link_was_lost_says_how_the_stop_input_stands_after_it_came_bac
 }
 
 #[test]
-fn a_session_in_the_background_is_up_when_it_says_so() {
+fn background_session_is_ready_when_reported() {
     let (_simulator, desk) = cell();
     let opened = desk.data("-r cell session open --background");
     assert_eq!((&opened["robot"], &opened["background"]), (&"cell".into(), &true.into()));
@@ -463,7 +463,7 @@ fn a_session_in_the_background_is_up_when_it_says_so() {
     fails(&desk.run("session close elsewhere"), 2, "no session of 'elsewhere' is open");
     assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "closed");
     assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 0);
-    // It is gone, with its connection, so that another one can take its place.
+    // The session and its connection have ended, so a new one is possible.
     desk.data("-r cell session open --background");
 
     let nobody = Desk::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
@@ -474,7 +474,7 @@ fn a_session_in_the_background_is_up_when_it_says_so() {
 }
 
 #[test]
-fn datagrams_go_through_a_session() {
+fn session_forwards_datagrams() {
     let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
     let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
     let session = Running::session(&desk, "cell");
@@ -484,7 +484,7 @@ fn datagrams_go_through_a_session() {
         let written = &desk.data("-r cell yerc var set B0=7")["items"][0];
         assert_eq!((&written["old"], &written["new"]), (&old.into(), &7.into()), "{written}");
     }
-    // Files come in many datagrams, over the other port.
+    // Files need many datagrams, on the other port.
     let file = desk.folder.path().join("COUNT.JBI");
     let saved = desk.run(&format!("-r cell yerc file get COUNT.JBI --dir {}", desk.folder.path().display()));
     assert!(saved.status.success() && file.exists(), "{}", stderr(&saved));
@@ -504,7 +504,7 @@ fn datagrams_go_through_a_session() {
 }
 
 #[test]
-fn a_line_goes_from_client_to_client() {
+fn clients_take_turns_on_a_serial_line() {
     let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
     let desk = Desk::new(&[("cell", "toyo", &simulator.first)]);
     let mut session = Running::session(&desk, "cell");
@@ -527,7 +527,7 @@ fn a_line_goes_from_client_to_client() {
 }
 
 #[test]
-fn a_simulator_in_a_session_keeps_its_state() {
+fn simulator_in_a_session_keeps_its_state() {
     let desk = Desk::new(&[("x", "yrcx", "sim:"), ("y", "yerc", "sim:"), ("t", "toyo", "sim:")]);
     for robot in ["x", "y", "t"] {
         assert!(desk.run(&format!("-r {robot} session open --background")).status.success());
@@ -539,13 +539,13 @@ fn a_simulator_in_a_session_keeps_its_state() {
     assert_eq!(desk.data("-r y yerc var get B0")["items"][0]["value"], 42);
     desk.data("-r t toyo counter set 7 42");
     assert_eq!(desk.data("-r t toyo counter get 7")["items"][0]["value"], 42);
-    // By itself a simulator is as it always is.
+    // Without a session, a simulator starts with its default state.
     assert_eq!(desk.data("--no-session -r t toyo counter get 7")["items"][0]["value"], 0);
     assert_eq!(desk.data("session close --all")["sessions"].as_array().unwrap().len(), 3);
 }
 
 #[test]
-fn a_folder_of_others_is_not_trusted() {
+fn does_not_trust_a_folder_of_another_user() {
     let desk = Desk::new(&[("x", "yrcx", "sim:")]);
     let folder = desk.folder.path().join("run/armctl");
     std::fs::create_dir(&folder).unwrap();

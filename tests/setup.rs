@@ -1,4 +1,4 @@
-//! `armctl setup` on a terminal: from nothing to a robot that is named, checked and read-only; every way out.
+//! `armctl setup` on a terminal: from no inventory to a named, checked, read-only robot; every exit.
 #![cfg(unix)]
 
 use std::process::Command;
@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-/// A user with an inventory of his own.
+/// A user with an inventory.
 struct Desk {
     folder: TempDir,
 }
@@ -25,17 +25,17 @@ impl Desk {
         Terminal::start(command, 80, 24).expect("a terminal")
     }
 
-    /// The inventory; `None` where there is no file.
+    /// The inventory; `None` without a file.
     fn inventory(&self) -> Option<String> {
         std::fs::read_to_string(self.folder.path().join("robots.toml")).ok()
     }
 }
 
-/// Presses of the key for the next entry of a list.
+/// Key presses for the next entry of a list.
 const SECOND: &str = "\x1b[B";
 const THIRD: &str = "\x1b[B\x1b[B";
 
-/// Answers each question that comes.
+/// Answers each question.
 fn answer(setup: &mut Terminal, answers: &[(&str, &str)]) {
     for (question, answer) in answers {
         setup.says(question);
@@ -44,7 +44,7 @@ fn answer(setup: &mut Terminal, answers: &[(&str, &str)]) {
 }
 
 #[test]
-fn an_address_becomes_a_robot_that_is_checked_named_and_read_only() {
+fn adds_a_checked_named_read_only_robot() {
     let (desk, controller) = (Desk::new(), Simulator::start("yerc"));
     let (address, _) = controller.place();
     let mut setup = desk.setup();
@@ -64,7 +64,7 @@ fn an_address_becomes_a_robot_that_is_checked_named_and_read_only() {
 }
 
 #[test]
-fn a_simulator_is_set_up_as_well_and_a_second_robot_may_become_the_default() {
+fn adds_a_simulator_and_changes_the_default() {
     let desk = Desk::new();
     let simulator =
         [("Where is the robot?", THIRD), ("Which controller is it?", SECOND), ("eip://127.0.0.1:44818]:", "sim:")];
@@ -83,7 +83,7 @@ fn a_simulator_is_set_up_as_well_and_a_second_robot_may_become_the_default() {
 }
 
 #[test]
-fn what_is_in_the_way_is_shown_and_asked_about() {
+fn shows_problems_and_asks_whether_to_continue() {
     let desk = Desk::new();
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", "robot")]);
@@ -101,7 +101,7 @@ fn what_is_in_the_way_is_shown_and_asked_about() {
 }
 
 #[test]
-fn escape_and_signals_write_nothing_and_give_the_terminal_back() {
+fn escape_and_signals_write_nothing_and_restore_the_terminal() {
     for way in ["escape", "ctrl-c", "INT", "TERM"] {
         let desk = Desk::new();
         let mut setup = desk.setup();
@@ -118,14 +118,14 @@ fn escape_and_signals_write_nothing_and_give_the_terminal_back() {
     }
 }
 
-/// The modes are as they were, and the cursor is shown.
+/// The terminal modes are restored, and the cursor is visible.
 fn gives_back(terminal: &Terminal, way: &str) {
     assert!(terminal.is_as_before(), "{way}");
     let written = String::from_utf8_lossy(&terminal.written);
     assert!(written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l"), "{way}: {written:?}");
 }
 
-/// A line on a terminal, which may lack a name.
+/// A line on a terminal that may lack a name.
 fn line(desk: &Desk, words: &[&str]) -> Terminal {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     command.env_clear().env("HOME", desk.folder.path()).env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
@@ -134,7 +134,7 @@ fn line(desk: &Desk, words: &[&str]) -> Terminal {
 }
 
 #[test]
-fn a_name_that_is_missing_is_chosen() {
+fn offers_a_choice_for_a_missing_name() {
     let desk = Desk::new();
     let mut select = line(&desk, &["--sim", "yerc", "job", "select"]);
     select.says("> COUNT");
@@ -156,7 +156,7 @@ fn a_name_that_is_missing_is_chosen() {
 }
 
 #[test]
-fn enter_alone_removes_no_robot() {
+fn enter_does_not_remove_a_robot() {
     let robots = "[[robot]]\nname = \"cell3\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n";
     let desk = Desk::new();
     std::fs::write(desk.folder.path().join("robots.toml"), robots).unwrap();
@@ -177,7 +177,7 @@ fn enter_alone_removes_no_robot() {
 }
 
 #[test]
-fn what_deletes_is_not_chosen_by_enter_alone() {
+fn enter_does_not_select_a_deletion() {
     let desk = Desk::new();
     let mut delete = line(&desk, &["--sim", "yerc", "file", "delete"]);
     delete.says("COUNT.JBI");
@@ -188,7 +188,7 @@ fn what_deletes_is_not_chosen_by_enter_alone() {
 }
 
 #[test]
-fn nothing_is_asked_where_that_is_not_wanted() {
+fn no_input_asks_nothing() {
     for words in [&["--no-input", "--sim", "yerc", "job", "select"][..], &["--json", "--sim", "yerc", "job", "select"]]
     {
         let mut refused = line(&Desk::new(), words);

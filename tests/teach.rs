@@ -1,5 +1,5 @@
-//! `armctl teach` on a terminal, against simulated controllers on the loopback: that a key is one bounded step, and that
-//! whatever happens to the panel, the motion ends with it.
+//! `armctl teach` on a terminal, against simulated controllers: each key is one limited step, and every end of the
+//! panel stops the motion.
 #![cfg(unix)]
 
 use std::process::{Command, Output};
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-/// A user, and a controller whose servo power is on.
+/// A user, and a controller with servo power.
 struct Desk {
     folder: TempDir,
     family: &'static str,
@@ -23,7 +23,7 @@ impl Desk {
         Self { folder, family, controller: Simulator::start(family) }
     }
 
-    /// One that is in this state (TOML).
+    /// A controller with this state (TOML).
     fn in_state(family: &'static str, state: &str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("state.toml");
@@ -32,7 +32,7 @@ impl Desk {
         Self { folder, family, controller }
     }
 
-    /// One whose axes can move.
+    /// A controller whose axes can move.
     fn powered(family: &'static str) -> Self {
         let desk = Self::new(family);
         let on = desk.run(&[family, "servo", "on", "--yes"]);
@@ -59,7 +59,8 @@ impl Desk {
         envelope["data"].clone()
     }
 
-    /// The same, once the controller takes the command: its guardian, or its adapter, may be busy with the end of another.
+    /// Repeats the command until the controller accepts it: its guardian or adapter may still handle the end of
+    /// another.
     fn told(&self, words: &str) -> Value {
         let words: Vec<&str> = words.split(' ').chain(["--json"]).collect();
         let mut outputs = (0..LOOKS).map(|_| self.run(&words));
@@ -67,7 +68,7 @@ impl Desk {
         serde_json::from_slice::<Value>(&output.stdout).expect("an envelope")["data"].clone()
     }
 
-    /// The panel, with its question.
+    /// The panel at its question.
     fn asked(&self, words: &[&str]) -> Terminal {
         let command = self.command(&[&["teach", self.family], words].concat());
         let mut teach = Terminal::start(command, 100, 30).expect("a terminal");
@@ -84,7 +85,8 @@ impl Desk {
         teach
     }
 
-    /// A panel in the middle of a step: ten millimetres at one millimetre a second, long enough to be met under way.
+    /// A panel in the middle of a step: ten millimetres at one millimetre per second, long enough to test during the
+    /// step.
     fn under_way(&self, start: f64) -> Terminal {
         let mut teach = self.panel(&[]);
         teach.press("<++");
@@ -95,22 +97,22 @@ impl Desk {
         teach
     }
 
-    /// Waits until X of the base has left `start`: the step is under way.
+    /// Waits until X of the base differs from `start`, so that the step is in progress.
     fn moves_from(&self, start: f64) {
         assert!((0..LOOKS).any(|_| self.x() > start), "nothing moves");
     }
 
-    /// Where X of the base is.
+    /// X of the base.
     fn x(&self) -> f64 {
         self.data("yerc position --coordinates base")["positions"][0]["x_mm"].as_f64().expect("a number")
     }
 }
 
-/// Looks after which what does not happen will not.
+/// Number of polls after which an event is considered absent.
 const LOOKS: usize = 2000;
 
 #[test]
-fn what_it_is_not_for_is_refused() {
+fn refuses_unsupported_uses() {
     let desk = Desk::new("yerc");
     for (words, part) in [
         (&["teach", "yerc", "--dry-run"][..], "has no dry run"),
@@ -136,7 +138,7 @@ fn what_it_is_not_for_is_refused() {
 }
 
 #[test]
-fn sizes_and_speeds_end_where_they_are_limited() {
+fn limits_step_sizes_and_speeds() {
     let desk = Desk::new("yerc");
     for (words, largest, fastest) in [(&[][..], "step 10 mm", "speed 10 mm/s"), (&["--max-step", "1"], "step 1 mm", "")]
     {
@@ -185,13 +187,13 @@ fn keys_move_one_axis_by_a_step() {
 }
 
 #[test]
-fn a_step_is_stopped_when_the_program_is_killed() {
+fn stops_a_step_when_the_program_is_killed() {
     let desk = Desk::powered("yerc");
     let start = desk.x();
     let mut teach = desk.panel(&[]);
     teach.press("<+");
     teach.shows("step 1 mm");
-    // Of keys that come while a step is under way none is remembered.
+    // Keys during a step are not stored.
     teach.press("\x1b[C\x1b[C\x1b[C\x1b[C");
     teach.shows("MOVING");
     desk.moves_from(start);
@@ -203,9 +205,9 @@ fn a_step_is_stopped_when_the_program_is_killed() {
     assert!(desk.x() < start + 1.0 + 1e-6, "{start} {}", desk.x());
 }
 
-/// The process of the panel, ended like this while the robot goes where a key sent it: it stands before it is there.
+/// Ends the process of the panel in this way during a motion: the robot must stop before the target.
 #[test]
-fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
+fn stops_a_motion_when_the_program_is_killed_or_frozen() {
     for signal in ["KILL", "STOP"] {
         // Half a metre at a tenth of the speed.
         let desk = Desk::powered("toyo");
@@ -214,7 +216,7 @@ fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
         desk.data("toyo override set 10 --yes");
         desk.data("toyo point set 5 x=500 y=0 z=0 r=0 --yes");
         let mut teach = desk.panel(&[]);
-        // Before that, a terminal in its usual mode may take Enter for something else.
+        // Before that, a terminal in normal mode may interpret Enter.
         teach.shows("step 0.1 mm");
         teach.press("g5\r");
         teach.shows("y moves to point 5");
@@ -226,7 +228,7 @@ fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
         assert!((0..LOOKS).any(|_| desk.told("toyo status")["running"] == false), "it does not stop");
         assert!(x() < 500.0, "{signal}: {}", x());
 
-        // Ten millimetres at one in a second. Until the adapter misses its master, it takes no other.
+        // Ten millimetres at one per second. Until the adapter detects its missing master, it accepts no other.
         let desk = Desk::in_state("yrcx", "[[robot]]\nauto_speed = 10\n");
         let x = || desk.told("yrcx position --yes")["positions"][0]["x_mm"].as_f64().expect("a number");
         let mut teach = desk.panel(&[]);
@@ -235,7 +237,7 @@ fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
         teach.press("\x1b[C");
         teach.shows("● command");
         end(teach, signal);
-        // Without its master the adapter stops the robot, and raises an alarm.
+        // Without its master, the adapter stops the robot and raises an alarm.
         let stands = || {
             let (before, after) = (x(), x());
             (before - after).abs() < 1e-9
@@ -245,14 +247,14 @@ fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
     }
 }
 
-/// Ends the panel; one that is frozen is ended by its guardian.
+/// Ends the panel; a frozen one is killed by its guardian.
 fn end(mut teach: Terminal, signal: &str) {
     teach.signal(signal);
     teach.child.wait().expect("it is our child");
 }
 
 #[test]
-fn a_stop_gets_through_while_a_step_is_under_way() {
+fn stop_works_during_a_step() {
     let desk = Desk::powered("yerc");
     let start = desk.x();
     let mut teach = desk.under_way(start);
@@ -268,7 +270,7 @@ fn a_stop_gets_through_while_a_step_is_under_way() {
 }
 
 #[test]
-fn who_leaves_while_something_moves_stops_it() {
+fn leaving_during_a_motion_stops_it() {
     for (key, code) in [("q", 0), ("\x03", 130)] {
         let desk = Desk::powered("yerc");
         let start = desk.x();

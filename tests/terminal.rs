@@ -1,4 +1,4 @@
-//! The built binary, as people and scripts run it: transcripts, exit codes, questions, prompts, bad input, documents.
+//! The built binary as used by people and scripts: transcripts, exit codes, questions, prompts, bad input, documents.
 #![cfg(unix)]
 
 mod support {

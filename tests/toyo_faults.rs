@@ -212,7 +212,7 @@ fn no_damage_executes_an_order_twice() {
 }
 
 #[test]
-fn a_line_without_faults_is_as_fast_as_its_characters() {
+fn faultless_line_is_as_fast_as_its_characters() {
     let time = virtual_time().block_on(async {
         let began = Instant::now();
         let tally = run_exchanges("drop=0%", 0).await;

@@ -68,7 +68,7 @@ fn is_installed(program: &str, ask: &str) -> bool {
     is_there
 }
 
-/// The data of a command line that must succeed.
+/// Data of a command line that must succeed.
 #[track_caller]
 fn data(target: &str, words: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();

@@ -140,7 +140,7 @@ fn get_returns_the_source_text_while_the_steps_are_unchanged() {
     let shown = String::from_utf8(differs.stdout).expect("UTF-8");
     assert_eq!(differs.status.code(), Some(8));
     assert!(shown.contains("-TIMP TN2=003.5\n+TIMP TN2=001.5\n"), "{shown}");
-    // The text comes back with its steps.
+    // The text is returned with its steps.
     desk.at_pendant("4", "TIMP TN2=1.5\n");
     assert_eq!(desk.text(&["get"]), NAMED);
 }

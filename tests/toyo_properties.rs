@@ -178,7 +178,7 @@ proptest! {
     }
 
     #[test]
-    fn requests_read_back(row: Index, picks in picks()) {
+    fn round_trips_requests(row: Index, picks in picks()) {
         let row = &ROWS[row.index(ROWS.len())];
         for (form, layout) in row.requests.iter().enumerate() {
             let request = Request::in_form(row.command, form, values(layout, &picks)).unwrap();
@@ -187,7 +187,7 @@ proptest! {
     }
 
     #[test]
-    fn parameters_steps_and_records_read_back(picks in picks(), step in 1_i32..=5000, pallet in 1_i32..=16, row: Index) {
+    fn round_trips_parameters_steps_and_records(picks in picks(), step in 1_i32..=5000, pallet in 1_i32..=16, row: Index) {
         let parameter = &PARAMETERS[row.index(PARAMETERS.len())];
         let whole = values(&parameter.layout, &picks);
         let request = Request::parse(&Request::write_parameter(parameter, &whole).unwrap().text()).unwrap();
@@ -242,7 +242,7 @@ proptest! {
     }
 
     #[test]
-    fn blocks_within_their_ranges_have_no_problem(row: Index, picks in picks()) {
+    fn blocks_in_range_have_no_problem(row: Index, picks in picks()) {
         let row = &ROWS[row.index(ROWS.len())];
         // These fields belong to another table, or are not specified (ambiguity C5).
         let opaque = |layout: &&Layout| !layout.fields.iter().any(|field| ["body", "key", "text", "point"].contains(&field.name) && field.form == Form::Text);
@@ -255,7 +255,7 @@ proptest! {
     }
 
     #[test]
-    fn programs_read_back(steps in steps(), numbered: bool, room in 0_usize..200) {
+    fn round_trips_programs(steps in steps(), numbered: bool, room in 0_usize..200) {
         let style = program::Style { first: 1, is_whole: true, is_numbered: numbered };
         let listing = program::listing(&steps, style, &program::Rows::new());
         let checked = program::check(listing.text.as_bytes(), program::MOST_STEPS);

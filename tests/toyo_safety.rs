@@ -21,14 +21,14 @@ enum BlockFault {
     Disconnect,
 }
 
-/// A controller with its origin and servo power, whose axis 1 moves while it is jogged or a program runs.
+/// A controller with origin and servo power, whose axis 1 moves during a jog or a program.
 #[derive(Default)]
 struct Machine {
     host: bool,
     jogs: bool,
     runs: bool,
     x: i32,
-    /// The current task, counted from 0.
+    /// Current task, starting with 0.
     task: u8,
 }
 
@@ -237,7 +237,7 @@ fn a_lost_line_during_a_jog_has_a_hint_to_press_the_emergency_stop() {
 
 /// Ctrl-C after the order was sent, after its acceptance, and during the motion.
 #[test]
-fn ctrl_c_stops_what_runs() {
+fn ctrl_c_stops_a_running_program() {
     for (words, order) in [("run sequential 1 --wait", "@SPST 0001"), ("home", "@HOME")] {
         for (is_answered, status_reads) in [(false, 0), (true, 0), (true, 3)] {
             let mut controller =

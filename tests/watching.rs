@@ -1,4 +1,4 @@
-//! Watches of several robots, one of which cannot be reached.
+//! Watches of several robots with an unreachable one.
 
 #![cfg(unix)]
 
@@ -11,7 +11,7 @@ use tempfile::TempDir;
 
 use crate::support::simulator::Simulator;
 
-/// A user with two robots: `here`, and `late` at a port where nothing listens.
+/// A user with two robots: `here`, and `late` at a closed port.
 struct Desk {
     folder: TempDir,
     _here: Simulator,
@@ -43,7 +43,7 @@ impl Desk {
 }
 
 #[test]
-fn what_fails_in_each_round_is_counted() {
+fn counts_failures_of_each_round() {
     let desk = Desk::new();
     let output = desk.watch("--watch 1ms --count 40").output().expect("armctl runs");
     let said = String::from_utf8(output.stderr).expect("UTF-8");
@@ -57,7 +57,7 @@ fn what_fails_in_each_round_is_counted() {
 }
 
 #[test]
-fn a_robot_that_comes_is_watched_from_then_on() {
+fn watches_a_robot_that_becomes_reachable() {
     let desk = Desk::new();
     let mut watch = desk.watch("--watch 20ms -o jsonl").spawn().expect("armctl starts");
     let lines = BufReader::new(watch.stdout.take().expect("a pipe")).lines().map_while(Result::ok);

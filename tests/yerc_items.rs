@@ -1,5 +1,5 @@
-//! The yerc commands, through the built binary, on a controller that refuses or garbles some of what it is asked: each
-//! thing answers for itself.
+//! The yerc commands, through the built binary, with a controller that refuses or corrupts some answers: each item has
+//! its own result.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -14,18 +14,18 @@ use armctl::controller::yerc::simulator::{Simulator, Start};
 use armctl::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, LAST_BLOCK, RequestFrame, Status};
 use serde_json::{Value, json};
 
-/// What a request gets instead of the answer of the simulated controller.
+/// Reaction to a request instead of the simulated answer.
 type Spoil = fn(&RequestFrame<'_>) -> Option<Vec<u8>>;
 
-/// A simulated controller on real ports that spoils some answers; it lasts as long as the tests.
+/// A simulated controller on real ports with some corrupted answers, until the end of the tests.
 fn controller(state: &str, spoil: Spoil) -> String {
     recording(state, spoil).0
 }
 
-/// What a controller received, in order.
+/// Requests that a controller received, in order.
 type Received = Arc<Mutex<Vec<Vec<u8>>>>;
 
-/// The same, with what it receives.
+/// A controller with its received requests.
 fn recording(state: &str, spoil: Spoil) -> (String, Received) {
     let received = Received::default();
     let record = Received::clone(&received);
@@ -71,7 +71,7 @@ fn refused(request: &RequestFrame<'_>, code: u16) -> Option<Vec<u8>> {
     Some(answer(request, LAST_BLOCK, Status::refused(code), &[]))
 }
 
-/// Exit code, stdout and stderr, both as JSON where they are.
+/// Exit code, stdout and stderr, as JSON if possible.
 fn run(folder: &Path, target: &str, words: &str) -> (i32, Value, Value) {
     let output = Command::new(env!("CARGO_BIN_EXE_armctl"))
         .args(["-t", target, "--json", "--timeout", "2s", "yerc"])
@@ -99,7 +99,7 @@ fn at(target: &str, words: &str) -> (i32, Value, Value) {
 }
 
 #[test]
-fn a_refused_alarm_hides_no_other() {
+fn refused_alarm_does_not_hide_others() {
     let alarms = "alarm = [{ code = 4315 }, { code = 4107 }, { code = 1300 }]";
     let target = controller(alarms, |request| {
         let is_slot_2 = matches!((request.command, request.instance), (0x70 | 0x30A, 2) | (0x71 | 0x30B, 1002));
@@ -126,7 +126,7 @@ fn a_refused_alarm_hides_no_other() {
 }
 
 #[test]
-fn whatever_says_that_there_is_no_30a_leads_to_70() {
+fn every_refusal_of_30a_falls_back_to_70() {
     const WAYS: [(&str, Spoil); 4] = [
         ("A001", |request| if request.command == 0x30A { refused(request, 0xA001) } else { None }),
         ("A002", |request| if request.command == 0x30A { refused(request, 0xA002) } else { None }),
@@ -145,7 +145,7 @@ fn whatever_says_that_there_is_no_30a_leads_to_70() {
 }
 
 #[test]
-fn positions_and_hours_keep_what_was_answered() {
+fn positions_and_hours_keep_partial_answers() {
     let target = controller("", |request| match (request.command, request.instance) {
         (0x75, 101) | (0x88, 110) => refused(request, 0x2010),
         _ => None,
@@ -162,7 +162,7 @@ fn positions_and_hours_keep_what_was_answered() {
 }
 
 #[test]
-fn variables_are_named_as_they_were_typed() {
+fn reports_variables_as_typed() {
     let target = controller("", |_| None);
     let (exit, two, _) = at(&target, "var get B0 B300");
     assert_eq!((exit, &two["error"]["exit"]), (9, &json!(9)));
@@ -179,7 +179,7 @@ fn variables_are_named_as_they_were_typed() {
 }
 
 #[test]
-fn registers_and_signals_are_read_one_by_one_where_there_is_no_other_way() {
+fn falls_back_to_single_reads_of_registers_and_signals() {
     let target = controller("registers = { 10 = 4660 }\nio = { 10010 = true }", |request| {
         match (request.command, request.instance) {
             (0x300 | 0x301, _) => Some(answer(request, LAST_BLOCK, Status { code: 8, added_size: 0, added: 0 }, &[])),
@@ -199,7 +199,7 @@ fn registers_and_signals_are_read_one_by_one_where_there_is_no_other_way() {
 }
 
 #[test]
-fn what_was_written_before_a_refusal_is_said() {
+fn reports_items_written_before_a_refusal() {
     let target = controller("", |request| if request.instance == 20 { refused(request, 0x2110) } else { None });
     let (exit, _, error) = at(&target, "register set 1=1 20=2 30=3");
     let message = error["error"]["message"].as_str().unwrap();
@@ -209,7 +209,7 @@ fn what_was_written_before_a_refusal_is_said() {
 }
 
 #[test]
-fn axes_that_do_not_exist_are_not_shown() {
+fn omits_missing_axes() {
     for (state, axes) in
         [("", 6), ("robot_axes = 7", 7), ("trim_axes = true", 6), ("trim_axes = false\nrobot_axes = 7", 7)]
     {
@@ -230,14 +230,14 @@ fn axes_that_do_not_exist_are_not_shown() {
             );
         }
     }
-    // Nobody knows better than the controller, if it does not tell.
+    // If the controller does not report it, it is unknown.
     let untold = controller("", |request| if request.command == 0x74 { refused(request, 0x2150) } else { None });
     let (exit, data, _) = at(&untold, "torque");
     assert_eq!((exit, data["data"]["torque_raw"].as_object().map(serde_json::Map::len)), (0, Some(8)));
 }
 
 #[test]
-fn a_word_of_a_position_is_read_changed_and_written_whole() {
+fn single_word_of_a_position_rewrites_the_position() {
     // 0x10 is not listed for P (3.3.16).
     let target = controller("", |request| {
         if request.command == 0x7F && request.service == 0x10 { refused(request, 0xA001) } else { None }
@@ -268,7 +268,7 @@ fn garbage_in_a_transfer_is_malformed() {
 }
 
 #[test]
-fn a_list_bears_what_controllers_put_into_it() {
+fn parses_unusual_file_lists() {
     let target = controller("", |request| {
         let data: &[u8] = match (request.division, request.ack, request.data) {
             (Division::File, false, b"*.JBI") => b"A.JBI\nB.JBI \r\nC.JBI\rD.JBI\0\0\r\n",
@@ -292,7 +292,7 @@ fn a_list_bears_what_controllers_put_into_it() {
 }
 
 #[test]
-fn filters_and_names_are_those_of_the_protocol() {
+fn filters_and_names_match_the_protocol() {
     let target = controller("[[file]]\nname = 'CELL.XYZ'\ntext = 'x'", |_| None);
     let folder = tempfile::tempdir().unwrap();
     for filter in ["''", "*.*"] {
@@ -312,7 +312,7 @@ fn filters_and_names_are_those_of_the_protocol() {
 }
 
 #[test]
-fn a_job_under_another_name_is_warned_of_and_a_plain_last_ack_is_looked_after() {
+fn warns_about_a_renamed_job_and_verifies_a_plain_last_ack() {
     let target = controller("plain_last_ack = true", |_| None);
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("NEW.JBI"), "/JOB\r\n//NAME NEW\r\nNOP\r\nEND\r\n").unwrap();
@@ -336,7 +336,7 @@ fn a_job_under_another_name_is_warned_of_and_a_plain_last_ack_is_looked_after() 
 }
 
 #[test]
-fn the_date_in_a_header_can_be_left_out() {
+fn can_ignore_the_date_in_a_header() {
     let target = controller("", |_| None);
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(run(folder.path(), &target, "file get TESTJOB.JBI").0, 0);
@@ -362,7 +362,7 @@ fn the_date_in_a_header_can_be_left_out() {
     assert_eq!((exit, diff["data"]["files"][0]["hunks"].as_array().map(Vec::len)), (8, Some(1)), "{diff}");
 }
 
-/// Whether a frame is one of those that a line of a dry run shows; requests have another number each time.
+/// Whether a frame matches a line of a dry run; request numbers differ.
 fn shows(line: &Value, frame: &[u8]) -> bool {
     let shown = line["hex"].as_str().unwrap();
     let byte = |index: usize| shown.get(2 * index..2 * index + 2);
@@ -373,7 +373,7 @@ fn shows(line: &Value, frame: &[u8]) -> bool {
 }
 
 #[test]
-fn a_dry_run_shows_acknowledgements_and_what_is_read_again() {
+fn dry_run_shows_acknowledgements_and_repeated_reads() {
     fn as_asked(_: &RequestFrame<'_>) -> Option<Vec<u8>> {
         None
     }

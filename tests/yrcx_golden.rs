@@ -20,19 +20,19 @@ use armctl::controller::yrcx::value::{Key, Value, Values};
 use serde_json::Value as Json;
 
 #[test]
-fn there_are_97_examples() {
+fn has_97_examples() {
     assert_eq!(examples().len(), 97);
 }
 
 #[test]
-fn commands_are_built_from_what_is_meant() {
+fn builds_commands_from_values() {
     for example in examples() {
         assert_eq!(hex(example.order().words()), hex(&example.command_words()), "{}", example.id());
     }
 }
 
 #[test]
-fn commands_are_read_into_what_is_meant() {
+fn parses_commands_into_values() {
     for example in examples() {
         let order = Order::parse(&example.command_words()).unwrap();
         let meant = example.strings("request");
@@ -56,7 +56,7 @@ fn commands_are_read_into_what_is_meant() {
 }
 
 #[test]
-fn answers_are_read_into_what_is_meant() {
+fn parses_answers_into_values() {
     for example in examples() {
         let Some(words) = example.answer_words() else { continue };
         let (order, id) = (example.order(), example.id());
@@ -84,7 +84,7 @@ fn answers_are_read_into_what_is_meant() {
 }
 
 #[test]
-fn answers_are_built_from_what_is_meant() {
+fn builds_answers_from_values() {
     for example in examples() {
         let Some(words) = example.answer_words() else { continue };
         let values: Values = example.strings("answer").into_iter().collect();
@@ -97,7 +97,7 @@ fn answers_are_built_from_what_is_meant() {
 }
 
 #[test]
-fn misprints_are_flagged_word_by_word() {
+fn marks_misprints_per_word() {
     let mut flagged = 0;
     for example in examples() {
         let mut differ = Vec::new();
@@ -115,7 +115,7 @@ fn misprints_are_flagged_word_by_word() {
 }
 
 #[test]
-fn misprinted_commands_are_read_for_what_they_are() {
+fn parses_misprinted_commands_literally() {
     let examples = examples();
     let printed = |id: &str| {
         let example = examples.iter().find(|example| example.id() == id).unwrap();
@@ -133,7 +133,7 @@ fn misprinted_commands_are_read_for_what_they_are() {
 }
 
 #[test]
-fn every_example_is_explained_by_its_section() {
+fn explains_every_example_with_its_section() {
     for example in examples() {
         let (request, id) = (example.command_words(), example.id());
         let explained = describe::command(&request);
@@ -149,7 +149,7 @@ fn every_example_is_explained_by_its_section() {
 }
 
 #[test]
-fn what_the_controller_would_refuse_is_refused_before() {
+fn refuses_invalid_commands_before_sending() {
     let refusal = |draft: Draft| draft.build().unwrap_err();
     let to_point = || Command::MovePtp.order().with(Key::Point, 19);
     let both = refusal(to_point().with(Key::Report, 3));
@@ -218,13 +218,13 @@ fn what_the_controller_would_refuse_is_refused_before() {
 }
 
 #[test]
-fn axes_that_do_not_move_need_no_target() {
+fn unmoved_axes_need_no_target() {
     let order = Command::MoveMm.order().with(Key::Axes, "1,3").with(Key::Axis1, "10").with(Key::Axis3, "-5").build();
     assert_eq!(order.unwrap().words()[..12], [6, 1, 0b101, 0, 0x2710, 0, 0, 0, 0xEC78, 0xFFFF, 0, 0]);
 }
 
 #[test]
-fn real_variables_travel_as_single_precision() {
+fn sends_real_variables_in_single_precision() {
     let order = Command::VarSet.order().with(Key::Variable, "SGR5").with(Key::Value, "-1.5").build().unwrap();
     assert_eq!(order.words()[..6], [0x0200, 0, 0x0105, 0, 0x0000, 0xBFC0]);
     assert_eq!(order.values().value(Key::Value), Some(&Value::Real(-1.5)));
@@ -241,7 +241,7 @@ fn the_walk_through_of_chapter_2_section_2() {
 }
 
 #[test]
-fn every_field_stands_where_the_manual_has_it() {
+fn every_field_has_the_position_of_the_manual() {
     let layouts = json("yrcx-layouts.json");
     assert_eq!(layouts.len(), ROWS.len());
     for layout in &layouts {

@@ -1,4 +1,4 @@
-//! The binary against its own simulator over real sockets: what goes wrong on the way, who owns the controller, Ctrl-C.
+//! The binary against its own simulator over real sockets: faults of the link, ownership of the controller, Ctrl-C.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -20,7 +20,7 @@ fn armctl() -> Command {
     command
 }
 
-/// `armctl sim yrcx` on ports of its own; it ends with the test.
+/// `armctl sim yrcx` on free ports; it ends with the test.
 struct Simulator {
     process: Child,
     console: ChildStdin,
@@ -55,19 +55,19 @@ impl Simulator {
 
 impl Drop for Simulator {
     fn drop(&mut self) {
-        // A process that has ended already is as good.
+        // The process may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
 }
 
-/// The exit code and what stands on stderr.
+/// Exit code and stderr.
 fn failed(output: &Output) -> (i32, String) {
     (output.status.code().unwrap(), String::from_utf8(output.stderr.clone()).unwrap())
 }
 
 #[test]
-fn what_the_adapter_does_wrong_has_its_exit_code() {
+fn every_adapter_fault_has_an_exit_code() {
     for (fault, exit, part) in [
         ("mute", 4, "no answer to"),
         ("reset", 4, "ended before"),
@@ -84,7 +84,7 @@ fn what_the_adapter_does_wrong_has_its_exit_code() {
 }
 
 #[test]
-fn images_that_are_lost_or_doubled_do_no_harm() {
+fn survives_lost_and_duplicated_images() {
     for fault in ["--fault=half-rate", "--fault=double", "--fault=drop=10%,dup=10%,reorder=10%,seed=7"] {
         let output = Simulator::start(&[fault]).run("yrcx info servo --json");
         assert!(output.status.success(), "{fault}: {:?}", failed(&output));
@@ -94,7 +94,7 @@ fn images_that_are_lost_or_doubled_do_no_harm() {
 }
 
 #[test]
-fn one_owner_at_a_time_and_others_may_listen() {
+fn one_owner_and_several_listeners() {
     let simulator = Simulator::start(&[]);
     let mut owner = simulator.command("yrcx info servo --watch 1h -o jsonl").spawn().unwrap();
     BufReader::new(owner.stdout.take().unwrap()).lines().next().unwrap().unwrap();
@@ -132,11 +132,11 @@ fn one_owner_at_a_time_and_others_may_listen() {
 }
 
 #[test]
-fn looking_leaves_the_owner_alone() {
+fn monitoring_does_not_disturb_the_owner() {
     let simulator = Simulator::start(&[]);
     let mut owner = simulator.command("yrcx info servo --watch 1h -o jsonl").spawn().unwrap();
     BufReader::new(owner.stdout.take().unwrap()).lines().next().unwrap().unwrap();
-    // None of these opens a connection of an owner, or it would be refused.
+    // None of these opens an owner connection; it would be refused.
     for line in ["yrcx status", "status", "yrcx io get", "yrcx io watch --count 1", "yrcx auto-mode"] {
         let output = simulator.run(line);
         let (code, stderr) = failed(&output);
@@ -153,14 +153,14 @@ fn looking_leaves_the_owner_alone() {
 }
 
 #[test]
-fn a_board_that_lets_nobody_read_is_listened_to() {
+fn listens_to_a_board_without_readable_assemblies() {
     let output = Simulator::start(&["--fault", "unreadable"]).run("yrcx io get cpu-ok --json");
     let heard: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(heard["data"]["items"][0]["value"], true);
 }
 
 #[test]
-fn a_simulator_in_this_process_has_faults_too() {
+fn built_in_simulator_supports_faults() {
     let run = |url: &str| armctl().args(["-t", url, "--timeout", "400ms", "yrcx", "info", "servo"]).output().unwrap();
     for url in ["sim:?fault=drop=5%25,seed=7", "sim:?fault=double", "sim:?fault=half-rate"] {
         assert!(run(url).status.success(), "{url}: {:?}", failed(&run(url)));
@@ -178,7 +178,7 @@ fn a_simulator_in_this_process_has_faults_too() {
 }
 
 #[test]
-fn an_interrupt_stops_the_motion_and_says_so() {
+fn interrupt_stops_the_motion_and_reports_it() {
     let simulator = Simulator::start(&[]);
     let mut moving = simulator.command("yrcx move --to 900,0,0,0 --speed-of-max 1 --yes -vv").spawn().unwrap();
     let mut stderr = BufReader::new(moving.stderr.take().unwrap());
@@ -196,7 +196,7 @@ fn an_interrupt_stops_the_motion_and_says_so() {
 }
 
 #[test]
-fn packets_are_recorded_with_their_ports() {
+fn records_packets_with_their_ports() {
     let simulator = Simulator::start(&[]);
     let file = tempfile::NamedTempFile::new().unwrap();
     let output = simulator.run(&format!("yrcx info servo --trace {}", file.path().display()));
@@ -210,8 +210,8 @@ fn packets_are_recorded_with_their_ports() {
 }
 
 #[test]
-fn tshark_reads_what_was_recorded() {
-    // An address of its own, whose usual ports are free: tshark knows the protocol by them.
+fn tshark_decodes_the_recording() {
+    // A separate address with free default ports: tshark recognizes the protocol by them.
     const ADDRESS: &str = "127.44.18.61";
     let has_tshark = Command::new("tshark").arg("--version").output().is_ok_and(|output| output.status.success());
     assert!(has_tshark || std::env::var_os("CI").is_none(), "tshark belongs to the set-up of .ci/run");
@@ -243,7 +243,7 @@ fn tshark_reads_what_was_recorded() {
     let images = read("yrcx info servo", "cipio", &["udp.length"]);
     assert!(images.iter().any(|length| length == "80") && images.iter().any(|length| length == "76"), "{images:?}");
     assert!(images.iter().all(|length| ["80", "76"].contains(&length.as_str())), "{images:?}");
-    // What only looks opens no connection, and what was refused is in the record as well.
+    // Monitoring opens no connection, and the refused request is also in the recording.
     assert_eq!(read("yrcx io get", "cip.cm.sc == 0x54 || cipio", &["frame.number"]), [""; 0]);
     assert_eq!(read("yrcx io get", "cip.sc == 0x0e && cip.rr == 1", &["cip.genstat"]).last().unwrap(), "0x00");
     assert_eq!(read("yrcx eip identity", "enip.lir.vendor", &["enip.lir.vendor"]).last().unwrap(), "0x027c");
@@ -254,7 +254,7 @@ fn interrupt(child: &Child) {
     assert!(sent.success());
 }
 
-/// A controller that refuses some remote commands, and answers all others as those of its clock.
+/// A controller that refuses some remote commands, and answers all others like clock commands.
 struct Refusing {
     commands: &'static [u16],
     shown: Image,
@@ -306,7 +306,7 @@ impl Application for Refusing {
 }
 
 #[test]
-fn date_and_time_answer_for_themselves() {
+fn date_and_time_have_separate_results() {
     let told = |refused: &'static [u16], line: &str| {
         let (_server, target) = Refusing::start(refused);
         let mut command = armctl();

@@ -1,5 +1,5 @@
-//! Properties of the YRCX family: what may be sent comes back as it was, no words make anything panic, and whatever a
-//! controller shows, a command goes out once and its words go away again.
+//! Properties of the YRCX family: valid commands round-trip, no words cause a panic, and for every signal sequence of a
+//! controller, a command is sent once and its words are cleared.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -18,7 +18,7 @@ use armctl::controller::yrcx::table::{Charset, Field, Form, ROWS, Row, Show};
 use armctl::controller::yrcx::value::{Key, Value, Values};
 use proptest::prelude::*;
 
-/// Words of a command that begin with a code, mostly.
+/// Words of a command that mostly begin with a code.
 fn any_command() -> impl Strategy<Value = Words> {
     let code = prop_oneof![
         4 => (0..ROWS.len(), 0_u16..5).prop_map(|(row, robot)| {
@@ -33,14 +33,14 @@ fn any_command() -> impl Strategy<Value = Words> {
     })
 }
 
-/// A command that may be sent, of any row.
+/// A valid command of any row.
 fn any_order() -> impl Strategy<Value = Order> {
     (0..ROWS.len(), any::<Words>(), any::<[u32; 8]>()).prop_filter_map("a rule of the row", |(row, words, dice)| {
         Order::parse(&repaired(&ROWS[row], words, &dice)).ok()
     })
 }
 
-/// Makes every field valid that counts, and clears the rest. Parameters get the axis and the value that they need.
+/// Makes every relevant field valid, and clears the rest. Parameters get the required axis and value.
 fn repaired(row: &Row, random: Words, dice: &[u32; 8]) -> Words {
     let mut words = random;
     words[0] = row.code | (random[0] & 0xF000 & if row.has_robot() { 0xF000 } else { 0 });
@@ -96,7 +96,7 @@ fn valid(field: &Field, die: u32) -> Value {
 
 proptest! {
     #[test]
-    fn any_words_are_read_without_a_panic(wi in any_command(), wo in any::<Words>(), status in 0_usize..5) {
+    fn never_panics_on_random_words(wi in any_command(), wo in any::<Words>(), status in 0_usize..5) {
         let mut wo = wo;
         wo[0] = [0x0000, 0x0100, 0x0200, 0x4000, wo[0]][status];
         describe::command(&wi);
@@ -111,7 +111,7 @@ proptest! {
     }
 
     #[test]
-    fn orders_come_back_from_their_words_and_values(order in any_order()) {
+    fn round_trips_commands_through_words_and_values(order in any_order()) {
         let read = Order::parse(order.words()).unwrap();
         prop_assert_eq!(&read, &order);
         let mut draft = order.command().order();
@@ -122,7 +122,7 @@ proptest! {
     }
 
     #[test]
-    fn orders_come_back_from_what_people_read(order in any_order()) {
+    fn round_trips_commands_through_text(order in any_order()) {
         let fields = order.row().request().filter(|field| counts(order.row(), field, order.words()));
         let mut draft = order.command().order();
         for field in fields {
@@ -133,7 +133,7 @@ proptest! {
     }
 
     #[test]
-    fn answers_come_back_from_their_words(order in any_order(), mut wo in any::<Words>()) {
+    fn round_trips_answers_through_words(order in any_order(), mut wo in any::<Words>()) {
         wo[0] = 0x0200;
         let answer = Answer::parse(&order, &wo).unwrap();
         let Answer::Done(values) = &answer else { panic!("done is done") };
@@ -141,13 +141,13 @@ proptest! {
         // Numbers that are not in the manual are read, but not written.
         if let Ok(words) = answer.words(&order) {
             let again = Answer::parse(&order, &words).unwrap();
-            // A text may end in fill characters.
+            // A text can end in fill characters.
             prop_assert_eq!(again.words(&order).unwrap(), words);
         }
     }
 
     #[test]
-    fn a_command_goes_out_once_whatever_the_controller_shows(
+    fn sends_a_command_once_for_every_signal_sequence(
         order in any_order(),
         events in prop::collection::vec((1_u64..400, 0_usize..9), 1..60),
     ) {
@@ -195,7 +195,7 @@ proptest! {
     }
 
     #[test]
-    fn procedures_end_and_leave_no_input_raised(
+    fn procedures_end_with_all_inputs_off(
         chart in 0_usize..7,
         events in prop::collection::vec((1_u64..400, any::<u16>(), 0_usize..4), 0..40),
     ) {
@@ -246,7 +246,7 @@ fn keys(values: &Values) -> usize {
 }
 
 #[test]
-fn every_command_can_be_made() {
+fn builds_every_command() {
     for row in ROWS {
         let made = (0_u16..50).any(|seed| {
             let dice = std::array::from_fn(|n| u32::from(seed) * 7 + u32::try_from(n).unwrap());

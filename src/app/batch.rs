@@ -13,8 +13,8 @@ use anyhow::Context as _;
 use serde_json::Value;
 
 use super::parser::Parser;
-use super::prepared::{Invocation, PreparedCommand};
-use super::{named, screen, words};
+use super::prepare::{Invocation, PreparedCommand};
+use super::{line_words, name_lookup, screen};
 use crate::cli::{Globals, Words};
 use crate::command::fleet::session::host;
 use crate::command::frame::batch::Batch;
@@ -43,7 +43,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     let plan = Plan { globals: &globals, batch: &batch, screen, manager, results: results.clone() };
     let lines = plan.lines(&text)?;
     begin_trace(globals.trace.as_deref().filter(|_| !globals.dry_run))?;
-    let done = plan.go(lines).await;
+    let done = plan.run_lines(lines).await;
     thread.end().await;
     if let Some(results) = results {
         screen.json(&*results.borrow())?;
@@ -61,8 +61,8 @@ pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
 }
 
 fn read(path: &Path) -> Result<String, Failure> {
-    let most = files::SETTINGS;
-    let bytes = if path.as_os_str() == "-" { files::stdin(most) } else { files::read(path, most) };
+    let limit = files::SETTINGS;
+    let bytes = if path.as_os_str() == "-" { files::stdin(limit) } else { files::read(path, limit) };
     let bytes = bytes.with_context(|| path.display().to_string())?;
     let text = String::from_utf8(bytes).map_err(|_| {
         Failure::usage(format!("{}: the file is not UTF-8", path.display())).hint("save the file as UTF-8")
@@ -91,24 +91,24 @@ impl Plan<'_> {
         let file: Arc<str> = self.batch.file.display().to_string().into();
         let mut parser = Parser::default();
         let mut planned = Vec::new();
-        let mut wrong = Vec::new();
+        let mut errors = Vec::new();
         for (index, line) in text.lines().enumerate() {
             let origin = Origin { file: Arc::clone(&file), line: index + 1 };
             match self.line(&mut parser, line, &origin) {
                 Ok(line) => planned.extend(line),
-                Err(failure) => wrong.push((origin, failure)),
+                Err(failure) => errors.push((origin, failure)),
             }
         }
-        let Some((_, first)) = wrong.first() else { return Ok(planned) };
-        let reasons: Vec<String> = wrong
+        let Some((_, first)) = errors.first() else { return Ok(planned) };
+        let reasons: Vec<String> = errors
             .iter()
             .map(|(origin, failure)| {
-                let hint = failure.hint.as_ref().filter(|_| wrong.len() > 1);
+                let hint = failure.hint.as_ref().filter(|_| errors.len() > 1);
                 let hint = hint.map(|hint| format!(" ({hint})")).unwrap_or_default();
                 format!("{origin}: {}{hint}", failure.message)
             })
             .collect();
-        let hint = first.hint.clone().filter(|_| wrong.len() == 1).unwrap_or_else(|| "correct these lines".to_owned());
+        let hint = first.hint.clone().filter(|_| errors.len() == 1).unwrap_or_else(|| "correct these lines".to_owned());
         let failure = Failure::new(first.kind, reasons.join("\n"));
         Err(failure.hint(format!("{hint}; nothing was sent: armctl checks the whole file first")))
     }
@@ -119,14 +119,17 @@ impl Plan<'_> {
             let set = self.batch.set.iter().rev().find(|(other, _)| other == name);
             set.map(|(_, value)| value.as_str())
         };
-        let words = words::split(line).map_err(usage)?;
-        let words: Vec<String> =
-            words.iter().map(|word| words::expanded(word, value)).collect::<Result<_, _>>().map_err(usage)?;
+        let words = line_words::split(line).map_err(usage)?;
+        let words: Vec<String> = words
+            .iter()
+            .map(|word| line_words::expand_variables(word, value))
+            .collect::<Result<_, _>>()
+            .map_err(usage)?;
         if words.is_empty() {
             return Ok(None);
         }
         let args: Vec<OsString> = std::iter::once("armctl".to_owned()).chain(words).map(OsString::from).collect();
-        let parsed = named::parse(parser, &args, Some(self.globals), true);
+        let parsed = name_lookup::parse(parser, &args, Some(self.globals), true);
         let Words { globals, command } = parsed.map_err(|refusal| refusal.failure())?;
         let says_format = globals.format.is_some() || globals.json || globals.jq.is_some();
         if says_format && self.screen.is_json() {
@@ -152,12 +155,12 @@ impl Plan<'_> {
         Ok(Some(Planned { ready, origin: origin.clone(), typed }))
     }
 
-    async fn go(&self, lines: Vec<Planned>) -> Result<(), RunError> {
+    async fn run_lines(&self, lines: Vec<Planned>) -> Result<(), RunError> {
         let all = lines.len();
         let mut failed: Vec<(Origin, Failure)> = Vec::new();
-        let mut begun = 0;
+        let mut started = 0;
         for Planned { ready, origin, typed } in lines {
-            begun += 1;
+            started += 1;
             if !self.screen.is_json() {
                 self.screen.note(&format!("{origin}: {typed}"));
             }
@@ -166,26 +169,26 @@ impl Plan<'_> {
             if stopped.failure.kind == Kind::PipeClosed {
                 return Err(stopped);
             }
-            if !stopped.told && !run.report_failure(&stopped)? {
+            if !stopped.is_reported && !run.report_failure(&stopped)? {
                 let message = format!("{origin}: {}", stopped.failure.message);
                 run.screen.failure(&Failure { message, ..stopped.failure.clone() });
             }
-            let ends = stopped.failure.kind == Kind::Interrupted || !self.batch.keep_going;
+            let is_last = stopped.failure.kind == Kind::Interrupted || !self.batch.keep_going;
             failed.push((origin, stopped.failure));
-            if ends {
+            if is_last {
                 break;
             }
         }
         let Some((origin, first)) = failed.first() else { return Ok(()) };
-        let message = if self.batch.keep_going && begun == all {
-            let places: Vec<String> = failed.iter().map(|(origin, _)| origin.line.to_string()).collect();
-            format!("{} of {all} commands failed, in line {}", failed.len(), places.join(", "))
+        let message = if self.batch.keep_going && started == all {
+            let line_numbers: Vec<String> = failed.iter().map(|(origin, _)| origin.line.to_string()).collect();
+            format!("{} of {all} commands failed, in line {}", failed.len(), line_numbers.join(", "))
         } else {
-            format!("stopped at {}; {} done before it, {} not started", origin, begun - failed.len(), all - begun)
+            format!("stopped at {}; {} done before it, {} not started", origin, started - failed.len(), all - started)
         };
         if !self.screen.is_json() {
             self.screen.note(&message);
         }
-        Err(RunError { failure: Failure { message, ..first.clone() }, envelope: None, told: true })
+        Err(RunError { failure: Failure { message, ..first.clone() }, envelope: None, is_reported: true })
     }
 }

@@ -1,6 +1,6 @@
 //! Check for global flags that have no effect on a command; they are errors.
 
-use super::prepared::Task;
+use super::prepare::Task;
 use crate::cli::Globals;
 use crate::command::common::Common;
 use crate::command::fleet::robots::Robots;
@@ -24,15 +24,15 @@ const ALL: Uses = Uses { robots: true, link: true, repeat: true, gate: true };
 const NONE: Uses = Uses { robots: false, link: false, repeat: false, gate: false };
 
 impl Uses {
-    fn of(task: &Task) -> Self {
+    fn for_task(task: &Task) -> Self {
         match task {
             Task::Family(_, command) if command.driver().is_none() => NONE,
             Task::Family(..) => ALL,
-            Task::Common(common) => Self::of_common(common),
+            Task::Common(common) => Self::for_common(common),
         }
     }
 
-    fn of_common(common: &Common) -> Self {
+    fn for_common(common: &Common) -> Self {
         match common {
             Common::Backup(backup) if !backup.takes_robot() => NONE,
             Common::Diff(diff) if !diff.may_ask_robots() => NONE,
@@ -70,18 +70,18 @@ impl Uses {
 
 /// Rejects a flag that has no effect on the command.
 pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
-    let uses = Uses::of(task);
-    match given(globals).into_iter().find(|(flag, is_meant)| flag.is_some() && !is_meant(uses)) {
-        Some((Some(flag), _)) => Err(wrong(flag, task)),
+    let uses = Uses::for_task(task);
+    match global_flags(globals).into_iter().find(|(flag, is_meant)| flag.is_some() && !is_meant(uses)) {
+        Some((Some(flag), _)) => Err(unused_flag(flag, task)),
         _ => Ok(()),
     }
 }
 
 /// A flag as typed, if present, and whether a command uses it.
-type Given = (Option<&'static str>, fn(Uses) -> bool);
+type Flag = (Option<&'static str>, fn(Uses) -> bool);
 
 /// All flags of the line. `--for` is missing, because it belongs to `--until` or to the command itself.
-fn given(globals: &Globals) -> [Given; 17] {
+fn global_flags(globals: &Globals) -> [Flag; 17] {
     let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
     let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, check, .. } = globals;
     [
@@ -105,7 +105,7 @@ fn given(globals: &Globals) -> [Given; 17] {
     ]
 }
 
-fn wrong(flag: &str, task: &Task) -> Failure {
+fn unused_flag(flag: &str, task: &Task) -> Failure {
     let hint = match (flag, task) {
         ("--tag", Task::Common(Common::Robots(Robots::Add(_)))) => {
             "use --with-tag to give the new robot a tag; --tag selects robots".to_owned()

@@ -6,15 +6,15 @@ use std::ffi::OsString;
 use clap::CommandFactory as _;
 use clap::Parser as _;
 
-use crate::app::misplaced;
-use crate::app::prepared::{Invocation, Task};
-use crate::app::words;
+use crate::app::line_words;
+use crate::app::prepare::{Invocation, Task};
+use crate::app::suggestions;
 use crate::cli::Cli;
 use crate::command::AnyCommand;
 use crate::command::common::Common;
-use crate::command::fleet::shared;
+use crate::command::fleet::common;
 use crate::command::frame::run::Run;
-use crate::command::leaves::{all, leaves};
+use crate::command::leaf_commands::{all, leaves};
 use crate::controller::Risk::{Destroy, Motion, Read, Write};
 use crate::failure::{Failure, Kind};
 use crate::gate::Intent;
@@ -64,7 +64,7 @@ fn run(selection: Selection) -> Run {
         trace: None,
         line: None,
         redraw: Redraw::default(),
-        own: crate::command::Own::default(),
+        own: crate::command::FamilyArguments::default(),
     }
 }
 
@@ -89,7 +89,7 @@ fn seen(line: &str) -> Result<Seen, String> {
             fleet: run(Selection { robots: vec![format!("{family}*")], ..Selection::default() }).check_gate(command),
         }
     }
-    let words = words::split(line)?;
+    let words = line_words::split(line)?;
     let cli = Cli::try_parse_from(std::iter::once("armctl".to_owned()).chain(words))
         .map_err(|error| format!("{line}: {error}"))?;
     Ok(match Invocation::from(cli.command) {
@@ -101,9 +101,9 @@ fn seen(line: &str) -> Result<Seen, String> {
         Invocation::Task(Task::Common(Common::Alarm(alarm))) => of(&*alarm.command().unwrap(), "toyo"),
         Invocation::Task(Task::Common(Common::Io(io))) => of(&*io.command().unwrap(), "toyo"),
         Invocation::Task(Task::Common(Common::Wait(wait))) => of(&*wait.command().unwrap(), "toyo"),
-        Invocation::Task(Task::Common(Common::Position)) => of(&shared::position(), "toyo"),
-        Invocation::Task(Task::Common(Common::Stop)) => of(&shared::stop(), "toyo"),
-        Invocation::Task(Task::Common(Common::Backup(command))) => of(command.making(), "toyo"),
+        Invocation::Task(Task::Common(Common::Position)) => of(&common::position(), "toyo"),
+        Invocation::Task(Task::Common(Common::Stop)) => of(&common::stop(), "toyo"),
+        Invocation::Task(Task::Common(Common::Backup(command))) => of(command.options(), "toyo"),
         Invocation::Task(Task::Common(Common::Restore(command))) => of(&command, "toyo"),
         Invocation::Task(Task::Common(Common::Diff(command))) => of(&command, "toyo"),
         _ => return Err(format!("{line} is for no robot")),
@@ -165,7 +165,7 @@ fn every_command_has_examples_that_parse() {
         assert!(lines >= 2, "{leaf}: {lines} examples in command/leaves");
     }
     for line in all() {
-        let words = words::split(line).unwrap();
+        let words = line_words::split(line).unwrap();
         let parsed = Cli::try_parse_from(std::iter::once("armctl".to_owned()).chain(words));
         assert!(parsed.is_ok(), "{line}: {}", parsed.unwrap_err());
     }
@@ -188,7 +188,7 @@ fn no_tip_proposes_what_is_dangerous() {
         let args: Vec<OsString> = std::iter::once("armctl").chain(line.split(' ')).map(Into::into).collect();
         let mut whole = Cli::command();
         let error = whole.try_get_matches_from_mut(&args).unwrap_err();
-        let text = misplaced::explained(error, &args, &whole).render().to_string();
+        let text = suggestions::add_suggestion(error, &args, &whole).render().to_string();
         let tips: Vec<&str> = text.lines().filter(|line| line.contains("tip: ")).collect();
         for dangerous in ["init", "delete", "start", "home", "move", "jog"] {
             let proposes =

@@ -6,13 +6,13 @@ use clap::builder::StyledStr;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Command, CommandFactory as _, FromArgMatches, Subcommand};
 
-use super::typed::Typed;
-use super::{assigned, misplaced, respelled};
+use super::typed_line::TypedLine;
+use super::{assignments, spellings, suggestions};
 use crate::cli::{Cli, FamilyWord, LONG_VERSION, Top, VERSION, Words};
 use crate::command::about::help;
 use crate::command::about::page::page;
 use crate::command::common::Common;
-use crate::command::{families, verbs};
+use crate::command::{families, missing_verbs};
 use crate::failure::Failure;
 use crate::settings::target::Family;
 
@@ -52,10 +52,10 @@ pub enum Refusal {
 
 impl Refusal {
     fn new(error: clap::Error, args: &[OsString], whole: &Command) -> Self {
-        let Typed { mut path, rest, .. } = Typed::new(args, whole);
+        let TypedLine { mut path, rest, .. } = TypedLine::new(args, whole);
         let is_long = args.iter().any(|word| word == "--help");
         if matches!(error.kind(), ErrorKind::InvalidSubcommand | ErrorKind::UnknownArgument)
-            && let Some(failure) = verbs::missing(&path, &rest)
+            && let Some(failure) = missing_verbs::missing(&path, &rest)
         {
             return Self::Failed(failure);
         }
@@ -78,7 +78,7 @@ impl Refusal {
                 let verbs = command.into_iter().flat_map(Command::get_subcommands).map(Command::get_name);
                 Self::Verb(page(whole, &path, false), verbs.collect::<Vec<_>>().join(", "))
             }
-            _ => Self::Mistake(misplaced::explained(error, args, whole)),
+            _ => Self::Mistake(suggestions::add_suggestion(error, args, whole)),
         }
     }
 
@@ -107,37 +107,39 @@ pub enum Owner {
     /// All families, or the word is the name of a family.
     All,
     /// Not a command.
-    Nobody,
+    None,
 }
 
 impl Parser {
     /// Parses a line, including the program name. If the reduced tree fails, the complete tree produces the error,
     /// because its text is better.
     pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, Refusal> {
-        let narrowed = match first(args) {
-            Some(First::Family(family)) => named(&mut self.last, family, args).map(|words| words.into_top(Top::Family)),
-            Some(First::Common) => {
+        let reduced = match parse_first_word(args) {
+            Some(FirstWord::Family(family)) => {
+                parse_named_commands(&mut self.last, family, args).map(|words| words.into_top(Top::Family))
+            }
+            Some(FirstWord::Common) => {
                 read(&mut Words::<Common>::command(), args).ok().map(|words| words.into_top(Top::Common))
             }
             None => None,
         };
-        if let Some(cli) = narrowed {
+        if let Some(cli) = reduced {
             return Ok(cli);
         }
-        let all = laid_out::<Top>(&mut self.all);
+        let all = build_commands::<Top>(&mut self.all);
         read(all, args).map_err(|error| Refusal::new(error, args, all))
     }
 
     /// Owner of a word, with this family first.
     pub fn owner(&mut self, word: &str, family: Option<Family>) -> Owner {
-        let all = laid_out::<Top>(&mut self.all);
+        let all = build_commands::<Top>(&mut self.all);
         let of_family = family.and_then(|family| all.find_subcommand(family.name())?.find_subcommand(word));
         if of_family.is_some() {
             Owner::Family
         } else if all.find_subcommand(word).is_some() {
             Owner::All
         } else {
-            Owner::Nobody
+            Owner::None
         }
     }
 
@@ -148,44 +150,44 @@ impl Parser {
     }
 }
 
-fn laid_out<C: Subcommand>(command: &mut Option<Command>) -> &mut Command {
+fn build_commands<C: Subcommand>(command: &mut Option<Command>) -> &mut Command {
     command.get_or_insert_with(Words::<C>::command)
 }
 
 fn read<C: Subcommand>(command: &mut Command, args: &[OsString]) -> Result<Words<C>, clap::Error> {
-    let respelled = respelled::respelled(args, command);
+    let respelled = spellings::rewrite_spelling(args, command);
     let args = respelled.as_deref().unwrap_or(args);
-    let own = assigned::parted(args, command);
+    let own = assignments::split_assignments(args, command);
     let parsed = command.try_get_matches_from_mut(own.as_deref().unwrap_or(args));
     let words = parsed.and_then(|mut matches| Words::from_arg_matches_mut(&mut matches));
     words.map_err(|error| error.format(command))
 }
 
 /// Owner of the first word, as far as known without the values of flags.
-enum First {
+enum FirstWord {
     Family(Family),
     Common,
 }
 
-fn first(args: &[OsString]) -> Option<First> {
+fn parse_first_word(args: &[OsString]) -> Option<FirstWord> {
     args.iter().skip(1).filter_map(|word| word.to_str()).find_map(|word| match word.parse() {
-        Ok(family) => Some(First::Family(family)),
-        Err(_) => Common::has_subcommand(word).then_some(First::Common),
+        Ok(family) => Some(FirstWord::Family(family)),
+        Err(_) => Common::has_subcommand(word).then_some(FirstWord::Common),
     })
 }
 
 /// Parses with only the commands named in the line; `None` if that fails.
-fn named(last: &mut Option<Command>, family: Family, args: &[OsString]) -> Option<Words<FamilyWord>> {
+fn parse_named_commands(last: &mut Option<Command>, family: Family, args: &[OsString]) -> Option<Words<FamilyWord>> {
     let is_named = |name: &str| args.iter().any(|word| word == name);
     let word = families::of(family).lay_out(Command::new(family.name()), &is_named);
-    let command = last.insert(Words::<Nothing>::command().subcommand(word));
+    let command = last.insert(Words::<NoSubcommand>::command().subcommand(word));
     read(command, args).ok()
 }
 
 /// A command without subcommands.
-enum Nothing {}
+enum NoSubcommand {}
 
-impl Subcommand for Nothing {
+impl Subcommand for NoSubcommand {
     fn augment_subcommands(command: Command) -> Command {
         command
     }
@@ -199,7 +201,7 @@ impl Subcommand for Nothing {
     }
 }
 
-impl FromArgMatches for Nothing {
+impl FromArgMatches for NoSubcommand {
     fn from_arg_matches(_: &ArgMatches) -> Result<Self, clap::Error> {
         Err(clap::Error::new(ErrorKind::InvalidSubcommand))
     }
@@ -228,36 +230,44 @@ mod tests {
     }
 
     #[test]
-    fn what_is_named_is_laid_out_as_in_the_whole() {
+    fn builds_named_commands_as_the_complete_tree() {
         let whole = Cli::command();
         let lay_out = |family: Family, is_named: &dyn Fn(&str) -> bool| {
             families::of(family).lay_out(Command::new(family.name()), is_named)
         };
         for family in Family::ALL {
-            let wanted = whole.find_subcommand(family.name()).unwrap();
-            assert_eq!(shape(&lay_out(family, &|_| true)), shape(wanted));
+            let expected = whole.find_subcommand(family.name()).unwrap();
+            assert_eq!(shape(&lay_out(family, &|_| true)), shape(expected));
         }
         let narrow = lay_out(Family::Yerc, &|name| ["job", "select"].contains(&name));
         assert_eq!(narrow.get_subcommands().count(), 1);
     }
 
     #[test]
-    fn the_version_is_told_as_the_whole_would() {
+    fn prints_the_version_of_the_complete_parser() {
         for flag in ["-V", "--version"] {
             let args = ["armctl", flag].map(OsString::from);
-            let told = Cli::command().try_get_matches_from(&args).unwrap_err();
-            assert_eq!((told.kind(), version(&args)), (ErrorKind::DisplayVersion, Some(told.to_string())));
+            let version_request = Cli::command().try_get_matches_from(&args).unwrap_err();
+            assert_eq!(
+                (version_request.kind(), version(&args)),
+                (ErrorKind::DisplayVersion, Some(version_request.to_string()))
+            );
         }
         assert_eq!(version(&["armctl", "--version", "-q"].map(OsString::from)), None);
     }
 
     #[test]
-    fn a_line_is_read_on_the_words_it_names() {
+    fn parses_a_line_with_its_named_commands() {
         let args = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
-        assert!(named(&mut None, Family::Yerc, &args("armctl yerc --sim job select --line 3 WELD -q")).is_some());
-        assert!(named(&mut None, Family::Yrcx, &args("armctl --sim yrcx --unit 2 point get 5")).is_some());
+        assert!(
+            parse_named_commands(&mut None, Family::Yerc, &args("armctl yerc --sim job select --line 3 WELD -q"))
+                .is_some()
+        );
+        assert!(
+            parse_named_commands(&mut None, Family::Yrcx, &args("armctl --sim yrcx --unit 2 point get 5")).is_some()
+        );
         for left_to_the_whole in ["armctl yerc", "armctl yerc stat", "armctl yerc status -h", "armctl yerc repl"] {
-            let is_read = named(&mut None, Family::Yerc, &args(left_to_the_whole)).is_some();
+            let is_read = parse_named_commands(&mut None, Family::Yerc, &args(left_to_the_whole)).is_some();
             assert_eq!(is_read, left_to_the_whole == "armctl yerc", "{left_to_the_whole}");
         }
     }

@@ -7,50 +7,50 @@ use clap::CommandFactory as _;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::parser::Refusal;
-use super::typed::Typed;
+use super::typed_line::TypedLine;
 use super::{complete, on_this_thread, wants_json};
 use crate::cli::Cli;
 use crate::command::Candidate;
-use crate::command::frame::asking::answered;
 use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::prompt::ask;
 use crate::command::frame::run::RunError;
-use crate::command::leaves::preselects;
+use crate::command::leaf_commands::preselects;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
 
 /// Time limit for the list of a controller.
-const PATIENCE: Duration = Duration::from_secs(3);
+const LIST_TIMEOUT: Duration = Duration::from_secs(3);
 /// Flag that forbids questions.
 const NO_INPUT: &str = "--no-input";
 
 /// The line with the selected value; `None` without candidates or without a terminal.
-pub fn completed(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsString>, RunError>> {
+pub fn complete_line(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsString>, RunError>> {
     let Refusal::Mistake(error) = refusal else { return None };
     if !can_choose(args) {
         return None;
     }
     let whole = Cli::command();
-    let what = missing(error, args)?;
+    let what = missing_argument(error, args)?;
     let line = [args, &[OsString::new()]].concat();
-    let found = complete::complete_within(&line, args.len(), false, PATIENCE, true);
+    let found = complete::complete_within(&line, args.len(), false, LIST_TIMEOUT, true);
     let found: Vec<Candidate> = found.into_iter().filter(is_value).collect();
     if found.is_empty() {
         return None;
     }
-    let has_first = preselects(&Typed::new(args, &whole).path);
-    Some(chosen(args, &what, &found, has_first))
+    let has_first = preselects(&TypedLine::new(args, &whole).path);
+    Some(ask_value(args, &what, &found, has_first))
 }
 
 /// Whether a person can choose: no JSON output, and not forbidden by the line or the environment.
 fn can_choose(args: &[OsString]) -> bool {
-    let is_json = wants_json(args).unwrap_or_else(super::prepared::wants_json);
+    let is_json = wants_json(args).unwrap_or_else(super::prepare::wants_json);
     let format = if is_json { Format::Json } else { Format::Table };
     let screen = Screen::new(format, ColorChoice::Never, false, 0);
     screen.with_questions(args.iter().all(|word| word != NO_INPUT)).can_choose()
 }
 
 /// The missing argument or flag value at the end of a line.
-fn missing(error: &clap::Error, args: &[OsString]) -> Option<String> {
+fn missing_argument(error: &clap::Error, args: &[OsString]) -> Option<String> {
     match (error.kind(), error.get(ContextKind::InvalidArg)?) {
         (ErrorKind::MissingRequiredArgument, ContextValue::Strings(missing)) => {
             let first = missing.first().filter(|first| first.starts_with('<'))?;
@@ -69,10 +69,10 @@ fn missing(error: &clap::Error, args: &[OsString]) -> Option<String> {
 
 /// Whether a candidate is a complete value and not a flag.
 fn is_value(candidate: &Candidate) -> bool {
-    !candidate.is_begun && !candidate.value.starts_with('-')
+    !candidate.is_incomplete && !candidate.value.starts_with('-')
 }
 
-fn chosen(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -> Result<Vec<OsString>, RunError> {
+fn ask_value(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -> Result<Vec<OsString>, RunError> {
     let screen = Screen::new(Format::Table, ColorChoice::Auto, false, 0);
     let options: Vec<String> = found
         .iter()
@@ -83,13 +83,13 @@ fn chosen(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -
         .collect();
     let question = format!("{what} (type to search, Enter selects, Esc cancels)");
     let asked = move || screen.ask_one_of(&question, &options, has_first);
-    let mut at = None;
+    let mut selected = None;
     on_this_thread(async {
         catch_interrupts();
-        at = Some(answered(screen, asked).await?);
+        selected = Some(ask(screen, asked).await?);
         Ok(())
     })?;
-    let value = at.and_then(|at| found.get(at)).map(|candidate| candidate.value.clone());
+    let value = selected.and_then(|at| found.get(at)).map(|candidate| candidate.value.clone());
     let value = value.ok_or_else(|| Failure::local("internal error: nothing was selected"))?;
     let line: Vec<OsString> = [args, &[value.into()]].concat();
     let words: Vec<&str> = line.iter().skip(1).filter_map(|word| word.to_str()).collect();
@@ -103,18 +103,18 @@ fn chosen(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -
 mod tests {
     use super::*;
 
-    fn what(line: &str) -> Option<String> {
+    fn missing_in_line(line: &str) -> Option<String> {
         let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
         let error = Cli::command().try_get_matches_from(&args).unwrap_err();
-        missing(&error, &args)
+        missing_argument(&error, &args)
     }
 
     #[test]
-    fn a_name_or_the_value_of_the_last_flag_is_missing() {
-        assert_eq!(what("armctl yerc job select").as_deref(), Some("NAME"));
-        assert_eq!(what("armctl robots remove").as_deref(), Some("NAME"));
-        assert_eq!(what("armctl status -r").as_deref(), Some("NAME"));
-        assert_eq!(what("armctl yerc move linear"), None, "its flags");
-        assert_eq!(what("armctl yerc status --color blue"), None);
+    fn finds_the_missing_name_or_flag_value() {
+        assert_eq!(missing_in_line("armctl yerc job select").as_deref(), Some("NAME"));
+        assert_eq!(missing_in_line("armctl robots remove").as_deref(), Some("NAME"));
+        assert_eq!(missing_in_line("armctl status -r").as_deref(), Some("NAME"));
+        assert_eq!(missing_in_line("armctl yerc move linear"), None, "its flags");
+        assert_eq!(missing_in_line("armctl yerc status --color blue"), None);
     }
 }

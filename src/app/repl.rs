@@ -23,12 +23,12 @@ use self::prompt::{Prompt, Seen, look};
 use self::terminal::Terminal;
 use super::batch::{self, refuse_repetition};
 use super::parser::{Parser, Refusal};
-use super::prepared::{Invocation, Need, PreparedCommand, sources};
-use super::{named, refuse, screen, tell, words};
+use super::prepare::{Invocation, Need, PreparedCommand, sources};
+use super::{line_words, name_lookup, refuse, report_failure, screen};
 use crate::cli::{Globals, Words};
 use crate::command::families;
 use crate::command::fleet::session::host::{self, ManagerThread};
-use crate::command::frame::interrupt::{again, asked_to_end, catch_interrupts, interruptible};
+use crate::command::frame::interrupt::{catch_interrupts, clear_interrupt, interruptible, termination_request};
 use crate::command::frame::run::{RunError, begin_trace};
 use crate::command::frame::script_line::Line;
 use crate::command::frame::session_manager::SessionManager;
@@ -49,7 +49,7 @@ pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
         screen.usage(&help);
     }
     screen.note(&format!("`armctl {} repl` reads commands from stdin, one per line", prefix.join(" ")));
-    RunError { told: true, ..Failure::usage("a command is missing").into() }
+    RunError { is_reported: true, ..Failure::usage("a command is missing").into() }
 }
 
 /// Runs lines until the user leaves or the script ends.
@@ -83,7 +83,7 @@ impl Repl {
     fn new(globals: Globals, mut prefix: Vec<String>) -> Result<Self, Failure> {
         let family = prefix.first().and_then(|family| family.parse::<Family>().ok());
         let sources = sources(globals.clone(), Need::Inventory, true)?;
-        let names_nobody = sources.selection.names_nobody() && sources.inventory.default.is_none();
+        let names_nobody = sources.selection.is_empty() && sources.inventory.default.is_none();
         let robots = if names_nobody { Vec::new() } else { sources.robots(family)? };
         // A simulator without a family can be of any family, until a line names one.
         let is_any = family.is_none() && sources.selection.sim;
@@ -137,7 +137,7 @@ impl Repl {
             let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());
             let typed = tokio::select! {
                 typed = editor.read(prompt) => typed,
-                how = asked_to_end() => {
+                how = termination_request() => {
                     terminal.take_back().await;
                     // The cursor is still after the typed text.
                     self.screen.ask_note("");
@@ -164,7 +164,7 @@ impl Repl {
                     Next::Leave => return Ok(()),
                 }
             }
-            if let Some(how) = again() {
+            if let Some(how) = clear_interrupt() {
                 return Err(ended(how));
             }
         }
@@ -192,7 +192,7 @@ impl Repl {
                     if !self.screen.is_json() {
                         self.screen.note(&failure.message);
                     }
-                    return Err(RunError { told: true, ..failure.into() });
+                    return Err(RunError { is_reported: true, ..failure.into() });
                 }
                 Next::Leave => return Ok(()),
             }
@@ -200,7 +200,7 @@ impl Repl {
     }
 
     async fn run_line(&mut self, text: &str, manager: &SessionManager) -> Next {
-        let words = match words::split(text) {
+        let words = match line_words::split(text) {
             Ok(words) => words,
             Err(why) => {
                 return failed(
@@ -215,22 +215,23 @@ impl Repl {
             _ => {}
         }
         let args = self.meaning.args(&words);
-        let Words { globals, command } = match named::parse(&mut self.meaning.parser, &args, Some(&self.globals), true)
-        {
-            Ok(words) => words,
-            // In a script, a missing verb is an error.
-            Err(error @ Refusal::Verb(..)) if !can_type() => return failed(&self.screen, error.failure().into()),
-            Err(error) => {
-                return refuse(&args, &error, self.screen.is_json(), false).map_or_else(Next::Failed, |()| Next::Line);
-            }
-        };
+        let Words { globals, command } =
+            match name_lookup::parse(&mut self.meaning.parser, &args, Some(&self.globals), true) {
+                Ok(words) => words,
+                // In a script, a missing verb is an error.
+                Err(error @ Refusal::Verb(..)) if !can_type() => return failed(&self.screen, error.failure().into()),
+                Err(error) => {
+                    return refuse(&args, &error, self.screen.is_json(), false)
+                        .map_or_else(Next::Failed, |()| Next::Line);
+                }
+            };
         let own = globals.clone();
         let globals = globals.within(&self.globals);
         let screen = screen(&globals);
         let line = line_of(manager, text);
         let done = match command.into() {
             Invocation::Task(task) => match PreparedCommand::new(own, Some(&self.globals), task, Some(line)) {
-                Ok(ready) => Box::pin(ready.go()).await,
+                Ok(ready) => Box::pin(ready.run()).await,
                 Err(failure) => Err(failure.into()),
             },
             Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
@@ -270,7 +271,7 @@ fn line_of(manager: &SessionManager, typed: &str) -> Line {
 }
 
 fn failed(screen: &Screen, stopped: RunError) -> Next {
-    Next::Failed(tell(screen, stopped))
+    Next::Failed(report_failure(screen, stopped))
 }
 
 fn ended(how: &str) -> RunError {

@@ -9,12 +9,12 @@ use serde_json::Value;
 
 use super::batch::refuse_repetition;
 use super::parser::Parser;
-use super::prepared::{Invocation, Need, PreparedCommand, sources};
+use super::prepare::{Invocation, Need, PreparedCommand, sources};
 use super::screen;
 use crate::cli::{Globals, Words};
 use crate::command::families;
 use crate::command::fleet::session::host;
-use crate::command::fleet::teach::{Teach, Types, show};
+use crate::command::fleet::teach::{CommandRunner, Teach, show};
 use crate::command::frame::authority;
 use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::{RunError, begin_trace};
@@ -30,26 +30,26 @@ use crate::settings::Robot;
 pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     let screen = screen(&globals);
-    let robot = the_robot(&globals, &teach)?;
-    fits(&globals, &screen)?;
+    let robot = select_robot(&globals, &teach)?;
+    check_globals(&globals, &screen)?;
     catch_interrupts();
     begin_trace(globals.trace.as_deref())?;
     let gate = Gate { yes: globals.yes, dry_run: false, on_interrupt: globals.on_interrupt };
-    authority::pass(gate, &screen, &robot, &intent(&teach, &robot)).await?;
+    authority::confirm_intent(gate, &screen, &robot, &intent(&teach, &robot)).await?;
     // Link messages would damage the screen. The commands report link errors.
     let (manager, thread) = host::start(|_| {})?;
-    let lines = Lines { globals: each(&globals), manager, robot: robot.clone(), parser: RefCell::default() };
+    let lines = Lines { globals: line_globals(&globals), manager, robot: robot.clone(), parser: RefCell::default() };
     let panel = families::of(robot.family).panel();
-    let ended = match lines.line("teach").hold(&robot, globals.trace.as_deref(), &screen).await {
+    let outcome = match lines.line("teach").hold(&robot, globals.trace.as_deref(), &screen).await {
         Ok(()) => show(&screen, &robot, panel, &teach, &lines).await,
         Err(failure) => Err(failure),
     };
     thread.end().await;
-    Ok(ended?)
+    Ok(outcome?)
 }
 
 /// The one robot of the panel.
-fn the_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
+fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     let sources = sources(globals.clone(), Need::Inventory, true)?;
     if sources.selection.sim && teach.family.is_none() {
         return Err(
@@ -63,7 +63,7 @@ fn the_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     }
 }
 
-fn fits(globals: &Globals, screen: &crate::output::Screen) -> Result<(), Failure> {
+fn check_globals(globals: &Globals, screen: &crate::output::Screen) -> Result<(), Failure> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("teach {what}")).hint(hint));
     if globals.dry_run {
         return wrong(
@@ -90,7 +90,7 @@ fn intent(teach: &Teach, robot: &Robot) -> Intent {
 }
 
 /// Flags of each line: confirmed, JSON output, quiet.
-fn each(globals: &Globals) -> Globals {
+fn line_globals(globals: &Globals) -> Globals {
     Globals { yes: true, json: true, format: None, quiet: true, verbose: 0, ..globals.clone() }
 }
 
@@ -108,7 +108,7 @@ impl Lines {
     }
 }
 
-impl Types for Lines {
+impl CommandRunner for Lines {
     async fn run(&self, words: &[String]) -> Result<Value, Failure> {
         let line = self.line(&words.join(" "));
         let results = line.results.clone().unwrap_or_default();
@@ -121,7 +121,7 @@ impl Types for Lines {
             return Err(Failure::local(format!("internal error: '{}' is not a command", words.join(" "))));
         };
         let prepared = PreparedCommand::new(globals, Some(&self.globals), task, Some(line))?;
-        Box::pin(prepared.go()).await.map_err(|stopped| stopped.failure)?;
+        Box::pin(prepared.run()).await.map_err(|stopped| stopped.failure)?;
         let envelope = results.borrow_mut().pop().unwrap_or_default();
         Ok(envelope.get("data").cloned().unwrap_or_default())
     }

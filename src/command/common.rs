@@ -3,7 +3,7 @@
 use clap::Subcommand;
 
 use super::about::{completions, help, man, schema};
-use super::fleet::shared::{self, alarm, io};
+use super::fleet::common::{self, alarm, io};
 use super::fleet::status::Overview;
 use super::fleet::wait::Wait;
 use super::fleet::{backup, names, robots, session, setup, tools, top};
@@ -147,8 +147,8 @@ impl Common {
             Self::Status(overview) => run.robots(&overview).await,
             Self::Alarm(alarm) => run.robots(&*alarm.command()?).await,
             Self::Io(io) => run.robots(&*io.command()?).await,
-            Self::Position => run.robots(&shared::position()).await,
-            Self::Stop => run.robots(&shared::stop()).await,
+            Self::Position => run.robots(&common::position()).await,
+            Self::Stop => run.robots(&common::stop()).await,
             Self::Wait(wait) => run.robots(&*wait.command()?).await,
             Self::Backup(backup) => backup.run(run).await,
             Self::Restore(restore) => run.robots(&restore).await,

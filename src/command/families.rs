@@ -4,14 +4,14 @@ use clap::ArgMatches;
 use clap::error::ErrorKind;
 
 use super::face::Face;
-use super::face::declared::Declared;
+use super::face::registration::Registered;
 use super::toyo::link::Toyo;
 use super::yerc::link::Yerc;
 use super::yrcx::link::Yrcx;
 use crate::settings::target::Family;
 
 /// Every family, in the order help texts list them.
-pub static FAMILIES: [&dyn Face; 3] = [&Declared::<Yerc>::FACE, &Declared::<Yrcx>::FACE, &Declared::<Toyo>::FACE];
+pub static FAMILIES: [&dyn Face; 3] = [&Registered::<Yerc>::FACE, &Registered::<Yrcx>::FACE, &Registered::<Toyo>::FACE];
 
 /// A family by its name.
 ///
@@ -24,7 +24,7 @@ pub fn of(family: Family) -> &'static dyn Face {
 }
 
 /// The family that words name, with what stands behind it.
-pub fn named(matches: &mut ArgMatches) -> Result<(Family, ArgMatches), clap::Error> {
+pub fn by_name(matches: &mut ArgMatches) -> Result<(Family, ArgMatches), clap::Error> {
     let (name, behind) = matches.remove_subcommand().ok_or_else(|| clap::Error::new(ErrorKind::MissingSubcommand))?;
     let family = name.parse().map_err(|_| clap::Error::new(ErrorKind::InvalidSubcommand))?;
     Ok((family, behind))
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_family_has_its_line() {
+    fn lists_every_family_once() {
         assert_eq!(FAMILIES.map(<dyn Face>::family), Family::ALL);
     }
 }

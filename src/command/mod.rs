@@ -18,17 +18,17 @@ pub mod face;
 pub mod families;
 pub mod fleet;
 pub mod frame;
-pub mod leaves;
+pub mod leaf_commands;
+pub mod missing_verbs;
 pub mod robot;
 pub mod serve;
 pub mod toyo;
-pub mod verbs;
 pub mod yerc;
 pub mod yrcx;
 
 pub(crate) use frame::commands;
 pub use frame::{
-    Access, AnyCommand, AnyContext, AnyReport, Candidate, Command, CommandSet, ConnectMode, Connection, Context,
-    Driver, Entry, Family, Offline, OfflineCommand, Outcome, Own, OwnArguments, Report, SchemaEntry, Subcommands,
-    ValueKind,
+    Access, AnyCommand, AnyContext, AnyFamilyArguments, AnyReport, Candidate, Command, CommandSet, ConnectMode,
+    Connection, Context, Driver, Entry, Family, FamilyArguments, Offline, OfflineCommand, Outcome, Report, SchemaEntry,
+    Subcommands, ValueKind,
 };

@@ -53,7 +53,7 @@ pub struct Started<S: Serve> {
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Server {
     /// Serves until something arrives or is due, and handles it. The future may be dropped.
-    async fn turn(&mut self) -> io::Result<()>;
+    async fn run_until_change(&mut self) -> io::Result<()>;
     /// Executes a console line and returns the result or the reason for a failure.
     fn console(&mut self, line: &str) -> Result<String, String>;
     /// Sets the faults of link and device in the form of `--fault`; `None` removes all faults.
@@ -96,7 +96,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     loop {
         let turn = interruptible(async {
             tokio::select! {
-                outcome = server.turn() => outcome.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
+                outcome = server.run_until_change() => outcome.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
                 line = next_line(&mut console) => line.map(Some),
             }
         });
@@ -135,9 +135,9 @@ fn console_line(server: &mut impl Server, line: &str) -> Result<String, String> 
 
 /// Console lines of a simulator.
 struct Console<R> {
-    from: BufReader<R>,
+    input: BufReader<R>,
     /// Bytes of the next line so far, so that a turn of the simulator does not lose them.
-    held: Vec<u8>,
+    buffered: Vec<u8>,
 }
 
 impl<R: AsyncRead + Unpin> Console<R> {
@@ -145,19 +145,19 @@ impl<R: AsyncRead + Unpin> Console<R> {
     const LONGEST: usize = 1 << 16;
 
     fn new(from: R) -> Self {
-        Self { from: BufReader::new(from), held: Vec::new() }
+        Self { input: BufReader::new(from), buffered: Vec::new() }
     }
 
     /// Next line; `None` at the end.
     async fn next(&mut self) -> Result<Option<String>, Failure> {
-        let room = u64::try_from(Self::LONGEST.saturating_sub(self.held.len())).unwrap_or_default();
-        (&mut self.from).take(room).read_until(b'\n', &mut self.held).await.context("stdin")?;
-        if self.held.len() >= Self::LONGEST {
+        let room = u64::try_from(Self::LONGEST.saturating_sub(self.buffered.len())).unwrap_or_default();
+        (&mut self.input).take(room).read_until(b'\n', &mut self.buffered).await.context("stdin")?;
+        if self.buffered.len() >= Self::LONGEST {
             return Err(
                 Failure::usage("the console line is longer than 64 KiB").hint("`help` lists the console commands")
             );
         }
-        let line = std::mem::take(&mut self.held);
+        let line = std::mem::take(&mut self.buffered);
         Ok((!line.is_empty()).then(|| String::from_utf8_lossy(&line).trim_end_matches(['\n', '\r']).to_owned()))
     }
 }
@@ -171,7 +171,7 @@ async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Re
 }
 
 /// Command line that reaches a simulator of a family at a URL.
-pub fn reach(family: &str, target: &str) -> String {
+pub fn connect_hint(family: &str, target: &str) -> String {
     format!("armctl -t '{target}' {family} status")
 }
 
@@ -182,7 +182,7 @@ pub fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
 }
 
 /// Failure of a server that cannot start.
-pub fn cannot_listen(on: &str, error: &io::Error) -> Failure {
+pub fn bind_failure(on: &str, error: &io::Error) -> Failure {
     let hint = match error.kind() {
         io::ErrorKind::AddrInUse => "stop the other simulator, or choose a free port with --bind 127.0.0.1:0",
         io::ErrorKind::PermissionDenied => "ports below 1024 need privileges; use a higher port",
@@ -196,7 +196,7 @@ mod tests {
     use super::*;
 
     #[tokio::test]
-    async fn a_console_takes_lines_and_no_endless_one() {
+    async fn console_limits_the_length_of_a_line() {
         let mut console = Console::new(&b"state\r\nquit"[..]);
         assert_eq!(console.next().await.unwrap().as_deref(), Some("state"));
         assert_eq!(console.next().await.unwrap().as_deref(), Some("quit"), "the last one needs no end");

@@ -23,10 +23,10 @@ pub const SETTINGS: u64 = 16 << 20;
 /// `IsADirectory` for a folder, `Unsupported` for another file that is not regular.
 pub fn open(path: &Path) -> io::Result<File> {
     // Checked before, because opening a device or a pipe may have effects or block.
-    regular(&path.metadata()?)?;
-    let file = waiting_for_nobody(path)?;
+    check_regular(&path.metadata()?)?;
+    let file = open_nonblocking(path)?;
     // Checked again, because the path may lead to another file now.
-    regular(&file.metadata()?)?;
+    check_regular(&file.metadata()?)?;
     Ok(file)
 }
 
@@ -39,8 +39,8 @@ pub fn plain(error: &io::Error) -> String {
 ///
 /// # Errors
 /// As [`open`]; `FileTooLarge` above the limit.
-pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    bounded(open(path)?, most)
+pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    read_limited(open(path)?, limit)
 }
 
 /// Reads a text file of at most `most` bytes.
@@ -57,13 +57,13 @@ pub fn text(path: &Path, most: u64) -> io::Result<String> {
 /// # Errors
 /// `FileTooLarge` above the limit.
 pub fn stdin(most: u64) -> io::Result<Vec<u8>> {
-    static KEPT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(bytes) = &*kept {
-        return bounded(&**bytes, most);
+    static CACHED_INPUT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
+    let mut cached_input = CACHED_INPUT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(bytes) = &*cached_input {
+        return read_limited(&**bytes, most);
     }
-    let bytes = bounded(io::stdin().lock(), most)?;
-    *kept = Some(bytes.clone());
+    let bytes = read_limited(io::stdin().lock(), most)?;
+    *cached_input = Some(bytes.clone());
     Ok(bytes)
 }
 
@@ -75,7 +75,7 @@ pub fn input(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if path == Path::new("-") { stdin(most) } else { read(path, most) }
 }
 
-fn bounded(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
+fn read_limited(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     if u64::try_from(bytes.len()).unwrap_or(u64::MAX) > most {
@@ -84,7 +84,7 @@ fn bounded(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn regular(found: &std::fs::Metadata) -> io::Result<()> {
+fn check_regular(found: &std::fs::Metadata) -> io::Result<()> {
     match found.file_type() {
         kind if kind.is_file() => Ok(()),
         kind if kind.is_dir() => Err(ErrorKind::IsADirectory.into()),
@@ -97,7 +97,7 @@ fn regular(found: &std::fs::Metadata) -> io::Result<()> {
 
 /// Opens a path without blocking, in case it has become a pipe.
 #[cfg(unix)]
-fn waiting_for_nobody(path: &Path) -> io::Result<File> {
+fn open_nonblocking(path: &Path) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt as _;
 
     let flags = i32::try_from(rustix::fs::OFlags::NONBLOCK.bits()).unwrap_or_default();
@@ -112,15 +112,15 @@ fn waiting_for_nobody(path: &Path) -> io::Result<File> {
 /// Prefix and suffix of draft names.
 const DRAFT: (&str, &str) = (".armctl-", ".part");
 /// Attempts to create a draft while another process removes it.
-const TRIES: u32 = 10;
+const MAX_TRIES: u32 = 10;
 
 /// Called before the first draft is created.
-static BEFORE_DRAFT: OnceLock<fn()> = OnceLock::new();
+static DRAFT_HOOK: OnceLock<fn()> = OnceLock::new();
 
 /// Sets a function that runs before each draft of this process: it keeps a signal from ending the process while a
 /// draft exists. Only the first call counts.
-pub fn before_drafts(prepare: fn()) {
-    BEFORE_DRAFT.get_or_init(|| prepare);
+pub fn set_draft_hook(prepare: fn()) {
+    DRAFT_HOOK.get_or_init(|| prepare);
 }
 
 /// Drafts of this process.
@@ -136,16 +136,16 @@ pub fn remove_drafts() {
 
 /// Creates a draft, locked while it exists. It has the permissions of a normal new file, not those of a secret one.
 pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
-    static SWEPT: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
+    static SWEPT_FOLDERS: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
 
     let is_new = {
-        let mut swept = SWEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut swept = SWEPT_FOLDERS.lock().unwrap_or_else(PoisonError::into_inner);
         swept.get_or_insert_default().insert(folder.to_owned())
     };
     if is_new {
         sweep(folder);
     }
-    if let Some(prepare) = BEFORE_DRAFT.get() {
+    if let Some(prepare) = DRAFT_HOOK.get() {
         prepare();
     }
     let mut tries = 0;
@@ -163,7 +163,7 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
             drafts.push(file.path().to_owned());
         }
         // Before the lock, another run may have removed the draft as abandoned.
-        if (lock(file.as_file()) && is_there(file.as_file())) || tries >= TRIES {
+        if (lock(file.as_file()) && is_linked(file.as_file())) || tries >= MAX_TRIES {
             return Ok(file);
         }
     }
@@ -186,7 +186,7 @@ fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
     });
     let is_dead = |path: &PathBuf| {
         path.symlink_metadata().is_ok_and(|found| found.is_file())
-            && open(path).is_ok_and(|file| can_tell_the_dead() && lock(&file))
+            && open(path).is_ok_and(|file| locks_detect_dead_processes() && lock(&file))
     };
     drafts.filter(is_dead).collect()
 }
@@ -217,21 +217,21 @@ pub fn folder_of(path: &Path) -> PathBuf {
 
 /// Exclusive access to a file, from reading to replacing it; released when dropped.
 #[derive(Debug)]
-pub struct Turn {
+pub struct FileLock {
     _folder: Option<File>,
 }
 
 /// Waits for exclusive access to a file. Locks its folder, so that no lock file remains. If the folder cannot be
 /// locked, as on some network drives, access is not exclusive.
-pub fn turn(path: &Path) -> io::Result<Turn> {
+pub fn lock_file(path: &Path) -> io::Result<FileLock> {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let folder = folder_of(&path);
     std::fs::create_dir_all(&folder)?;
-    Ok(Turn { _folder: locked_folder(&folder) })
+    Ok(FileLock { _folder: lock_folder(&folder) })
 }
 
 #[cfg(unix)]
-fn locked_folder(folder: &Path) -> Option<File> {
+fn lock_folder(folder: &Path) -> Option<File> {
     let folder = File::open(folder).ok()?;
     rustix::fs::flock(&folder, rustix::fs::FlockOperation::LockExclusive).ok()?;
     Some(folder)
@@ -244,7 +244,7 @@ fn locked_folder(_: &Path) -> Option<File> {
 
 /// Exclusive use of a folder; released when dropped.
 #[derive(Debug)]
-pub struct Claim {
+pub struct FolderLock {
     _folder: Option<File>,
 }
 
@@ -253,12 +253,12 @@ pub struct Claim {
 /// # Errors
 /// [`ErrorKind::WouldBlock`] if another process holds the lock.
 #[cfg(unix)]
-pub fn claim(folder: &Path) -> io::Result<Claim> {
+pub fn claim_folder(folder: &Path) -> io::Result<FolderLock> {
     let file = File::open(folder)?;
     match rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockExclusive) {
-        Ok(()) => Ok(Claim { _folder: Some(file) }),
+        Ok(()) => Ok(FolderLock { _folder: Some(file) }),
         Err(error) if io::Error::from(error).kind() == ErrorKind::WouldBlock => Err(ErrorKind::WouldBlock.into()),
-        Err(_) => Ok(Claim { _folder: None }),
+        Err(_) => Ok(FolderLock { _folder: None }),
     }
 }
 
@@ -267,8 +267,8 @@ pub fn claim(folder: &Path) -> io::Result<Claim> {
 /// # Errors
 /// The folder does not exist.
 #[cfg(not(unix))]
-pub fn claim(folder: &Path) -> io::Result<Claim> {
-    folder.metadata().map(|_| Claim { _folder: None })
+pub fn claim(folder: &Path) -> io::Result<FolderLock> {
+    folder.metadata().map(|_| FolderLock { _folder: None })
 }
 
 /// Locks a file, unless another process holds the lock.
@@ -283,13 +283,13 @@ fn lock(_: &File) -> bool {
 }
 
 /// Whether the system releases a lock when its process ends.
-const fn can_tell_the_dead() -> bool {
+const fn locks_detect_dead_processes() -> bool {
     cfg!(unix)
 }
 
 /// Whether an open file still has a name.
 #[cfg(unix)]
-fn is_there(file: &File) -> bool {
+fn is_linked(file: &File) -> bool {
     file.metadata().is_ok_and(|found| std::os::unix::fs::MetadataExt::nlink(&found) > 0)
 }
 
@@ -312,7 +312,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_read_up_to_its_limit() {
+    fn reads_a_file_up_to_its_limit() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("file");
         std::fs::write(&path, "12345").unwrap();
@@ -330,7 +330,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn drafts_of_the_dead_are_swept_and_those_of_the_living_stay() {
+    fn sweeps_only_drafts_of_dead_processes() {
         let folder = tempfile::tempdir().unwrap();
         let names = || std::fs::read_dir(folder.path()).unwrap().count();
         let living = draft_in(folder.path()).unwrap();
@@ -347,7 +347,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn what_is_replaced_keeps_its_rights_and_its_link() {
+    fn replace_keeps_permissions_and_link() {
         use std::os::unix::fs::PermissionsExt as _;
 
         let folder = tempfile::tempdir().unwrap();
@@ -365,7 +365,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn devices_pipes_and_sockets_are_no_files() {
+    fn rejects_devices_pipes_and_sockets() {
         let folder = tempfile::tempdir().unwrap();
         let (link, socket) = (folder.path().join("link"), folder.path().join("socket"));
         std::os::unix::fs::symlink("/dev/zero", &link).unwrap();

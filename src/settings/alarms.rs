@@ -83,7 +83,7 @@ pub struct Alarms(Option<PathBuf>);
 
 impl Alarms {
     /// The file next to this inventory.
-    pub fn beside(inventory: Option<&Path>) -> Self {
+    pub fn load_beside(inventory: Option<&Path>) -> Self {
         Self(inventory.map(|path| path.with_file_name(FILE_NAME)))
     }
 
@@ -150,22 +150,22 @@ impl Table {
 
     /// Most specific matching entry.
     fn find(&self, origin: Origin<'_>, code: &str) -> Option<Explanation> {
-        let code = normal(code);
+        let code = normalize(code);
         let fits = |entry: &&Entry| {
             entry.family == origin.family
-                && normal(&entry.code) == code
+                && normalize(&entry.code) == code
                 && entry.robot.as_deref().is_none_or(|robot| Some(robot) == origin.robot)
                 && entry.model.is_none_or(|model| Some(model) == origin.model)
         };
-        let narrow = |entry: &&Entry| (entry.robot.is_some(), entry.model.is_some());
+        let specificity = |entry: &&Entry| (entry.robot.is_some(), entry.model.is_some());
         // Of equally specific entries, the first.
-        let found = self.0.iter().rev().filter(fits).max_by_key(narrow);
+        let found = self.0.iter().rev().filter(fits).max_by_key(specificity);
         found.map(|entry| entry.explanation.clone())
     }
 }
 
 /// Normalizes a code.
-fn normal(code: &str) -> String {
+fn normalize(code: &str) -> String {
     let code = code.trim().to_ascii_lowercase();
     let digits = code.strip_prefix("0x").unwrap_or(&code).trim_start_matches('0');
     if digits.is_empty() { "0".to_owned() } else { digits.to_owned() }
@@ -216,7 +216,7 @@ mod tests {
                         [[alarm]]\nfamily = \"toyo\"\ncode = \"0xA1\"\ntext = \"axis\"\n";
 
     #[test]
-    fn the_narrowest_entry_counts() {
+    fn narrowest_entry_wins() {
         let table = Table::parse(FILE, "alarms.toml").unwrap();
         let find =
             |family, robot, code| table.find(Origin { family, robot, model: None }, code).map(|found| found.text);

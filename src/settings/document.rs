@@ -7,10 +7,10 @@ use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TomlError, Value, value
 pub struct Document(DocumentMut);
 
 /// Reason why the text cannot be edited.
-pub type Wrong = &'static str;
+pub type DocumentError = &'static str;
 
-const NO_LIST: Wrong = "`robot` is not a list of [[robot]] tables";
-const NO_ENTRY: Wrong = "the robot has no [[robot]] table";
+const NO_LIST: DocumentError = "`robot` is not a list of [[robot]] tables";
+const NO_ENTRY: DocumentError = "the robot has no [[robot]] table";
 
 impl Document {
     /// Parses a text.
@@ -19,7 +19,7 @@ impl Document {
     }
 
     /// Appends an entry. The first entry becomes the default.
-    pub fn add(&mut self, entry: Table, is_default: bool) -> Result<(), Wrong> {
+    pub fn add(&mut self, entry: Table, is_default: bool) -> Result<(), DocumentError> {
         let name = entry.get("name").cloned().unwrap_or_default();
         let list = self.0.entry("robot").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
         let list = list.as_array_of_tables_mut().ok_or(NO_LIST)?;
@@ -31,15 +31,15 @@ impl Document {
     }
 
     /// Removes an entry with the comment directly above it.
-    pub fn remove(&mut self, name: &str) -> Result<(), Wrong> {
+    pub fn remove(&mut self, name: &str) -> Result<(), DocumentError> {
         let list = self.list()?;
         let at = list.iter().position(|entry| is_called(entry, name)).ok_or(NO_ENTRY)?;
-        let gone = list.remove(at);
-        let above = gone.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
+        let removed_lines = list.remove(at);
+        let above = removed_lines.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
         // A comment separated by an empty line is about something else, such as the file.
         let kept = above.rfind("\n\n").map_or("", |end| &above[..=end]);
         if kept.contains('#') {
-            self.put_before_table(gone.position(), kept);
+            self.insert_before_table(removed_lines.position(), kept);
         }
         if self.default() == Some(name) {
             self.remove_default();
@@ -48,8 +48,8 @@ impl Document {
     }
 
     /// Renames an entry, and the default if it names the entry.
-    pub fn rename(&mut self, old: &str, new: &str) -> Result<(), Wrong> {
-        put(self.entry(old)?, "name", new.into());
+    pub fn rename(&mut self, old: &str, new: &str) -> Result<(), DocumentError> {
+        insert(self.entry(old)?, "name", new.into());
         if self.default() == Some(old) {
             self.set_default(new);
         }
@@ -59,14 +59,14 @@ impl Document {
     /// Sets the default robot.
     pub fn set_default(&mut self, name: &str) {
         let is_first = self.0.as_table().get_values().is_empty();
-        put(self.0.as_table_mut(), "default", name.into());
+        insert(self.0.as_table_mut(), "default", name.into());
         if is_first {
-            self.keep_head();
+            self.keep_header();
         }
     }
 
     /// Keeps the header comment of the file above its first key.
-    fn keep_head(&mut self) {
+    fn keep_header(&mut self) {
         let Some(first) = self.tables().min_by_key(|table| table.position()) else { return };
         let above = first.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default().to_owned();
         let Some(end) = above.rfind("\n\n").filter(|_| above.contains('#')) else { return };
@@ -78,13 +78,13 @@ impl Document {
     }
 
     /// Sets or removes a setting of an entry. Returns the old value.
-    pub fn set(&mut self, name: &str, key: &str, new: Option<Value>) -> Result<Option<Value>, Wrong> {
+    pub fn set(&mut self, name: &str, key: &str, new: Option<Value>) -> Result<Option<Value>, DocumentError> {
         let entry = self.entry(name)?;
         if let Some(name) = key.strip_prefix("names.") {
             return set_name(entry, name, new);
         }
         Ok(match new {
-            Some(new) => put(entry, key, new),
+            Some(new) => insert(entry, key, new),
             None => entry.remove(key).and_then(|item| item.into_value().ok()),
         })
     }
@@ -98,15 +98,15 @@ impl Document {
         let Some((key, _)) = self.0.as_table_mut().remove_entry("default") else { return };
         let above = key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
         if above.contains('#') {
-            self.put_before_table(None, above);
+            self.insert_before_table(None, above);
         }
     }
 
-    fn list(&mut self) -> Result<&mut ArrayOfTables, Wrong> {
+    fn list(&mut self) -> Result<&mut ArrayOfTables, DocumentError> {
         self.0.get_mut("robot").and_then(Item::as_array_of_tables_mut).ok_or(NO_LIST)
     }
 
-    fn entry(&mut self, name: &str) -> Result<&mut Table, Wrong> {
+    fn entry(&mut self, name: &str) -> Result<&mut Table, DocumentError> {
         self.list()?.iter_mut().find(|entry| is_called(entry, name)).ok_or(NO_ENTRY)
     }
 
@@ -119,7 +119,7 @@ impl Document {
     }
 
     /// Inserts comments before the table that follows a position, or at the end.
-    fn put_before_table(&mut self, place: Option<isize>, text: &str) {
+    fn insert_before_table(&mut self, place: Option<isize>, text: &str) {
         let next = self.tables().filter(|table| table.position() > place).min_by_key(|table| table.position());
         if let Some(next) = next {
             let own = next.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
@@ -143,8 +143,8 @@ fn is_called(entry: &Table, name: &str) -> bool {
 }
 
 /// Sets or removes a name of an entry. An empty table of names is removed.
-fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<Value>, Wrong> {
-    const NO_TABLE: Wrong = "`names` is not a table";
+fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<Value>, DocumentError> {
+    const NO_TABLE: DocumentError = "`names` is not a table";
 
     let Some(new) = new else {
         let Some(names) = entry.get_mut("names") else { return Ok(None) };
@@ -167,7 +167,7 @@ fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<
 }
 
 /// Replaces a value and keeps the comment after it, or adds it at the end of the table. Returns the old value.
-fn put(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
+fn insert(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
     if let Some(Item::Value(old)) = table.get_mut(key) {
         *new.decor_mut() = old.decor().clone();
         return Some(std::mem::replace(old, new));
@@ -219,7 +219,7 @@ name = \"b\"
     }
 
     #[test]
-    fn nothing_but_what_was_meant_is_changed() {
+    fn changes_only_the_requested_setting() {
         let set = changed(|document| {
             assert_eq!(document.set("a", "read_only", Some(false.into())).unwrap().unwrap().as_bool(), Some(true));
             assert!(document.set("b", "retries", Some(5.into())).unwrap().is_none());
@@ -238,7 +238,7 @@ name = \"b\"
     }
 
     #[test]
-    fn names_stand_below_their_entry() {
+    fn writes_names_below_their_entry() {
         let set =
             |document: &mut Document, name: &str, key: &str, new: Option<Value>| document.set(name, key, new).unwrap();
         let named = changed(|document| {
@@ -260,7 +260,7 @@ name = \"b\"
     }
 
     #[test]
-    fn an_entry_goes_with_its_own_comment_alone() {
+    fn removes_an_entry_with_its_own_comment() {
         let removed = changed(|document| document.remove("a").unwrap());
         for kept in ["# Hall 3, kept by Ann", "# Cells", "# the new one", "# of all", "# the end", "name = \"b\""] {
             assert!(removed.contains(kept), "{kept}:\n{removed}");
@@ -275,7 +275,7 @@ name = \"b\"
     }
 
     #[test]
-    fn a_new_entry_stands_at_the_end() {
+    fn adds_an_entry_at_the_end() {
         let mut entry = Table::new();
         entry.insert("name", value("c"));
         entry.insert("target", value("udp://j"));

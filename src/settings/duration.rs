@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn junk_is_named() {
+    fn names_invalid_text() {
         for text in ["", "s", "-1s", "3 s", "1d", "1e3", "25h", "99999999999999999999s"] {
             assert!(parse(text).is_err(), "{text}");
         }

@@ -31,7 +31,7 @@ use toml::Spanned;
 use super::duration;
 use super::model::ModelSetting;
 use super::names::grammar;
-use super::target::{Family, Given, Target};
+use super::target::{Family, Target, TargetArgument};
 use crate::controller::names::{Name, Source, unusable};
 use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
@@ -97,7 +97,7 @@ pub enum Location {
     /// Named by the user; it must exist.
     Named(PathBuf),
     /// In the platform's folder; it can be missing.
-    Usual(PathBuf),
+    Default(PathBuf),
     /// There is no home folder.
     Nowhere,
 }
@@ -107,7 +107,7 @@ impl Location {
     pub fn find(named: Option<PathBuf>) -> Self {
         match (named, etcetera::choose_base_strategy()) {
             (Some(path), _) => Self::Named(path),
-            (None, Ok(folders)) => Self::Usual(folders.config_dir().join("armctl").join(FILE_NAME)),
+            (None, Ok(folders)) => Self::Default(folders.config_dir().join("armctl").join(FILE_NAME)),
             (None, Err(_)) => Self::Nowhere,
         }
     }
@@ -115,7 +115,7 @@ impl Location {
     /// The path, if there is one.
     pub fn path(&self) -> Option<&Path> {
         match self {
-            Self::Named(path) | Self::Usual(path) => Some(path),
+            Self::Named(path) | Self::Default(path) => Some(path),
             Self::Nowhere => None,
         }
     }
@@ -127,7 +127,7 @@ impl Inventory {
         let Some(path) = location.path() else { return Ok(Self::default()) };
         let text = match files::text(path, files::SETTINGS) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound && matches!(location, Location::Usual(_)) => {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound && matches!(location, Location::Default(_)) => {
                 return Ok(Self { path: Some(path.to_owned()), ..Self::default() });
             }
             Err(error) => {
@@ -165,11 +165,11 @@ impl Inventory {
                     .hint("give each robot a different name"));
             }
             let mut span = raw.target.span();
-            let wrong = |failure: Failure| {
+            let invalid = |failure: Failure| {
                 let hint = failure.hint.clone().unwrap_or_default();
                 at(raw.target.span(), &failure.message).hint(hint)
             };
-            let given: Given = raw.target.as_ref().parse().map_err(wrong)?;
+            let url_text: TargetArgument = raw.target.as_ref().parse().map_err(invalid)?;
             let named = match &raw.family {
                 None => None,
                 Some(family) => {
@@ -177,7 +177,7 @@ impl Inventory {
                     Some(family.as_ref().parse::<Family>().map_err(|why| at(span.clone(), &why))?)
                 }
             };
-            let target = given.of(named).map_err(wrong)?;
+            let target = url_text.resolve(named).map_err(invalid)?;
             let Some(family) = named.or(target.family()) else {
                 return Err(at(span, "armctl cannot infer the family from this URL")
                     .hint("add family = \"yerc\" or family = \"toyo\""));
@@ -237,7 +237,7 @@ impl Inventory {
 
     /// Robots whose name matches a pattern with `*` and `?`.
     pub fn matching<'a>(&'a self, pattern: &'a str) -> impl Iterator<Item = &'a Entry> {
-        self.robots.iter().filter(move |robot| fits(pattern, &robot.name))
+        self.robots.iter().filter(move |robot| matches_pattern(pattern, &robot.name))
     }
 }
 
@@ -248,19 +248,19 @@ pub fn is_name(name: &str) -> bool {
 }
 
 /// Pattern match with `*` and `?`.
-pub fn fits(pattern: &str, name: &str) -> bool {
+pub fn matches_pattern(pattern: &str, name: &str) -> bool {
     let mut pattern_chars = pattern.chars();
     match pattern_chars.next() {
         None => name.is_empty(),
         Some('*') => {
             let rest = pattern_chars.as_str();
             let mut starts = name.char_indices().map(|(index, _)| index).chain([name.len()]);
-            starts.any(|index| fits(rest, &name[index..]))
+            starts.any(|index| matches_pattern(rest, &name[index..]))
         }
         Some(expected) => {
             let mut chars = name.chars();
             chars.next().is_some_and(|c| expected == '?' || expected == c)
-                && fits(pattern_chars.as_str(), chars.as_str())
+                && matches_pattern(pattern_chars.as_str(), chars.as_str())
         }
     }
 }
@@ -319,8 +319,8 @@ pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
 pub(super) fn suggestion(message: &str) -> Option<String> {
     let (_, rest) = message.split_once("unknown field `")?;
     let (word, rest) = rest.split_once('`')?;
-    let known = rest.split('`').skip(1).step_by(2);
-    nearest(word, known).map(ToOwned::to_owned)
+    let is_known = rest.split('`').skip(1).step_by(2);
+    nearest(word, is_known).map(ToOwned::to_owned)
 }
 
 #[derive(Deserialize)]
@@ -369,7 +369,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_whole_file() {
+    fn parses_a_complete_file() {
         let inventory = Inventory::parse(
             "default = \"b\"\n[defaults]\ntimeout = \"2s\"\n[[robot]]\nname = \"a\"\ntarget = \"udp://h\"\n\
              [[robot]]\nname = \"b\"\ntarget = \"sim:\"\nfamily = \"yerc\"\nread_only = true\ntags = [\"x\"]\n",
@@ -410,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn names_stand_below_their_robot() {
+    fn parses_names_of_a_robot() {
         let parse = |names: &str| {
             let text = format!("[[robot]]\nname = \"a\"\ntarget = \"udp://h\"\n\n[robot.names]\n{names}\n");
             Inventory::parse(&text, "robots.toml")
@@ -433,7 +433,12 @@ mod tests {
 
     #[test]
     fn globs() {
-        assert!(fits("cell*", "cell3") && fits("*3", "cell3") && fits("c?ll3", "cell3") && fits("*", ""));
-        assert!(!fits("cell", "cell3") && !fits("?", ""));
+        assert!(
+            matches_pattern("cell*", "cell3")
+                && matches_pattern("*3", "cell3")
+                && matches_pattern("c?ll3", "cell3")
+                && matches_pattern("*", "")
+        );
+        assert!(!matches_pattern("cell", "cell3") && !matches_pattern("?", ""));
     }
 }

@@ -24,9 +24,9 @@ use crate::controller::yerc::Model;
 use crate::failure::Failure;
 use alarms::Alarms;
 use inventory::{Entry, Inventory, Options};
-use model::{ModelSetting, ToldModels};
+use model::{ModelCache, ModelSetting};
 use names::RobotNames;
-use target::{Address, Family, Given, Target};
+use target::{Address, Family, Target, TargetArgument};
 
 /// Origin of a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +85,7 @@ pub struct Robot {
     /// Whether only reads and stops are accepted.
     pub read_only: Setting<bool>,
     /// Inventory entry with the same address that makes it read-only, if that is another one.
-    pub bound_by: Option<String>,
+    pub read_only_entry: Option<String>,
     /// Other addresses of it, if its network was asked.
     pub aliases: Vec<Address>,
     /// Whether the first command that needs a control connection opens a session.
@@ -114,16 +114,16 @@ pub fn state_folder() -> Option<PathBuf> {
 
 impl Robot {
     /// Whether this is one of its known addresses.
-    pub fn is_at(&self, address: &Address) -> bool {
+    pub fn has_address(&self, address: &Address) -> bool {
         self.target.value.address().meets(address) || self.aliases.iter().any(|alias| alias.meets(address))
     }
 
     /// Probable model of its controller: from the settings, from an earlier answer, or that of the simulator.
     pub fn likely_model(&self) -> Option<Model> {
         let target = &self.target.value;
-        let told = || ToldModels::of_user()?.find(&target.address()).map(|told| told.model());
+        let cached = || ModelCache::of_user()?.find(&target.address()).map(|told| told.model());
         let simulated = || target.is_simulated().then_some(Model::Dx200);
-        self.model.value.named().or_else(told).or_else(simulated)
+        self.model.value.named().or_else(cached).or_else(simulated)
     }
 
     /// Label in messages: `cell3 (udp://192.168.1.31)`.
@@ -145,7 +145,7 @@ pub struct Selection {
     /// `--sim`.
     pub sim: bool,
     /// `--target`.
-    pub target: Option<Given>,
+    pub target: Option<TargetArgument>,
     /// `--robot`: names or patterns. Without flags, those of `ARMCTL_ROBOT`.
     pub robots: Vec<String>,
     /// Whether `robots` is from `ARMCTL_ROBOT`.
@@ -155,7 +155,7 @@ pub struct Selection {
     /// `--all`.
     pub all: bool,
     /// `ARMCTL_TARGET`.
-    pub environment: Option<Given>,
+    pub environment: Option<TargetArgument>,
     /// Which sessions commands use.
     pub sessions: Sessions,
     /// Family of a simulator without a family in the line; `None` means the first one.
@@ -180,7 +180,7 @@ pub enum Sessions {
 
 impl Selection {
     /// Whether no robot was selected.
-    pub fn names_nobody(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         !self.has_flags() && self.environment.is_none() && self.robots.is_empty()
     }
 
@@ -230,24 +230,24 @@ impl Sources {
                 .hint("unset one of them, or select the robot with -r or -t"));
         }
         if selection.sim {
-            let simulator = |family| self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family);
+            let simulator = |family| self.robot_at(&TargetArgument::Url(Target::simulator()), Origin::Flag, family);
             if family.is_none() && selection.every_simulator {
                 return Family::ALL.into_iter().map(|family| simulator(Some(family))).collect();
             }
             return Ok(vec![simulator(family)?]);
         }
         if let Some(target) = &selection.target {
-            return Ok(vec![self.unnamed(target, Origin::Flag, family)?]);
+            return Ok(vec![self.robot_at(target, Origin::Flag, family)?]);
         }
         if selection.all || !selection.robots.is_empty() || !selection.tags.is_empty() {
-            return self.named(family);
+            return self.robots_by_name(family);
         }
         if let Some(target) = &selection.environment {
-            return Ok(vec![self.unnamed(target, Origin::Environment, family)?]);
+            return Ok(vec![self.robot_at(target, Origin::Environment, family)?]);
         }
         let default = self.inventory.default.as_ref();
         if let Some(entry) = default.and_then(|name| self.inventory.robots.iter().find(|robot| robot.name == *name)) {
-            return Ok(vec![self.resolved(entry, family)?]);
+            return Ok(vec![self.resolve(entry, family)?]);
         }
         let address = family.map_or("udp://HOST", Family::address);
         Err(Failure::usage("no robot selected").hint(format!(
@@ -265,25 +265,25 @@ impl Sources {
     }
 
     /// Selected robots that a changed inventory still contains; can be empty.
-    pub fn robots_left(&self) -> Result<Vec<Robot>, Failure> {
+    pub fn remaining_robots(&self) -> Result<Vec<Robot>, Failure> {
         let Selection { robots, tags, all, .. } = &self.selection;
         let is_named = |entry: &Entry| match &robots[..] {
             _ if *all => true,
             [] => !tags.is_empty() || self.inventory.default.as_ref() == Some(&entry.name),
-            patterns => patterns.iter().any(|pattern| inventory::fits(pattern, &entry.name)),
+            patterns => patterns.iter().any(|pattern| inventory::matches_pattern(pattern, &entry.name)),
         };
         let is_chosen = |entry: &&Entry| is_named(entry) && tags.iter().all(|tag| entry.tags.contains(tag));
-        self.inventory.robots.iter().filter(is_chosen).map(|entry| self.resolved(entry, None)).collect()
+        self.inventory.robots.iter().filter(is_chosen).map(|entry| self.resolve(entry, None)).collect()
     }
 
     /// Alarm explanations of the inventory's site.
     pub fn alarms(&self) -> Alarms {
-        Alarms::beside(self.inventory.path.as_deref())
+        Alarms::load_beside(self.inventory.path.as_deref())
     }
 
     /// Without a selection, selects all robots of the inventory instead of the default.
-    pub fn widen(&mut self) {
-        self.selection.all |= self.selection.names_nobody() && !self.inventory.robots.is_empty();
+    pub fn default_to_all(&mut self) {
+        self.selection.all |= self.selection.is_empty() && !self.inventory.robots.is_empty();
     }
 
     /// Selects robots by name.
@@ -310,7 +310,7 @@ impl Sources {
         if std::mem::take(from_environment) {
             robots.clear();
         }
-        if robot.contains(':') || Given::is_bare(robot) {
+        if robot.contains(':') || TargetArgument::is_bare(robot) {
             *target = Some(robot.parse()?);
         } else {
             robots.push(robot.to_owned());
@@ -319,7 +319,7 @@ impl Sources {
     }
 
     /// Resolves an inventory entry to a robot with all settings.
-    pub fn resolved(&self, entry: &Entry, family: Option<Family>) -> Result<Robot, Failure> {
+    pub fn resolve(&self, entry: &Entry, family: Option<Family>) -> Result<Robot, Failure> {
         if let Some(family) = family
             && family != entry.family
         {
@@ -334,11 +334,11 @@ impl Sources {
 
     /// The robot at a target, with all settings.
     pub fn at(&self, target: &Target, family: Family) -> Result<Robot, Failure> {
-        self.unnamed(&Given::Url(target.clone()), Origin::Flag, Some(family))
+        self.robot_at(&TargetArgument::Url(target.clone()), Origin::Flag, Some(family))
     }
 
-    fn unnamed(&self, given: &Given, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
-        let target = given.of(family)?;
+    fn robot_at(&self, given: &TargetArgument, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
+        let target = given.resolve(family)?;
         // For a simulator without a family, the first family.
         let simulated = target.is_simulated().then_some(self.selection.simulated.unwrap_or(Family::Yerc));
         let Some(family) = family.or(target.family()).or(simulated) else {
@@ -352,7 +352,7 @@ impl Sources {
         Ok(self.robot(name, family, Setting { value: target, origin }, &Options::default(), Vec::new()))
     }
 
-    fn named(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
+    fn robots_by_name(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
         let known = || self.inventory.robots.iter().map(|robot| robot.name.as_str());
         let mut chosen: Vec<&Entry> = Vec::new();
@@ -405,7 +405,7 @@ impl Sources {
             return Err(Failure::usage("no robot in the inventory matches")
                 .hint("`armctl robots list` shows the robots with their tags"));
         }
-        chosen.into_iter().map(|entry| self.resolved(entry, family)).collect()
+        chosen.into_iter().map(|entry| self.resolve(entry, family)).collect()
     }
 
     /// Addresses of the read-only robots of a family, with their entries. Read-only applies to the controller,
@@ -413,20 +413,20 @@ impl Sources {
     pub fn read_only(&self, family: Family) -> impl Iterator<Item = (Address, &Entry)> {
         let file = self.inventory.defaults.read_only;
         let entries = self.inventory.robots.iter();
-        let bound =
+        let binding_entry =
             entries.filter(move |entry| entry.family == family && entry.options.read_only.or(file) == Some(true));
-        bound.map(|entry| (entry.target.address(), entry))
+        binding_entry.map(|entry| (entry.target.address(), entry))
     }
 
     /// Makes a robot read-only if an entry with one of its addresses is.
-    pub fn bind(&self, robot: &mut Robot) {
+    pub fn apply_read_only(&self, robot: &mut Robot) {
         if robot.read_only.value || robot.target.value.is_simulated() {
             return;
         }
-        let bound = self.read_only(robot.family).find(|(address, _)| robot.is_at(address));
+        let bound = self.read_only(robot.family).find(|(address, _)| robot.has_address(address));
         if let Some((_, entry)) = bound {
             robot.read_only = Setting { value: true, origin: Origin::Robot };
-            robot.bound_by = Some(entry.name.clone());
+            robot.read_only_entry = Some(entry.name.clone());
         }
     }
 
@@ -458,7 +458,7 @@ impl Sources {
         let mut robot = Robot {
             names: RobotNames::new(self.names_at(family, &address), family, &address),
             read_only: setting!(read_only, false),
-            bound_by: None,
+            read_only_entry: None,
             aliases: Vec::new(),
             hold: setting!(hold, false),
             name,
@@ -475,7 +475,7 @@ impl Sources {
             // An absolute path, valid in any folder.
             inventory: self.inventory.path.as_deref().and_then(|path| std::path::absolute(path).ok()),
         };
-        self.bind(&mut robot);
+        self.apply_read_only(&mut robot);
         robot
     }
 }
@@ -502,7 +502,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_source_wins() {
+    fn nearest_source_wins() {
         let mut sources = sources(Selection::default());
         let retries = |sources: &Sources| sources.robots(None).unwrap()[0].retries;
         assert_eq!(retries(&sources), Setting { value: 2, origin: Origin::Robot });
@@ -513,7 +513,7 @@ mod tests {
     }
 
     #[test]
-    fn robots_by_name_glob_tag_and_all() {
+    fn selects_robots_by_name_glob_tag_and_all() {
         assert_eq!(names(Selection::default()), ["a"]);
         assert_eq!(names(Selection { robots: vec!["b".into(), "a".into()], ..Selection::default() }), ["b", "a"]);
         assert_eq!(names(Selection { robots: vec!["*".into()], ..Selection::default() }), ["a", "b"]);
@@ -522,14 +522,14 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_of_another_family_is_refused_by_name() {
+    fn refuses_a_robot_of_another_family() {
         let selection = Selection { robots: vec!["s".into()], ..Selection::default() };
         let failure = sources(selection).robots(Some(Family::Yerc)).unwrap_err();
         assert!(failure.message.contains("toyo"), "{failure:?}");
     }
 
     #[test]
-    fn read_only_binds_the_controller_whatever_names_it() {
+    fn read_only_applies_to_every_name_of_a_controller() {
         let text = "[[robot]]\nname = \"line3\"\ntarget = \"udp://127.0.0.1\"\nread_only = true\n\
                     [[robot]]\nname = \"alias\"\ntarget = \"udp://localhost:10040\"\n\
                     [[robot]]\nname = \"free\"\ntarget = \"udp://127.0.0.1:10050\"\n";
@@ -537,7 +537,7 @@ mod tests {
         let robot = |selection| {
             let sources = Sources { selection, inventory: inventory.clone(), ..Sources::default() };
             let robot = sources.robots(Some(Family::Yerc)).unwrap().remove(0);
-            (robot.read_only.value, robot.bound_by)
+            (robot.read_only.value, robot.read_only_entry)
         };
         let bound = (true, Some("line3".to_owned()));
         for url in ["udp://127.0.0.1", "udp://localhost", "udp://127.0.0.1:10040?model=fs100"] {
@@ -557,7 +557,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parameter_of_another_family_is_refused_wherever_the_url_stands() {
+    fn refuses_url_parameters_of_another_family() {
         let target = || Some("sim:?axes=2".parse().unwrap());
         for selection in [
             Selection { target: target(), ..Selection::default() },
@@ -571,7 +571,7 @@ mod tests {
     }
 
     #[test]
-    fn without_any_robot_the_hint_names_sim_first() {
+    fn hints_at_sim_first_without_a_robot() {
         let failure = Sources::default().robots(Some(Family::Yerc)).unwrap_err();
         assert!(failure.hint.unwrap().starts_with("use --sim"));
     }

@@ -59,7 +59,7 @@ impl FromStr for ModelSetting {
 
 /// Model that a controller reported.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ToldModel {
+pub struct ReportedModel {
     #[serde(with = "by_name")]
     model: Model,
     software: String,
@@ -68,13 +68,13 @@ pub struct ToldModel {
 }
 
 /// Validity of a cached answer.
-const FRESH: Duration = Duration::from_secs(24 * 3600);
+const VALIDITY: Duration = Duration::from_secs(24 * 3600);
 /// Age at which an answer is removed from the file.
-const KEPT: Duration = Duration::from_secs(90 * 24 * 3600);
+const RETENTION: Duration = Duration::from_secs(90 * 24 * 3600);
 /// Size limit of the cache file.
-const MOST: u64 = 1 << 20;
+const SIZE_LIMIT: u64 = 1 << 20;
 
-impl ToldModel {
+impl ReportedModel {
     /// A new answer.
     pub fn now(model: Model, software: String) -> Self {
         Self { model, software, at: now() }
@@ -91,7 +91,7 @@ impl ToldModel {
     }
 
     /// Whether model and software are the same.
-    pub fn says(&self, other: &Self) -> bool {
+    pub fn is_same_as(&self, other: &Self) -> bool {
         (self.model, &self.software) == (other.model, &other.software)
     }
 
@@ -102,17 +102,17 @@ impl ToldModel {
 
     /// Whether it is still valid. An answer from the future, after a change of the clock, is not.
     pub fn is_fresh(&self) -> bool {
-        self.at <= now() && self.age() < FRESH
+        self.at <= now() && self.age() < VALIDITY
     }
 }
 
 /// Cache of the models by address.
 #[derive(Debug, Clone)]
-pub struct ToldModels {
+pub struct ModelCache {
     path: PathBuf,
 }
 
-impl ToldModels {
+impl ModelCache {
     /// Cache of this user, if there is a home folder.
     pub fn of_user() -> Option<Self> {
         state_folder().map(|folder| Self { path: folder.join("models.json") })
@@ -125,22 +125,22 @@ impl ToldModels {
     }
 
     /// Last answer of the controller at an address.
-    pub fn find(&self, address: &Address) -> Option<ToldModel> {
+    pub fn find(&self, address: &Address) -> Option<ReportedModel> {
         self.find_by_key(&address.key()?)
     }
 
     /// Last answer by address key.
-    pub fn find_by_key(&self, key: &str) -> Option<ToldModel> {
+    pub fn find_by_key(&self, key: &str) -> Option<ReportedModel> {
         self.read().remove(key)
     }
 
     /// Stores an answer.
-    pub fn keep(&self, address: &Address, told: ToldModel) -> io::Result<()> {
+    pub fn store(&self, address: &Address, told: ReportedModel) -> io::Result<()> {
         let Some(key) = address.key() else { return Ok(()) };
         std::fs::create_dir_all(files::folder_of(&self.path))?;
-        let _turn = files::turn(&self.path)?;
+        let _turn = files::lock_file(&self.path)?;
         let mut all = self.read();
-        all.retain(|_, told| told.age() < KEPT);
+        all.retain(|_, told| told.age() < RETENTION);
         all.insert(key, told);
         self.write(&all)
     }
@@ -148,18 +148,18 @@ impl ToldModels {
     /// Removes an answer.
     pub fn forget(&self, address: &Address) -> io::Result<()> {
         let Some(key) = address.key() else { return Ok(()) };
-        let _turn = files::turn(&self.path)?;
+        let _turn = files::lock_file(&self.path)?;
         let mut all = self.read();
         if all.remove(&key).is_some() { self.write(&all) } else { Ok(()) }
     }
 
-    fn write(&self, all: &BTreeMap<String, ToldModel>) -> io::Result<()> {
+    fn write(&self, all: &BTreeMap<String, ReportedModel>) -> io::Result<()> {
         files::replace(&self.path, serde_json::to_string_pretty(all)?.as_bytes())
     }
 
     /// All answers; empty if the file is missing or not valid.
-    fn read(&self) -> BTreeMap<String, ToldModel> {
-        let text = files::text(&self.path, MOST).unwrap_or_default();
+    fn read(&self) -> BTreeMap<String, ReportedModel> {
+        let text = files::text(&self.path, SIZE_LIMIT).unwrap_or_default();
         serde_json::from_str(&text).unwrap_or_default()
     }
 }
@@ -194,38 +194,38 @@ mod tests {
     }
 
     #[test]
-    fn what_was_told_is_kept_by_address() {
+    fn caches_models_by_address() {
         let folder = tempfile::tempdir().unwrap();
-        let store = ToldModels::at(folder.path().join("new").join("models.json"));
+        let store = ModelCache::at(folder.path().join("new").join("models.json"));
         let [one, other] = ["udp://192.0.2.1", "udp://192.0.2.2"].map(address);
         assert_eq!(store.find(&one), None);
-        let told = ToldModel::now(Model::Yrc1000, "YAS2.02".to_owned());
-        store.keep(&one, told.clone()).unwrap();
+        let told = ReportedModel::now(Model::Yrc1000, "YAS2.02".to_owned());
+        store.store(&one, told.clone()).unwrap();
         assert_eq!(store.find(&address("udp://192.0.2.1:10040?model=auto")), Some(told.clone()));
         assert!(told.is_fresh());
         assert_eq!(store.find(&other), None);
-        store.keep(&other, ToldModel { at: 1, ..told.clone() }).unwrap();
+        store.store(&other, ReportedModel { at: 1, ..told.clone() }).unwrap();
         assert!(!store.find(&other).unwrap().is_fresh());
-        store.keep(&one, ToldModel { at: u64::MAX, ..told.clone() }).unwrap();
+        store.store(&one, ReportedModel { at: u64::MAX, ..told.clone() }).unwrap();
         assert!(!store.find(&one).unwrap().is_fresh(), "a clock that went back");
         assert_eq!(store.find(&other), None, "too old to be kept any longer");
     }
 
     #[test]
-    fn a_damaged_file_is_as_none() {
+    fn ignores_a_damaged_file() {
         let folder = tempfile::tempdir().unwrap();
-        let store = ToldModels::at(folder.path().join("models.json"));
+        let store = ModelCache::at(folder.path().join("models.json"));
         let one = address("udp://192.0.2.1");
         for text in ["", "{", "[]", "{\"udp 192.0.2.1 10040\": {\"model\": \"x\", \"software\": \"\", \"at\": 1}}"] {
             std::fs::write(&store.path, text).unwrap();
             assert_eq!(store.find(&one), None, "{text}");
         }
-        store.keep(&one, ToldModel::now(Model::Dx100, String::new())).unwrap();
+        store.store(&one, ReportedModel::now(Model::Dx100, String::new())).unwrap();
         assert_eq!(store.find(&one).map(|told| told.model()), Some(Model::Dx100));
     }
 
     #[test]
-    fn settings_name_a_model_or_have_it_asked() {
+    fn parses_model_settings() {
         assert_eq!("auto".parse(), Ok(ModelSetting::Auto));
         assert_eq!("YRC1000".parse(), Ok(ModelSetting::Is(Model::Yrc1000)));
         let error = "xrc".parse::<ModelSetting>().unwrap_err();

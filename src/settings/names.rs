@@ -14,7 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use super::model::ToldModels;
+use super::model::ModelCache;
 use super::target::{Address, Family};
 use crate::controller::names::{Grammar, Name, Names, Source};
 use crate::controller::text::Encoding;
@@ -26,7 +26,7 @@ use crate::files;
 const FORMAT: &str = "armctl-names";
 const VERSION: u64 = 1;
 /// Size limit of a cache file.
-const MOST: u64 = 32 << 20;
+const SIZE_LIMIT: u64 = 32 << 20;
 
 /// Address grammar of a family.
 pub fn grammar(family: Family) -> Grammar {
@@ -40,9 +40,9 @@ pub fn grammar(family: Family) -> Grammar {
 /// Names of a robot, read at the first lookup.
 #[derive(Debug, Clone, Default)]
 pub struct RobotNames {
-    own: Arc<[Name]>,
-    kept: Option<Place>,
-    models: Option<ToldModels>,
+    entry_names: Arc<[Name]>,
+    cache: Option<CacheFile>,
+    models: Option<ModelCache>,
     is_simulated: bool,
     all: Arc<OnceLock<AllNames>>,
 }
@@ -50,7 +50,7 @@ pub struct RobotNames {
 /// Robots with the same entries are equal, independent of the cache.
 impl PartialEq for RobotNames {
     fn eq(&self, other: &Self) -> bool {
-        self.own == other.own && self.kept == other.kept && self.is_simulated == other.is_simulated
+        self.entry_names == other.entry_names && self.cache == other.cache && self.is_simulated == other.is_simulated
     }
 }
 
@@ -60,46 +60,46 @@ pub struct AllNames {
     /// Names.
     pub names: Names,
     /// Cached names of its controller.
-    pub kept: Option<Kept>,
+    pub kept: Option<CachedNames>,
     /// Error of the cache file.
     pub damage: Option<Failure>,
 }
 
 impl RobotNames {
     /// Names of an entry, and the cache for an address.
-    pub fn new(own: Arc<[Name]>, family: Family, address: &Address) -> Self {
+    pub fn new(entry_names: Arc<[Name]>, family: Family, address: &Address) -> Self {
         let is_yerc = family == Family::Yerc;
-        let kept = if is_yerc { Place::of(address) } else { None };
-        let models = kept.as_ref().and_then(|_| ToldModels::of_user());
+        let cache = if is_yerc { CacheFile::of(address) } else { None };
+        let models = cache.as_ref().and_then(|_| ModelCache::of_user());
         let is_simulated = is_yerc && *address == Address::Simulated;
-        Self { own, kept, models, is_simulated, all: Arc::default() }
+        Self { entry_names, cache, models, is_simulated, all: Arc::default() }
     }
 
     /// Location of the cache, for controllers that have names.
-    pub fn place(&self) -> Option<&Place> {
-        self.kept.as_ref()
+    pub fn cache_file(&self) -> Option<&CacheFile> {
+        self.cache.as_ref()
     }
 
     /// Reads the cache, unless the controller has reported other software in the meantime.
-    fn read(&self, place: &Place) -> Result<Option<Kept>, Failure> {
-        let kept = place.read()?;
+    fn read(&self, place: &CacheFile) -> Result<Option<CachedNames>, Failure> {
+        let cached = place.read()?;
         let told = self.models.as_ref().and_then(|models| models.find_by_key(&place.address));
-        if let (Some(kept), Some(told)) = (&kept, told) {
+        if let (Some(kept), Some(told)) = (&cached, told) {
             kept.check(told.software())?;
         }
-        Ok(kept)
+        Ok(cached)
     }
 
     /// All names.
     pub fn all(&self) -> &AllNames {
         self.all.get_or_init(|| {
-            let (kept, damage) = match self.kept.as_ref().map_or(Ok(None), |place| self.read(place)) {
+            let (kept, damage) = match self.cache.as_ref().map_or(Ok(None), |place| self.read(place)) {
                 Ok(kept) => (kept, None),
                 Err(failure) => (None, Some(failure)),
             };
-            let of_controller = kept.iter().flat_map(Kept::names);
+            let of_controller = kept.iter().flat_map(CachedNames::names);
             let simulated = if self.is_simulated { simulated() } else { Vec::new() };
-            let names = self.own.iter().cloned().chain(of_controller).chain(simulated);
+            let names = self.entry_names.iter().cloned().chain(of_controller).chain(simulated);
             AllNames { names: Names::new(names.collect()), kept, damage }
         })
     }
@@ -114,14 +114,14 @@ fn simulated() -> Vec<Name> {
 
 /// Location of the cache file of a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct CacheFile {
     path: PathBuf,
     address: String,
 }
 
 /// Cached names of a controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Kept {
+pub struct CachedNames {
     format: String,
     version: u64,
     /// Address of the controller.
@@ -170,10 +170,10 @@ impl KeptFile {
     }
 }
 
-impl Kept {
+impl CachedNames {
     /// Names that were just read from a controller with this software.
     pub fn new(
-        place: &Place,
+        place: &CacheFile,
         encoding: Encoding,
         software: Option<String>,
         (files, names): (Vec<KeptFile>, &[Name]),
@@ -225,31 +225,31 @@ impl Kept {
     }
 }
 
-impl Place {
+impl CacheFile {
     /// Location for a controller on the network, if the user has a state folder.
     fn of(address: &Address) -> Option<Self> {
         let address = address.key()?;
         let plain = |c: char| if c.is_ascii_alphanumeric() || ".-".contains(c) { c } else { '_' };
         let name: String = address.chars().map(plain).take(100).collect();
         // Makes the name unique, because several characters are replaced.
-        let mark = &KeptFile::new("", address.as_bytes(), 0).sha256[..8];
-        let path = super::state_folder()?.join("names").join(format!("{name}-{mark}.json"));
+        let digest = &KeptFile::new("", address.as_bytes(), 0).sha256[..8];
+        let path = super::state_folder()?.join("names").join(format!("{name}-{digest}.json"));
         Some(Self { path, address })
     }
 
     /// Reads the cache; `None` if it does not exist.
-    pub fn read(&self) -> Result<Option<Kept>, Failure> {
+    pub fn read(&self) -> Result<Option<CachedNames>, Failure> {
         let damaged = |why: String| {
             Failure::local(format!("the stored names in {} cannot be used: {why}", self.path.display())).hint(
                 "read the names again with `armctl yerc names get`, or delete them with `armctl yerc names forget`",
             )
         };
-        let text = match files::text(&self.path, MOST) {
+        let text = match files::text(&self.path, SIZE_LIMIT) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(damaged(plain(&error))),
         };
-        let kept: Kept = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
+        let kept: CachedNames = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
         if kept.format != FORMAT || kept.version != VERSION || kept.address != self.address {
             return Err(damaged("it is not the file for this controller".to_owned()));
         }
@@ -257,7 +257,7 @@ impl Place {
     }
 
     /// Replaces the cache.
-    pub fn write(&self, kept: &Kept) -> Result<(), Failure> {
+    pub fn write(&self, kept: &CachedNames) -> Result<(), Failure> {
         let failed = |error: &std::io::Error| Failure::io(self.path.display(), error);
         let text = serde_json::to_vec(kept).map_err(|error| Failure::local(format!("names as JSON: {error}")))?;
         std::fs::create_dir_all(files::folder_of(&self.path)).map_err(|error| failed(&error))?;
@@ -279,13 +279,13 @@ mod tests {
     use super::*;
     use crate::controller::names::{Found, Kind};
     use crate::controller::yerc::Model;
-    use crate::settings::model::ToldModel;
+    use crate::settings::model::ReportedModel;
     use crate::settings::target::Target;
 
     #[test]
-    fn what_is_kept_comes_back_and_what_is_damaged_says_so() {
+    fn reads_stored_names_and_reports_damage() {
         let folder = tempfile::tempdir().unwrap();
-        let place = Place { path: folder.path().join("names").join("a.json"), address: "udp h 10040".to_owned() };
+        let place = CacheFile { path: folder.path().join("names").join("a.json"), address: "udp h 10040".to_owned() };
         assert_eq!(place.read().unwrap(), None);
         assert!(!place.forget().unwrap());
         let name = |address: &str, kind| Name {
@@ -295,33 +295,34 @@ mod tests {
             source: Source::File("IONAME.DAT".to_owned()),
         };
         let names = [name("#00010", Kind::Signal), name("B5", Kind::Variable)];
-        let kept = Kept::new(&place, Encoding::ShiftJis, None, (vec![KeptFile::new("IONAME.DAT", b"x", 2)], &names));
+        let kept =
+            CachedNames::new(&place, Encoding::ShiftJis, None, (vec![KeptFile::new("IONAME.DAT", b"x", 2)], &names));
         place.write(&kept).unwrap();
         let read = place.read().unwrap().unwrap();
         assert_eq!(read, kept);
         assert_eq!(read.names().collect::<Vec<_>>(), names);
-        let robot = RobotNames { kept: Some(place.clone()), ..RobotNames::default() };
+        let robot = RobotNames { cache: Some(place.clone()), ..RobotNames::default() };
         assert!(matches!(robot.all().names.find(&[Kind::Variable], "扉"), Found::One(found) if found.address == "B5"));
         std::fs::write(&place.path, "{}").unwrap();
         assert!(place.read().unwrap_err().hint.unwrap().contains("forget"));
-        let robot = RobotNames { kept: Some(place.clone()), ..RobotNames::default() };
+        let robot = RobotNames { cache: Some(place.clone()), ..RobotNames::default() };
         assert!(robot.all().damage.is_some() && robot.all().names.is_empty());
         assert!(place.forget().unwrap());
     }
 
     #[test]
-    fn names_of_another_controller_at_the_same_address_are_not_used() {
+    fn ignores_names_of_another_controller_at_the_same_address() {
         let folder = tempfile::tempdir().unwrap();
         let address = "udp://192.0.2.1".parse::<Target>().unwrap().address();
-        let place = Place { path: folder.path().join("a.json"), address: address.key().unwrap() };
-        let models = ToldModels::at(folder.path().join("models.json"));
-        let robot = || RobotNames { kept: Some(place.clone()), models: Some(models.clone()), ..RobotNames::default() };
+        let place = CacheFile { path: folder.path().join("a.json"), address: address.key().unwrap() };
+        let models = ModelCache::at(folder.path().join("models.json"));
+        let robot = || RobotNames { cache: Some(place.clone()), models: Some(models.clone()), ..RobotNames::default() };
         let software = "YAS2.80.00A(EN)-00".to_owned();
-        place.write(&Kept::new(&place, Encoding::ShiftJis, Some(software.clone()), (Vec::new(), &[]))).unwrap();
+        place.write(&CachedNames::new(&place, Encoding::ShiftJis, Some(software.clone()), (Vec::new(), &[]))).unwrap();
         assert!(robot().all().damage.is_none(), "nobody knows better");
-        models.keep(&address, ToldModel::now(Model::Yrc1000, software)).unwrap();
+        models.store(&address, ReportedModel::now(Model::Yrc1000, software)).unwrap();
         assert!(robot().all().damage.is_none());
-        models.keep(&address, ToldModel::now(Model::Dx200, "DN2.07.00A(EN)-00".to_owned())).unwrap();
+        models.store(&address, ReportedModel::now(Model::Dx200, "DN2.07.00A(EN)-00".to_owned())).unwrap();
         let damage = robot().all().damage.clone().unwrap();
         assert!(
             damage.message.contains("YAS2.80") && damage.message.contains("this controller has DN2.07"),
@@ -330,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn a_simulator_has_the_names_of_its_files() {
+    fn simulator_has_the_names_of_its_files() {
         let robot = RobotNames::new(Arc::default(), Family::Yerc, &Address::Simulated);
         assert!(
             matches!(robot.all().names.find(&[Kind::Signal], "gripper"), Found::One(found) if found.address == "#10010")

@@ -24,7 +24,7 @@ use self::url::{Query, authority, baud, choice, host_and_port, percent_decoded, 
 use super::model::ModelSetting;
 
 pub use address::Address;
-pub use bare::Given;
+pub use bare::TargetArgument;
 pub use bus::{BUSES, Bus};
 
 /// A controller family; its name is that of its subcommand.
@@ -249,9 +249,9 @@ impl Target {
 
     /// The family of this URL, if only one can use it.
     pub fn family(&self) -> Option<Family> {
-        let mut fitting = Family::ALL.into_iter().filter(|family| family.is_reached_over(self.scheme()));
-        let first = fitting.next();
-        if fitting.next().is_some() { None } else { first }
+        let mut families = Family::ALL.into_iter().filter(|family| family.is_reached_over(self.scheme()));
+        let first = families.next();
+        if families.next().is_some() { None } else { first }
     }
 
     /// Checks that the URL and all its options are valid for a family.
@@ -442,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_a_udp_url_can_say() {
+    fn parses_every_part_of_a_udp_url() {
         let Place::Udp(udp) = target("udp://[::1]:2000?file_port=2001&model=fs100&move_words=25").place else {
             panic!("not udp")
         };
@@ -451,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_named() {
+    fn names_mistakes_in_urls() {
         for (url, part) in [
             ("robot", "scheme"),
             ("http://x", "unknown scheme"),
@@ -496,7 +496,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_a_serial_url_can_say() {
+    fn parses_every_part_of_a_serial_url() {
         let usual = Serial {
             path: "/dev/ttyUSB0".to_owned(),
             baud: 9600,
@@ -522,14 +522,14 @@ mod tests {
     }
 
     #[test]
-    fn everything_a_tcp_url_can_say() {
+    fn parses_every_part_of_a_tcp_url() {
         let tcp = |host: &str, port, baud| Place::Tcp(Tcp { host: host.to_owned(), port, baud });
         assert_eq!(target("tcp://moxa:4001").place, tcp("moxa", 4001, 9600));
         assert_eq!(target("tcp://[::1]:4001/?baud=19200").place, tcp("::1", 4001, 19_200));
     }
 
     #[test]
-    fn a_simulator_takes_what_its_family_knows() {
+    fn simulator_takes_parameters_of_its_family() {
         for (url, family, why) in [
             ("sim:?axes=2&baud=9600&state=a.toml&fault=echo", Family::Toyo, None),
             ("sim:?model=fs100&move_words=25&state=a.toml", Family::Yerc, None),
@@ -549,7 +549,7 @@ mod tests {
     }
 
     #[test]
-    fn short_names_are_short() {
+    fn shortens_names() {
         for (url, name) in [
             ("udp://10.0.0.2:10040", "10.0.0.2"),
             ("serial:///dev/serial/by-id/usb-FTDI-if00?baud=19200", "usb-FTDI-if00"),
@@ -563,7 +563,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scheme_tells_the_family_where_only_one_uses_it() {
+    fn infers_the_family_of_a_scheme() {
         assert_eq!(target("udp://h").family(), Some(Family::Yerc));
         assert_eq!(target("sim:").family(), None);
         assert_eq!(target("serial:///dev/ttyUSB0").family(), Some(Family::Toyo));

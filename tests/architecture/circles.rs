@@ -1,24 +1,24 @@
-//! Modules that know each other in a circle can only be understood together: none is larger than a simulator.
+//! Cycles of modules: their modules can only be understood together, so none may be larger than a simulator.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::source::{Source, sources};
 
-/// How many modules may know each other in a circle: as many as the largest simulator has.
+/// Maximum number of modules in a cycle: the size of the largest simulator.
 const LARGEST: usize = 15;
 
-/// Which modules each module mentions, by path.
+/// Modules that each module uses, by path.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
-fn circles_stay_small() {
+fn limits_the_size_of_module_cycles() {
     let largest = circles(&uses(&sources())).into_iter().next().unwrap_or_default();
     println!("largest circle, {} modules: {}", largest.len(), largest.join(" "));
     assert!(largest.len() <= LARGEST, "{} modules know each other: {}", largest.len(), largest.join(" "));
 }
 
 #[test]
-fn circles_are_found() {
+fn finds_module_cycles() {
     let file = |name: &str, text: &str| Source::new(name, text);
     let sources = [
         file("a/mod.rs", "mod b; use self::b::B; pub struct A;"),
@@ -30,7 +30,7 @@ fn circles_are_found() {
     assert_eq!(circles(&uses(&sources)), [["crate::a", "crate::a::b", "crate::a::c"]]);
 }
 
-/// Tests may know anybody; a declaration (`mod x;`) is not yet a use.
+/// Tests may use every module; a declaration (`mod x;`) is not a use.
 fn uses(sources: &[Source]) -> Uses {
     let sources = sources.iter().filter(|source| !source.name.contains("test"));
     let without_tests = sources.map(|source| {
@@ -51,7 +51,7 @@ fn uses(sources: &[Source]) -> Uses {
     sources.iter().map(used).collect()
 }
 
-/// The module that an item is of: the longest beginning of its path that is one.
+/// Module of an item: the longest prefix of its path that is a module.
 fn module_of(path: &str, modules: &BTreeSet<String>) -> Option<String> {
     let mut path = path.strip_suffix("::self").unwrap_or(path);
     while !modules.contains(path) {
@@ -60,7 +60,7 @@ fn module_of(path: &str, modules: &BTreeSet<String>) -> Option<String> {
     Some(path.to_owned())
 }
 
-/// Groups of modules each of which leads to all others (Tarjan), the largest first.
+/// Strongly connected groups of modules (Tarjan), the largest first.
 fn circles(uses: &Uses) -> Vec<Vec<String>> {
     let mut search = Search::new(uses);
     for module in uses.keys() {
@@ -74,9 +74,9 @@ fn circles(uses: &Uses) -> Vec<Vec<String>> {
 
 struct Search<'a> {
     uses: &'a Uses,
-    /// When each module was met.
+    /// Visit number of each module.
     order: BTreeMap<&'a str, usize>,
-    /// Met, and not yet known to be of a circle or of none.
+    /// Visited modules whose group is not complete.
     open: Vec<&'a str>,
     found: Vec<Vec<String>>,
 }
@@ -86,7 +86,7 @@ impl<'a> Search<'a> {
         Self { uses, order: BTreeMap::new(), open: Vec::new(), found: Vec::new() }
     }
 
-    /// The earliest open module that `module` leads to.
+    /// The earliest open module that `module` reaches.
     fn visit(&mut self, module: &'a str) -> usize {
         let met = self.order.len();
         self.order.insert(module, met);

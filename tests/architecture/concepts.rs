@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-/// Keys that mean the same wherever they stand, and the types that they may have; null is always one.
+/// Keys with the same meaning in all reports, and their possible types; null is always possible.
 #[rustfmt::skip]
 const KEYS: &[(&str, &[&str])] = &[
     // Status.
@@ -33,7 +33,7 @@ const KEYS: &[(&str, &[&str])] = &[
     ("files", &["array"]), ("bytes", &["integer"]), ("sha256", &["string"]), ("path", &["string"]),
 ];
 
-/// Other words for the same, which no report has.
+/// Synonyms that no report may use.
 #[rustfmt::skip]
 const OTHER_WORDS: &[(&str, &str)] = &[
     ("executing", "running"), ("is_running", "running"), ("paused", "held"), ("origin_complete", "homed"),
@@ -46,17 +46,17 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("x", "x_mm"), ("y", "y_mm"), ("z", "z_mm"), ("rx", "rx_deg"), ("ry", "ry_deg"), ("rz", "rz_deg"),
 ];
 
-/// Where a key is another thing: the report, the key, and what it is there.
+/// Exceptions: report, key, and its meaning there.
 #[rustfmt::skip]
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("dry-run", "values", "how many values a part of a backup has"),
 ];
 
-/// Reports about frames, programs on this machine and boards, whose words are those of their protocols.
+/// Reports about frames, local programs and boards, with the terms of their protocols.
 const APART: [&str; 5] = ["decode.", "sim", "toyo.sim.", "failure", "envelope"];
 
 #[test]
-fn the_same_thing_has_one_name_one_type_and_one_unit() {
+fn concepts_have_one_name_type_and_unit() {
     let mut wrong = BTreeSet::new();
     for entry in armctl::command::about::schema::all() {
         if APART.iter().any(|part| entry.id == *part || part.ends_with('.') && entry.id.starts_with(part)) {
@@ -81,7 +81,7 @@ fn the_same_thing_has_one_name_one_type_and_one_unit() {
 }
 
 #[test]
-fn exceptions_are_needed() {
+fn every_exception_is_needed() {
     for (id, key, _) in EXCEPTIONS {
         let has = armctl::command::about::schema::all().into_iter().filter(|entry| is_of(entry.id, id)).any(|entry| {
             let (schema, mut found) = ((entry.schema)().to_value(), false);
@@ -92,12 +92,12 @@ fn exceptions_are_needed() {
     }
 }
 
-/// Whether a report is this one, or one of a noun: `yrcx.profibus.*`.
+/// Whether a report has this name, or belongs to this noun: `yrcx.profibus.*`.
 fn is_of(report: &str, pattern: &str) -> bool {
     pattern.strip_suffix('*').map_or(report == pattern, |front| report.starts_with(front))
 }
 
-/// Every key below a schema with its types but null.
+/// Every key below a schema, with its types except null.
 fn look(schema: &Value, root: &Value, say: &mut impl FnMut(&str, &BTreeSet<String>)) {
     match schema {
         Value::Object(fields) => {
@@ -115,7 +115,7 @@ fn look(schema: &Value, root: &Value, say: &mut impl FnMut(&str, &BTreeSet<Strin
     }
 }
 
-/// The types of a property.
+/// Types of a property.
 fn collect(schema: &Value, root: &Value, types: &mut BTreeSet<String>, depth: usize) {
     assert!(depth < 10, "a schema that refers to itself");
     if let Some(path) = schema["$ref"].as_str() {

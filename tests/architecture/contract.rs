@@ -1,8 +1,8 @@
-//! The commands that the contract names are there.
+//! The commands of the contract exist.
 
 use clap::CommandFactory as _;
 
-/// Every command that the contract names, by family. An entry leaves this list only with a new major version.
+/// Every command of the contract, by family. An entry is only removed with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
 const YERC: &[&str] = &[
@@ -70,7 +70,7 @@ const TOYO: [&str; 81] = [
     "alarm history",
     "alarm reset",
     "alarm point",
-    // Other words for these.
+    // Synonyms of these.
     "error show",
     "error history",
     "error cancel",
@@ -184,7 +184,7 @@ const YRCX: &[&str] = &[
 ];
 
 #[test]
-fn the_contract_is_kept() {
+fn commands_match_the_contract() {
     let root = armctl::cli::Cli::command();
     let missing = CONTRACT.iter().flat_map(|(family, all)| all.iter().map(move |words| (*family, *words)));
     let missing: Vec<(&str, &str)> = missing

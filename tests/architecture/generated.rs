@@ -1,4 +1,4 @@
-//! What is made from the code is current: man pages, schemas, completions, and says something.
+//! Generated files are current and complete: man pages, schemas, completions.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -9,7 +9,7 @@ use super::contract::CONTRACT;
 use super::source::{has_word, root};
 
 #[test]
-fn completions_are_for_all_names_of_the_program() {
+fn completions_cover_all_program_names() {
     use armctl::command::about::completions::Shell;
 
     assert_eq!(names(&root().join("completions")).len(), Shell::value_variants().len(), "completions/");
@@ -36,7 +36,7 @@ fn schemas_are_current() {
 }
 
 #[test]
-fn schemas_are_schemas() {
+fn schemas_are_valid() {
     for entry in armctl::command::about::schema::all() {
         let schema = (entry.schema)().to_value();
         if let Err(why) = jsonschema::draft202012::meta::validate(&schema) {
@@ -45,9 +45,9 @@ fn schemas_are_schemas() {
     }
 }
 
-/// What a command answers with is what it set, and to what: a sentence is for people.
+/// Reports contain set names and values, not sentences, because they are for programs.
 #[test]
-fn no_report_is_a_sentence() {
+fn reports_contain_no_sentences() {
     const SENTENCES: [&str; 7] = ["done", "message", "text", "result", "summary", "told", "words"];
     let is_text = |schema: &serde_json::Value| schema["type"] == "string" && schema.get("enum").is_none();
     let mut found = Vec::new();
@@ -56,7 +56,7 @@ fn no_report_is_a_sentence() {
         let Some(fields) = schema["properties"].as_object() else { continue };
         let is_sentence =
             |(name, schema): (&String, &serde_json::Value)| SENTENCES.contains(&name.as_str()) && is_text(schema);
-        // `failure` is an error, whose message is one; `done` of the inventory is `added` or `removed`.
+        // `failure` is an error with a message; `done` of the inventory is `added` or `removed`.
         if !matches!(entry.id, "failure" | "robots.add" | "robots.remove" | "setup") && fields.iter().any(is_sentence) {
             found.push(entry.id);
         }
@@ -77,20 +77,20 @@ fn every_robot_command_has_a_schema_and_help() {
     for (family, _) in CONTRACT {
         leaves(root.find_subcommand(family).expect("the family is there"), family, &mut words);
     }
-    // At a prompt each line reports for itself.
+    // At a prompt, each line has its own report.
     let is_known = |word: &str| known.contains(word) || word.rsplit('.').next() == Some("repl");
     let without: Vec<&String> = words.iter().filter(|word| !is_known(word)).collect();
     assert!(without.is_empty(), "commands without a schema of their name: {without:?}");
 }
 
 #[test]
-fn no_flag_of_a_command_is_that_of_every_command() {
-    // `--all` of a command would choose all robots as well. `--for` is how long, whatever it is that lasts.
+fn command_flags_do_not_shadow_global_flags() {
+    // `--all` of a command would also select all robots. `--for` is a duration in all commands.
     fn look(command: &clap::Command, known: &BTreeSet<String>, path: &str, found: &mut Vec<String>) {
         let own = || command.get_arguments().flat_map(|argument| flags(argument).map(move |flag| (flag, argument)));
         let shadowed = own().filter(|(flag, _)| known.contains(flag) && flag != "--for");
         found.extend(shadowed.map(|(flag, _)| format!("{path} {flag}")));
-        // One word for one thing.
+        // Each term has one flag.
         let into_folder = own().filter(|(flag, argument)| is_folder(argument) && flag != "--dir");
         found.extend(into_folder.map(|(flag, _)| format!("{path} {flag}: a folder is --dir")));
         let global = own().filter(|(_, argument)| argument.is_global_set()).map(|(flag, _)| flag);
@@ -99,7 +99,7 @@ fn no_flag_of_a_command_is_that_of_every_command() {
             look(verb, &known, &format!("{path} {}", verb.get_name()), found);
         }
     }
-    /// All that can be typed for it, hidden words too.
+    /// All accepted forms, including hidden ones.
     fn flags(argument: &clap::Arg) -> impl Iterator<Item = String> {
         let longs = argument.get_long().into_iter().chain(argument.get_all_aliases().unwrap_or_default());
         let shorts = argument.get_short().into_iter().chain(argument.get_all_short_aliases().unwrap_or_default());
@@ -126,7 +126,7 @@ fn schemas_describe_reports() {
     }
 }
 
-/// The ids of all commands below one: its words, joined by dots.
+/// Ids of all commands below one: its words, joined by dots.
 fn leaves(command: &clap::Command, id: &str, all: &mut BTreeSet<String>) {
     if !command.has_subcommands() {
         assert!(command.get_about().is_some(), "{id} has no line of help");
@@ -137,7 +137,7 @@ fn leaves(command: &clap::Command, id: &str, all: &mut BTreeSet<String>) {
     }
 }
 
-/// Compares a folder with what it should hold, or rewrites it where `ARMCTL_BLESS` is set.
+/// Compares a folder with its expected content, or rewrites it with `ARMCTL_BLESS`.
 fn is_current(folder: &str, made: &BTreeMap<String, Vec<u8>>) {
     let path = root().join(folder);
     if std::env::var_os("ARMCTL_BLESS").is_some() {
@@ -145,7 +145,7 @@ fn is_current(folder: &str, made: &BTreeMap<String, Vec<u8>>) {
         for (name, content) in made {
             std::fs::write(path.join(name), content).expect("the file can be written");
         }
-        // Pages of commands that are gone go too.
+        // Also removes pages of removed commands.
         for name in names(&path).difference(&made.keys().cloned().collect()) {
             std::fs::remove_file(path.join(name)).expect("the old file can go");
         }

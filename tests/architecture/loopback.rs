@@ -1,14 +1,14 @@
-//! No transcript sends a byte beyond this machine: a line with an address of elsewhere is a dry run, asks the
-//! simulator in its own process, works on files alone, or is refused before anything leaves.
+//! No transcript sends a byte to another machine: a line with such an address is a dry run, uses the built-in
+//! simulator, works only on files, or is refused before anything is sent.
 
 use std::fs;
 use std::net::Ipv4Addr;
 
 use super::source::root;
 
-/// Commands that ask no controller.
+/// Commands that use no controller.
 const FILES_ALONE: [&str; 4] = ["robots add ", "robots list", "robots show ", "decode "];
-/// Exit codes of what was refused before it was sent: usage, and rejected by armctl.
+/// Exit codes of lines that are refused before sending: usage, and rejected by armctl.
 const NOT_SENT: [&str; 2] = ["? 2", "? 7"];
 
 #[test]
@@ -32,7 +32,7 @@ fn transcripts_stay_on_this_machine() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Whether a line names an address that is not this machine.
+/// Whether a line contains an address of another machine.
 fn is_elsewhere(line: &str) -> bool {
     let words = line.split(|c: char| !c.is_ascii_digit() && c != '.');
     words

@@ -1,6 +1,6 @@
-//! Holds the architecture: who may use whom, who may print, how long a file and how large a circle of modules may get,
-//! and that generated files are current. A failure names file and line. `ARMCTL_BLESS=1 cargo test --test architecture`
-//! rewrites `man/` and `docs/schemas/`.
+//! Rules of the architecture: allowed dependencies, printing, size of files and of module cycles, and current generated
+//! files. A failure has file and line. `ARMCTL_BLESS=1 cargo test --test architecture` rewrites `man/` and
+//! `docs/schemas/`.
 
 mod circles;
 mod concepts;
@@ -14,9 +14,9 @@ use source::{Source, committed, has_word, root, sources};
 use armctl::settings::target::BUSES;
 use armctl::settings::target::bus::Scheme;
 
-/// A part of `src/` (a folder or a file) and the paths that must not occur in it.
+/// A part of `src/` (a folder or a file) and its forbidden paths.
 const BORDERS: [(&str, &[&str]); 7] = [
-    // Bytes and meaning: no sockets, no clock, no command line, no files, no printing.
+    // Bytes and their meaning: no sockets, clock, command line, files or printing.
     (
         "controller/",
         &[
@@ -40,7 +40,7 @@ const BORDERS: [(&str, &[&str]); 7] = [
             "std::time::SystemTime",
         ],
     ),
-    // Clients are a library: typed errors instead of prose, no command line, no printing, no files.
+    // Clients are a library: typed errors without texts, no command line, printing or files.
     (
         "client/",
         &[
@@ -101,7 +101,7 @@ const BORDERS: [(&str, &[&str]); 7] = [
             "tokio",
         ],
     ),
-    // Everything may fail: this one knows nobody.
+    // Every module can use this one, so it uses none.
     (
         "failure.rs",
         &[
@@ -118,17 +118,17 @@ const BORDERS: [(&str, &[&str]); 7] = [
             "tokio",
         ],
     ),
-    // Commands talk through the link of their family; only that one opens something.
+    // Commands use the link of their family; only the link opens connections.
     ("command/", &["crate::app", "tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"]),
 ];
 
-/// Commands that touch a transport: the link of a family with its trace and its face, what reads captures, sessions, the
-/// simulators' servers, the list of ports, the connection to a broker, and the peer of tests.
+/// Commands that use a transport: links with their traces and faces, capture readers, sessions, simulator servers, the
+/// list of ports, the broker connection, and test peers.
 const LINKS: [&str; 45] = [
     "command/decode/capture/mod.rs",
     "command/decode/capture/report.rs",
     "command/decode/capture/stream.rs",
-    "command/face/declared.rs",
+    "command/face/registration.rs",
     "command/face/mod.rs",
     "command/fleet/metrics/mod.rs",
     "command/fleet/publish/uplink.rs",
@@ -154,7 +154,7 @@ const LINKS: [&str; 45] = [
     "command/yerc/link.rs",
     "command/yerc/connect.rs",
     "command/yerc/serve.rs",
-    "command/yerc/simulated.rs",
+    "command/yerc/simulator_start.rs",
     "command/yerc/trace.rs",
     "command/yrcx/connect.rs",
     "command/yrcx/decode/capture.rs",
@@ -172,26 +172,26 @@ const LINKS: [&str; 45] = [
     "command/yrcx/trace.rs",
 ];
 
-/// Words that write to the terminal or end the process, and the only folder that may have them.
+/// Words that write to the terminal or end the process, and the only folder that can contain them.
 const PRINTING: [&str; 8] = ["stdout()", "stderr()", "println!", "eprintln!", "print!", "eprint!", "Stdout", "Stderr"];
 const EXITING: [&str; 3] = ["process::exit", "process::abort", "ExitCode::from("];
 
-/// Ways to read a file, and the only places that may have them: with a limit, and regular files only. A lock is a file
-/// that is read, but not for what it says; the last one is a test.
+/// Ways to read a file, and the only modules that can contain them, because they check size and file type. The second
+/// one reads a lock file, the third is a test.
 const READING: [&str; 5] = ["fs::read(", "read_to_string(", "File::open(", "File::options(", ".read(true)"];
-const READERS: [&str; 3] = ["files/mod.rs", "transport/session/socket.rs", "command/yerc/var/lines.rs"];
+const READERS: [&str; 3] = ["files/mod.rs", "transport/session/socket.rs", "command/yerc/var/command_tests.rs"];
 
-/// Longest source file; a longer one is usually two.
+/// Maximum lines of a source file.
 const LONGEST: usize = 700;
 
 #[test]
-fn dependencies_run_one_way() {
+fn dependencies_have_one_direction() {
     let wrong: Vec<String> = sources().iter().flat_map(trespasses).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn trespasses_are_found() {
+fn finds_forbidden_dependencies() {
     let found = |name: &str, text: &str| trespasses(&Source::new(name, text)).len();
     assert_eq!(found("controller/x.rs", "use {crate::text, armctl_transport::udp::Udp};"), 1);
     assert_eq!(found("controller/yerc/x.rs", "fn now() { super::super::super::output::say() }"), 1);
@@ -207,7 +207,7 @@ fn trespasses_are_found() {
 #[test]
 fn only_output_prints() {
     let mut wrong = Vec::new();
-    // A test that is skipped says so.
+    // A skipped test must print a message.
     for source in
         sources().iter().filter(|source| !source.name.starts_with("output/") && !source.name.contains("/tests/"))
     {
@@ -221,7 +221,7 @@ fn only_output_prints() {
 }
 
 #[test]
-fn only_failure_has_exit_numbers() {
+fn only_failure_has_exit_codes() {
     let mut wrong = Vec::new();
     for source in sources().iter().filter(|source| source.name != "failure.rs") {
         for (line, text) in source.code.lines().enumerate() {
@@ -239,11 +239,11 @@ fn only_failure_has_exit_numbers() {
 }
 
 #[test]
-fn local_files_are_read_in_one_place() {
+fn local_files_are_read_by_one_module() {
     let mut wrong = Vec::new();
     let is_test = |name: &str| name.contains("test") || READERS.contains(&name);
     for source in sources().iter().filter(|source| !is_test(&source.name)) {
-        // Some have a condition before their tests.
+        // Some modules have a condition before their tests.
         let code = source.code.split("#[cfg(test)]").next().unwrap_or_default();
         let code = code.split("#[cfg(all(test").next().unwrap_or_default();
         for (line, text) in code.lines().enumerate() {
@@ -256,7 +256,7 @@ fn local_files_are_read_in_one_place() {
 }
 
 #[test]
-fn files_stay_readable() {
+fn limits_the_length_of_files() {
     let long = sources().into_iter().filter_map(|source| {
         let lines = source.text.lines().count();
         (lines > LONGEST).then(|| format!("src/{} has {lines} lines, more than {LONGEST}", source.name))
@@ -266,8 +266,8 @@ fn files_stay_readable() {
 }
 
 #[test]
-fn nothing_knows_a_machine_of_ours() {
-    // Put together here, so that this file does not find itself.
+fn no_file_names_a_development_machine() {
+    // Assembled here, so that this file does not match.
     let marks = ["home", "root", "work", "Users"].map(|folder| format!("/{folder}/"));
     let mut wrong = Vec::new();
     for file in committed(&root()) {
@@ -282,18 +282,18 @@ fn nothing_knows_a_machine_of_ours() {
 }
 
 #[test]
-fn both_licences_are_there() {
+fn both_licences_exist() {
     for (file, words) in [("LICENSE-MIT", "MIT License"), ("LICENSE-APACHE", "Apache License")] {
         let text = std::fs::read_to_string(root().join(file)).unwrap_or_default();
         assert!(text.contains(words), "{file} is missing or no {words}");
     }
 }
 
-/// Where what follows a mistake says more than a hint could: the usage, the caller, each use of a helper.
+/// Places where the text after a failure replaces a hint: the usage, the caller, each use of a helper.
 const HINT_ELSEWHERE: [&str; 3] = ["app/repl.rs", "command/yrcx/backup/content.rs", "settings/inventory.rs"];
 
 #[test]
-fn every_mistake_has_a_hint() {
+fn every_usage_failure_has_a_hint() {
     let mut wrong = Vec::new();
     for source in sources() {
         let is_test = source.name.contains("test") || HINT_ELSEWHERE.contains(&source.name.as_str());
@@ -308,7 +308,7 @@ fn every_mistake_has_a_hint() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What a source mentions beyond its borders.
+/// Forbidden paths that a source uses.
 fn trespasses(source: &Source) -> Vec<String> {
     let mut wrong = Vec::new();
     for (line, path) in source.paths() {
@@ -328,7 +328,7 @@ fn trespasses(source: &Source) -> Vec<String> {
     wrong
 }
 
-/// Whether `path` is `prefix`, or something within it.
+/// Whether `path` is `prefix`, or inside it.
 fn is_within(path: &str, prefix: &str) -> bool {
     path.strip_prefix(prefix).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
 }

@@ -1,14 +1,14 @@
-//! Reads the sources: which paths a file mentions, without comments and text.
+//! Reads the sources: paths that a file uses, without comments and texts.
 
 use std::path::{Path, PathBuf};
 
 /// A source file.
 pub struct Source {
-    /// Its path below `src/`, with slashes.
+    /// Path below `src/`, with slashes.
     pub name: String,
-    /// As it is.
+    /// Complete text.
     pub text: String,
-    /// Without comments and the insides of strings, line for line.
+    /// Text without comments and string contents, with the same lines.
     pub code: String,
 }
 
@@ -33,8 +33,8 @@ impl Source {
         Self { name: name.to_owned(), text: text.to_owned(), code: bare(text) }
     }
 
-    /// Every path of two or more words that the code mentions, with its line; `use` trees are spread, `super` and
-    /// `self` resolved as far as the file's place tells.
+    /// Every path of two or more words in the code, with its line. `use` trees are expanded; `super` and `self` are
+    /// resolved.
     pub fn paths(&self) -> Vec<(usize, String)> {
         let module = self.module();
         let mut paths = Vec::new();
@@ -84,7 +84,7 @@ fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// Takes `a::{b, c::{d}}` apart into `a::b` and `a::c::d`.
+/// Splits `a::{b, c::{d}}` into `a::b` and `a::c::d`.
 fn spread(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
@@ -110,7 +110,7 @@ fn spread(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
     }
 }
 
-/// A path from the root of the crate, where the file's place tells.
+/// Path from the root of the crate.
 fn resolve(module: &[String], path: &str) -> String {
     let mut module = module.to_vec();
     let mut words = path.split("::").peekable();
@@ -128,7 +128,7 @@ fn resolve(module: &[String], path: &str) -> String {
     module.join("::")
 }
 
-/// A path as if all members of the workspace were modules of one crate, as `lib.rs` shows them.
+/// Path as if all members of the workspace were modules of one crate, as in `lib.rs`.
 fn in_the_house(module: &[String], path: &str) -> String {
     const MEMBERS: [&str; 4] = ["client", "controller", "files", "transport"];
     let (first, rest) = path.split_once("::").unwrap_or((path, ""));
@@ -143,7 +143,7 @@ fn in_the_house(module: &[String], path: &str) -> String {
     }
 }
 
-/// Code without comments and without the insides of string and character literals; every line stays where it is.
+/// Code without comments and the contents of string and character literals, with the same lines.
 fn bare(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
@@ -177,7 +177,7 @@ fn raw_fence<'a>(rest: &'a str, before: &str) -> Option<&'a str> {
     is_start.then(|| &rest[..=count])
 }
 
-/// Length of a literal that begins here, its ends included.
+/// Length of a literal that begins here, including its quotes.
 fn closing(rest: &str, quote: char) -> usize {
     let mut is_escaped = false;
     for (at, c) in rest.char_indices().skip(1) {
@@ -202,7 +202,7 @@ fn is_character(rest: &str) -> bool {
 }
 
 #[test]
-fn the_reader_of_sources_finds_paths() {
+fn finds_paths_in_sources() {
     let text =
         "use crate::{a, b::{self, c as d}};\n// use crate::no;\nlet s = \"crate::no\"; let q = '\"';\nsuper::x::y();\n";
     let paths = Source::new("one/two.rs", text).paths();
@@ -210,7 +210,7 @@ fn the_reader_of_sources_finds_paths() {
     assert_eq!(paths, expected.map(|(line, path)| (line, path.to_owned())));
 }
 
-/// Whether the word stands in the text and is no end of a longer one.
+/// Whether the text contains the word, not as the end of a longer one.
 pub fn has_word(text: &str, word: &str) -> bool {
     let ends = |at: usize| text[..at].ends_with(|before: char| before.is_alphanumeric() || before == '_');
     text.match_indices(word).any(|(at, _)| !ends(at))
@@ -220,7 +220,7 @@ pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every file that is ours: not what cargo and git keep.
+/// Every file of the project, without those of cargo and git.
 pub fn committed(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).expect("the folder is readable").filter_map(Result::ok) {

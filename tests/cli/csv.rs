@@ -3,16 +3,16 @@
 use std::path::Path;
 use std::process::Command;
 
-use armctl::command::leaves::leaves;
+use armctl::command::leaf_commands::leaves;
 use armctl::controller::Risk;
 use armctl::output::csv::{RowsOf, Sheet};
 use serde_json::Value;
 
-/// What writes files, waits, or wants another target than a simulator.
+/// Commands that write files, wait, or need another target than a simulator.
 const LEFT_OUT: [&str; 10] =
     ["watch", "--for", "--continuous", "auto-mode", "backup", "diff", "dump", "file", " -t ", "program get"];
 
-/// stdout of a line on the simulator, if it was done.
+/// stdout of a line on the simulator, if it succeeded.
 fn printed(line: &str, format: &str, folder: &Path) -> Option<String> {
     let words = line.split(' ').map(|word| word.trim_matches('\''));
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));

@@ -1,5 +1,4 @@
-//! Exit codes that take a bad peer or a signal: a controller that answers garbage, one that swallows what changes
-//! something, a full disk, Ctrl-C.
+//! Exit codes that need a faulty peer or a signal: garbage answers, a lost answer of a change, a full disk, Ctrl-C.
 
 #![expect(clippy::needless_raw_string_hashes, reason = "as snapbox writes them")]
 
@@ -14,7 +13,7 @@ use serde_json::Value;
 use super::json;
 use super::transcript::{Desk, Simulator};
 
-/// A controller that answers what `answer` makes of each request; it ends with the process.
+/// A controller that answers each request with the result of `answer`; it ends with the process.
 fn peer(answer: impl Fn(&[u8]) -> Option<Vec<u8>> + Send + 'static) -> String {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let target = format!("udp://{}", socket.local_addr().expect("an address"));
@@ -29,7 +28,7 @@ fn peer(answer: impl Fn(&[u8]) -> Option<Vec<u8>> + Send + 'static) -> String {
     target
 }
 
-/// An answer without data that says "done" to a request.
+/// A successful answer without data.
 fn done(request: &[u8]) -> Vec<u8> {
     let mut answer = request[..24].to_vec();
     answer[6..8].copy_from_slice(&[0, 0]);
@@ -39,7 +38,7 @@ fn done(request: &[u8]) -> Vec<u8> {
     answer
 }
 
-/// The error body on stderr, the only line there, and nothing on stdout.
+/// The error body on stderr, its only line; stdout must be empty.
 fn failure(output: &Output) -> Value {
     assert_eq!(String::from_utf8_lossy(&output.stdout), "");
     let stderr = String::from_utf8_lossy(&output.stderr);
@@ -53,9 +52,9 @@ fn failure(output: &Output) -> Value {
 }
 
 #[test]
-fn five_an_answer_that_makes_no_sense() {
+fn exits_5_for_a_malformed_answer() {
     let desk = Desk::new();
-    // A status takes eight bytes of data; this one comes without.
+    // A status has eight bytes of data; this one has none.
     let target = peer(|request| Some(done(request)));
     let output = desk.armctl(&["-t", &target, "yerc", "status", "--json"]).output().expect("it runs");
     assert_eq!(output.status.code(), Some(5), "{output:?}");
@@ -64,7 +63,7 @@ fn five_an_answer_that_makes_no_sense() {
 }
 
 #[test]
-fn five_a_host_that_answers_garbage() {
+fn exits_5_for_garbage() {
     let desk = Desk::new();
     let target = peer(|_| Some(b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec()));
     let line = ["-t", &target, "yerc", "status", "--json", "--timeout", "200ms", "--retries", "0"];
@@ -81,7 +80,7 @@ fn five_a_host_that_answers_garbage() {
     );
 }
 
-/// A controller that refuses what only reads, and answers nothing else.
+/// A controller that refuses reads, and does not answer other requests.
 fn refuses_to_tell(request: &[u8]) -> Option<Vec<u8>> {
     let mut refused = done(request);
     refused[25] = 0x08;
@@ -89,7 +88,7 @@ fn refuses_to_tell(request: &[u8]) -> Option<Vec<u8>> {
 }
 
 #[test]
-fn six_a_change_whose_answer_is_lost() {
+fn exits_6_if_the_answer_of_a_change_is_lost() {
     let desk = Desk::new();
     for change in [&["cycle", "once"][..], &["var", "set", "B0=1"], &["hold", "on"], &["job", "select", "MAIN"]] {
         let target = peer(refuses_to_tell);
@@ -104,7 +103,7 @@ fn six_a_change_whose_answer_is_lost() {
 }
 
 #[test]
-fn four_what_a_change_replaces_is_not_answered() {
+fn exits_4_if_the_old_value_is_not_answered() {
     let target = peer(|_| None);
     let line = ["-t", &target, "--json", "--timeout", "100ms", "--retries", "0", "yerc", "var", "set", "B0=1"];
     let output = Desk::new().armctl(&line).output().expect("it runs");
@@ -114,7 +113,7 @@ fn four_what_a_change_replaces_is_not_answered() {
 }
 
 #[test]
-fn six_in_words() {
+fn describes_exit_6() {
     let desk = Desk::new();
     let target = peer(refuses_to_tell);
     let line = ["-t", &target, "--timeout", "100ms", "yerc", "cycle", "once"];
@@ -133,7 +132,7 @@ hint: check before you repeat it: `yerc status` shows the state
 
 #[cfg(target_os = "linux")]
 #[test]
-fn one_a_full_disk() {
+fn exits_1_for_a_full_disk() {
     let desk = Desk::new();
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a disk that is full");
     let output = desk.armctl(&["--sim", "yerc", "status"]).stdout(full).output().expect("it runs");
@@ -150,7 +149,7 @@ hint: free some space, and repeat the command
 }
 
 #[test]
-fn zero_a_reader_that_goes_away_during_a_watch() {
+fn exits_0_if_the_reader_of_a_watch_closes() {
     let desk = Desk::new();
     let mut child = spawn(desk.armctl(&["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]));
     first_line(&mut child);
@@ -183,7 +182,7 @@ fn interrupted_during_a_move() {
     };
     let line = ["-t", &simulator.target, "--yes", "yerc", "move", "relative", "--z", "-600", "--speed", "1mm/s"];
     let mut child = spawn(desk.armctl(&line));
-    // Ten minutes of motion: it is under way as soon as the controller says so.
+    // Ten minutes of motion: in progress as soon as the controller reports it.
     wait(&desk, &simulator, ".data.running");
     interrupt(&child, "INT");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
@@ -196,7 +195,7 @@ interrupted: the robot was stopped: HOLD is on; `yerc hold off` releases it
 "#]]
     );
     assert_eq!(status(".data.hold_sources"), "[\"command\"]\n");
-    // It slows down; then it stands, and lets go only by an order.
+    // It slows down and stops, and is released only by a command.
     wait(&desk, &simulator, ".data.running | not");
     let released = desk.armctl(&["-t", &simulator.target, "--yes", "yerc", "hold", "off"]).output().expect("it runs");
     assert!(released.status.success());
@@ -204,7 +203,7 @@ interrupted: the robot was stopped: HOLD is on; `yerc hold off` releases it
 }
 
 #[test]
-fn interrupted_during_a_move_that_is_left_alone() {
+fn interrupted_during_a_move_with_on_interrupt_leave() {
     let desk = Desk::new();
     let simulator = Simulator::start("yerc", None);
     let line = [
@@ -248,7 +247,7 @@ fn interrupted_while_points_are_stored() {
     let rest: Vec<String> = stderr.collect();
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
     let orders = rest.iter().filter_map(|line| line.strip_prefix("-> ")?.split("  #").next()).rev();
-    // Questions before orders see to it that the line is at peace.
+    // Reads before writes check that the line is idle.
     let orders: Vec<&str> = orders.filter(|order| !order.starts_with("@STAS")).take(2).collect();
     assert_eq!(orders, ["@HSOF", "@CTSK TASK=01"], "what was changed for a while is put back");
     let mut written = String::new();
@@ -258,7 +257,7 @@ fn interrupted_while_points_are_stored() {
 }
 
 #[test]
-fn a_server_says_where_it_is_and_ends_on_a_signal() {
+fn server_prints_its_address_and_ends_on_a_signal() {
     let desk = Desk::new();
     for signal in ["INT", "TERM"] {
         let mut child = spawn(desk.armctl(&["sim", "yerc", "--bind", "127.0.0.1:0", "--json"]));
@@ -292,7 +291,7 @@ fn first_line(child: &mut Child) -> String {
     line
 }
 
-/// What has come on stderr by the end.
+/// stderr until the end.
 fn said(child: &mut Child) -> String {
     let mut text = String::new();
     let Some(mut stderr) = child.stderr.take() else { return text };
@@ -305,9 +304,9 @@ fn interrupt(child: &Child, signal: &str) {
     assert!(sent.success());
 }
 
-/// Whenever a command is ended that writes a file, nothing half-written is left; what an older one left is removed.
+/// A command that writes a file leaves no partial file when it is ended at any time, and removes those of earlier runs.
 #[test]
-fn nothing_half_written_is_left() {
+fn leaves_no_partial_files() {
     let home = tempfile::tempdir().expect("there is room for a folder");
     let folder = home.path().join(".config/armctl");
     std::fs::create_dir_all(&folder).expect("a folder");
@@ -323,7 +322,7 @@ fn nothing_half_written_is_left() {
     };
     for number in 0..40 {
         let mut child = spawn(armctl(&format!("robots add r{number} udp://127.0.0.1")));
-        // Any moment may be the wrong one.
+        // Try different times.
         thread::sleep(std::time::Duration::from_millis(number / 2));
         let _gone = Command::new("kill").args(["-TERM", &child.id().to_string()]).stderr(Stdio::null()).status();
         child.wait().expect("it ends");

@@ -1,13 +1,13 @@
-//! JSON of the transcripts: easy to read, without what differs from run to run, and as envelope and schema promise.
+//! JSON of the transcripts: indented, without values that change between runs, and checked against envelope and schema.
 
 use serde_json::Value;
 
 use crate::support::schemas::check;
 
-/// Widest line of indented JSON.
+/// Maximum width of indented JSON.
 const WIDTH: usize = 100;
 
-/// Text without times of ours; those of a controller are the same each time.
+/// Text without our times; times of a controller are always the same.
 fn redacted(text: &str) -> String {
     let text = replaced(text, "\"time\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
     let text = replaced(&text, "\"elapsed_ms\":", |value| value.find([',', '}']));
@@ -24,10 +24,10 @@ fn redacted(text: &str) -> String {
     replaced(&replaced(&text, "taken at   ", end), "elapsed (ms)  ", end)
 }
 
-/// A time as it stands in a sentence.
+/// A time within a sentence.
 const DATE: &str = "2026-11-21 09:31:05";
 
-/// Text with `[..]` for what follows a name; `end` finds where that ends.
+/// Text with `[..]` for the value after a name; `end` finds the end of the value.
 fn replaced(text: &str, name: &str, end: impl Fn(&str) -> Option<usize>) -> String {
     let mut parts = text.split(name);
     let first = parts.next().unwrap_or_default().to_owned();
@@ -37,7 +37,7 @@ fn replaced(text: &str, name: &str, end: impl Fn(&str) -> Option<usize>) -> Stri
     })
 }
 
-/// A line as transcripts show it: JSON indented, and checked where it is an envelope.
+/// A line as in a transcript: JSON is indented, and an envelope is checked.
 pub fn shown(line: &str) -> String {
     let Some(value) = document(line) else { return redacted(line) };
     let one = std::slice::from_ref(&value);
@@ -53,7 +53,7 @@ fn document(line: &str) -> Option<Value> {
     serde_json::from_str(line).ok().filter(|value: &Value| value.is_object() || value.is_array())
 }
 
-/// Objects and lists on one line where they fit.
+/// Objects and lists on one line if they fit.
 fn pretty(value: &Value, indent: usize) -> String {
     let flat = value.to_string();
     let inner = " ".repeat(indent + 2);
@@ -73,11 +73,11 @@ fn pretty(value: &Value, indent: usize) -> String {
     format!("{open}\n{inner}{}\n{}{close}", items.join(&format!(",\n{inner}")), " ".repeat(indent))
 }
 
-/// Spoils a document.
+/// Corrupts a document.
 type Spoil<'a> = &'a dyn Fn(&mut Value);
 
 #[test]
-fn what_breaks_a_promise_is_found() {
+fn finds_violations_of_the_json_contract() {
     let whole = serde_json::json!({
         "time": "2026-11-21T09:00:00Z", "robot": "cell3", "family": "yerc", "target": "sim:", "simulated": true,
         "command": "sim.yerc", "ok": true, "data": {"family": "yerc", "model": "fs100", "target": "udp://127.0.0.1"},
@@ -126,6 +126,6 @@ fn what_breaks_a_promise_is_found() {
 }
 
 fn take(value: &mut Value, key: &str) {
-    // The order of the rest stays.
+    // The order of the rest is unchanged.
     value.as_object_mut().expect("an object").shift_remove(key).expect("it is there");
 }

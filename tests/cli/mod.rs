@@ -1,7 +1,7 @@
-//! Every command at the terminal, through the built binary: what it prints, where, and how it ends.
+//! Every command through the built binary: its output and exit code.
 //!
-//! `NAME.console` files are transcripts; `transcript.rs` says how they read. `SNAPSHOTS=overwrite cargo test --test terminal cli::`
-//! writes into them what was printed: type the commands, have the rest written, and read it.
+//! `NAME.console` files are transcripts; `transcript.rs` has their syntax. `SNAPSHOTS=overwrite cargo test --test
+//! terminal cli::` writes the output into them: add the commands, run this, and review the result.
 #![cfg(unix)]
 
 mod csv;
@@ -92,11 +92,11 @@ transcripts! {
 }
 
 #[test]
-fn every_transcript_is_run() {
+fn runs_every_transcript() {
     assert_eq!(transcript::names(), TRANSCRIPTS, "transcripts are listed above in the order of the alphabet");
 }
 
-/// Commands that print something else than reports: scripts, pages, texts, schemas.
+/// Commands that print scripts, pages, texts or schemas instead of reports.
 const PLAIN: [&str; 4] = ["completions", "man", "help", "schema"];
 
 #[test]
@@ -124,7 +124,7 @@ fn every_command_has_transcripts() {
     assert_eq!(untold, [""; 0], "commands without a transcript in JSON");
 }
 
-/// The subcommand that words name, such as `yerc file get`.
+/// The subcommand with these words, such as `yerc file get`.
 fn path(root: &clap::Command, words: &[&str]) -> String {
     let mut command = root;
     let mut path = Vec::new();

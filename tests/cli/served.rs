@@ -1,16 +1,16 @@
-//! The examples of the help do the same on a served simulator, which they ask and order over a socket as they would a
-//! controller, as on the simulator inside the command.
+//! The examples of the help have the same result on a served simulator, which is used over a socket like a controller,
+//! as on the built-in one.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use armctl::command::leaves::leaves;
+use armctl::command::leaf_commands::leaves;
 
 use crate::support::simulator::Simulator;
 
-/// What has no end of its own, names a robot, or takes seconds, as motions and whole backups do.
+/// Lines without an end, with a robot name, or that take seconds, such as motions and complete backups.
 const LEFT_OUT: &[&str] = &[
     "watch",
     "--for",
@@ -60,10 +60,10 @@ const LEFT_OUT: &[&str] = &[
     "yrcx shift-data get 0..39",
     "yrcx var get SGI0..SGI31 SGR5",
 ];
-/// How many run at a time.
+/// Number of parallel lines.
 const WORKERS: usize = 6;
 
-/// The exit code of a line in a folder of its own, and what it says.
+/// Exit code and output of a line in its own folder.
 fn run(line: &str, robot: &str) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().expect("there is room for a folder");
     let path: &Path = folder.path();
@@ -75,7 +75,7 @@ fn run(line: &str, robot: &str) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
-/// What is different on a served simulator.
+/// Differences on a served simulator.
 fn difference(line: &str) -> Option<String> {
     let family = line.split(' ').next().expect("a family");
     let simulator = Simulator::start(family);
@@ -85,7 +85,7 @@ fn difference(line: &str) -> Option<String> {
 }
 
 #[test]
-fn examples_of_the_help_do_the_same_on_a_served_simulator() {
+fn help_examples_work_on_a_served_simulator() {
     let lines: Vec<&str> = leaves()
         .map(|(line, _)| *line)
         .filter(|line| ["yerc ", "yrcx ", "toyo "].iter().any(|family| line.starts_with(family)))
@@ -104,9 +104,9 @@ fn examples_of_the_help_do_the_same_on_a_served_simulator() {
     assert!(different.is_empty(), "{}", different.join("\n"));
 }
 
-/// A station and a base are stored in pulses, whatever the dry run before the question shows.
+/// A station and a base are stored in pulses, also if the dry run before the question shows another form.
 #[test]
-fn stations_and_bases_are_taught() {
+fn teaches_stations_and_bases() {
     let simulator = Simulator::start("yerc");
     for line in ["yerc teach EX1 --group S1", "yerc teach BP1", "yerc teach EX1 --dry-run", "yerc teach P9"] {
         let (code, said) = run(line, &format!("-t '{}'", simulator.url));

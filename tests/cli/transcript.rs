@@ -1,4 +1,4 @@
-//! Runs a transcript: what is typed, and what stdout, stderr and the exit code then are.
+//! Runs a transcript: typed commands, and the expected stdout, stderr and exit code.
 //!
 //! | line | is |
 //! |---|---|
@@ -7,10 +7,11 @@
 //! | `? N` | the exit code, where it is not 0 |
 //! | `## TEXT` | a comment |
 //!
-//! JSON stands indented; that it came as a single line, in the envelope and as the schema says, is checked here. What
-//! differs from run to run stands as `[…]`; lines of progress, which depend on how long it takes, are left out. `udp://127.0.0.1:10040` is a yerc simulator of the transcript's own,
-//! `eip://127.0.0.1:44818` a yrcx one and `tcp://127.0.0.1:4001` a toyo one, elsewhere in truth; its start state is
-//! `NAME.toml` beside `NAME.console`, if there is one. What is in `files/` lies in the folder.
+//! JSON is indented. The test checks that it was a single line and that envelope and schema are correct. Values that
+//! change between runs are `[…]`. Progress lines are omitted, because they depend on the duration.
+//! `udp://127.0.0.1:10040` is a yerc simulator of this transcript, `eip://127.0.0.1:44818` a yrcx one and
+//! `tcp://127.0.0.1:4001` a toyo one, on other ports in reality. Their start state is `NAME.toml` next to
+//! `NAME.console`, if it exists. The files of `files/` are in the folder.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
@@ -20,11 +21,11 @@ use tempfile::TempDir;
 
 use super::json;
 
-/// Families, and where transcripts find the simulator of each.
+/// Families, and the addresses of their simulators in transcripts.
 const DOCUMENTED: [(&str, &str); 3] =
     [("yerc", "udp://127.0.0.1:10040"), ("yrcx", "eip://127.0.0.1:44818"), ("toyo", "tcp://127.0.0.1:4001")];
 
-/// Runs the transcript of this name and compares; `SNAPSHOTS=overwrite` writes what was printed instead.
+/// Runs the transcript of this name and compares it; `SNAPSHOTS=overwrite` writes the output instead.
 pub fn check(name: &str) {
     let path = folder().join(format!("{name}.console"));
     let text = std::fs::read_to_string(&path).expect("the transcript is there");
@@ -61,7 +62,7 @@ pub fn commands() -> Vec<String> {
     texts.iter().flat_map(|text| text.lines()).filter_map(|line| Some(line.strip_prefix("$ ")?.to_owned())).collect()
 }
 
-/// The names of all transcripts.
+/// Names of all transcripts.
 pub fn names() -> Vec<String> {
     let files = std::fs::read_dir(folder()).expect("the folder of the transcripts");
     let names = files
@@ -75,13 +76,13 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli")
 }
 
-/// Somebody's place of work: a folder and a home of its own, no variables of ours, no terminal.
+/// Test environment: its own folder and home, no variables of armctl, no terminal.
 pub struct Desk {
     folder: TempDir,
 }
 
 impl Desk {
-    /// A desk with the files of `files/` on it.
+    /// An environment with the files of `files/`.
     pub fn new() -> Self {
         let desk = Self { folder: tempfile::tempdir().expect("a folder") };
         std::fs::create_dir(desk.path().join(".run")).expect("a folder for sockets");
@@ -118,7 +119,7 @@ impl Desk {
         command
     }
 
-    /// What stands in the transcript after a command.
+    /// Content of the transcript after a command.
     fn typed(&self, line: &str, simulators: &[Simulator]) -> String {
         let reached = simulators.iter().fold(line.to_owned(), |line, simulator| simulator.reached(&line));
         let output = self.command("sh").args(["-c", &reached]).output().expect("sh runs");
@@ -144,31 +145,32 @@ impl Desk {
     }
 }
 
-/// Whether it is a line of progress, `reading points: 40 %, 466 of 999, 12 s left`: they come only where it takes long.
+/// Whether it is a progress line, `reading points: 40 %, 466 of 999, 12 s left`; they are printed only during long
+/// work.
 fn is_progress(line: &str) -> bool {
     line.ends_with(" left") && line.contains(" %, ")
 }
 
 impl Drop for Desk {
     fn drop(&mut self) {
-        // A session in the background must not outlive its test.
+        // A background session must not outlive its test.
         if self.path().join(".run/armctl").exists() {
             let _ = self.armctl(&["session", "close", "--all", "--force"]).output();
         }
     }
 }
 
-/// `armctl sim FAMILY` on ports of its own; it ends with the test.
+/// `armctl sim FAMILY` on free ports; it ends with the test.
 pub struct Simulator {
     process: Child,
-    /// The URL to reach it by.
+    /// URL of the simulator.
     pub target: String,
-    /// The one that transcripts show.
+    /// URL in transcripts.
     documented: &'static str,
 }
 
 impl Simulator {
-    /// Starts one and waits until it listens.
+    /// Starts a simulator and waits until it listens.
     pub fn start(family: &str, state: Option<&Path>) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
         command.args(["sim", family, "--bind", "127.0.0.1:0", "--jq", ".data.target"]);
@@ -199,7 +201,7 @@ impl Simulator {
 
 impl Drop for Simulator {
     fn drop(&mut self) {
-        // A process that has ended already is as good.
+        // The process may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

@@ -1,4 +1,4 @@
-//! No bytes make anything panic, and what is written is read back.
+//! No bytes cause a panic, and messages round-trip.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::Arc;
@@ -69,7 +69,7 @@ fn address() -> impl Strategy<Value = SocketAddrV4> {
 
 proptest! {
     #[test]
-    fn any_bytes_are_read_or_refused(bytes in vec(any::<u8>(), 0..200)) {
+    fn parses_or_refuses_random_bytes(bytes in vec(any::<u8>(), 0..200)) {
         let _ = Frame::parse(&bytes);
         let _ = Item::parse_all(&bytes);
         let _ = RrData::parse(&bytes);
@@ -92,14 +92,14 @@ proptest! {
     }
 
     #[test]
-    fn openings_read_back(open in open()) {
+    fn round_trips_openings(open in open()) {
         let bytes = open.emit();
         let request = Request::parse(&bytes).unwrap();
         prop_assert_eq!(Open::parse(request.data, open.is_large()), Ok(open));
     }
 
     #[test]
-    fn the_rest_reads_back(
+    fn round_trips_other_messages(
         triad in triad(),
         path in path(),
         words in vec(any::<u16>(), 0..5),
@@ -131,9 +131,9 @@ proptest! {
         prop_assert_eq!(Cyclic::parse(&bytes), Ok(cyclic));
     }
 
-    /// Damage to what both ends send each other is met with a refusal or with silence.
+    /// Damaged messages are refused or ignored by both ends.
     #[test]
-    fn damaged_exchanges_do_no_harm(at in 0usize..200, with in any::<u8>(), cut in 0usize..200) {
+    fn survives_damaged_exchanges(at in 0usize..200, with in any::<u8>(), cut in 0usize..200) {
         let world = World::open(setup(), settings(), "");
         let now = world.now;
         let damaged = |bytes: &[u8]| {

@@ -1,4 +1,4 @@
-//! EtherNet/IP: both ends against each other in virtual time and on sockets, and each against ends that others wrote.
+//! EtherNet/IP: both ends against each other in virtual time and on sockets, and each against other implementations.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 

@@ -1,4 +1,4 @@
-//! Groups and broadcasts, which need port 2222 of the whole machine, and so a program of their own.
+//! Multicast groups and broadcasts. They need port 2222 of the whole machine, and therefore a separate test program.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -19,7 +19,7 @@ use armctl::transport::eip::tap::Tap;
 use world::{Mirror, patient, setup};
 
 #[tokio::test]
-async fn a_group_is_heard_by_all_who_asked_for_it() {
+async fn every_subscriber_receives_a_multicast_group() {
     let scanner = Scanner::shared().unwrap();
     if scanner.port() != IO_PORT {
         return println!("skipped: another program has UDP port {IO_PORT}");
@@ -37,14 +37,14 @@ async fn a_group_is_heard_by_all_who_asked_for_it() {
         assert_eq!(view.generation, 1, "{view:?}");
     }
     listener.close().await.unwrap();
-    // The group is heard as long as one connection needs it.
+    // The group is received as long as one connection needs it.
     let received = owner.view().statistics.received;
     owner.until(|view| view.statistics.received > received + 2).await;
     owner.close().await.unwrap();
 }
 
 #[tokio::test]
-async fn a_broadcast_finds_who_is_there() {
+async fn broadcast_finds_all_devices() {
     let anywhere = Listen::anywhere(Ipv4Addr::UNSPECIFIED);
     let server = Server::start(setup(), Mirror::default(), anywhere, None).unwrap();
     let everybody = SocketAddrV4::new(Ipv4Addr::new(127, 255, 255, 255), server.address().port());

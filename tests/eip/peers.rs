@@ -1,8 +1,8 @@
-//! Ends that others wrote, at the other end of ours: adapter, scanner, explicit client, decoder.
+//! Other implementations at the remote end: adapter, scanner, explicit client, decoder.
 //!
-//! `ciplink` is a crate. The others are there where `ARMCTL_EIP_PEERS` names the folder that `peers/install` made, and
-//! tshark where it is installed; elsewhere the tests say that they are skipped. Devices and scanners want port 2222 of
-//! an address of their own, which the loopback of Linux has plenty of.
+//! `ciplink` is a crate. The others are in the folder `ARMCTL_EIP_PEERS`, made by `peers/install`; tshark must be
+//! installed. Otherwise the tests are skipped with a message. Devices and scanners need port 2222 of a separate
+//! address, which the loopback network of Linux has.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ use ciplink::adapter::{Adapter, AdapterConfig, Assembly, Event};
 use super::pcap;
 use super::world::{MS, Mirror, patient, setup};
 
-/// An address of the loopback whose port 2222 is free; the tests run side by side, so each has one.
+/// A loopback address whose port 2222 is free; each parallel test has one.
 fn address(last: u8) -> Option<Ipv4Addr> {
     let address = Ipv4Addr::new(127, 44, 18, last);
     UdpSocket::bind((address, IO_PORT)).ok().map(|_| address)
@@ -32,7 +32,7 @@ fn address(last: u8) -> Option<Ipv4Addr> {
 
 const NO_ADDRESS: &str = "skipped: the loopback has only one address here, or port 2222 of another is taken";
 
-/// The folder of the peers that are no crates.
+/// Folder of the peers that are not crates.
 fn folder() -> Option<PathBuf> {
     std::env::var_os("ARMCTL_EIP_PEERS").map(PathBuf::from)
 }
@@ -57,7 +57,7 @@ fn v4(address: SocketAddr) -> SocketAddrV4 {
 }
 
 #[tokio::test]
-async fn ciplink_is_owned_by_our_scanner() {
+async fn our_scanner_owns_ciplink() {
     let Some(address) = address(1) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
@@ -94,7 +94,7 @@ async fn ciplink_is_owned_by_our_scanner() {
 }
 
 #[tokio::test]
-async fn ciplink_is_listened_to() {
+async fn our_scanner_listens_to_ciplink() {
     let Some(address) = address(2) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
     adapter.set_input(100, &[9; 48]).unwrap();
@@ -107,7 +107,7 @@ async fn ciplink_is_listened_to() {
 }
 
 #[tokio::test]
-async fn ciplink_refuses_what_does_not_fit() {
+async fn ciplink_refuses_wrong_settings() {
     let Some(address) = address(3) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
@@ -127,7 +127,7 @@ async fn ciplink_refuses_what_does_not_fit() {
 }
 
 #[tokio::test]
-async fn ciplink_says_who_it_is() {
+async fn ciplink_reports_its_identity() {
     let Some(address) = address(4) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
     let target = v4(adapter.addr());
@@ -145,7 +145,7 @@ async fn ciplink_says_who_it_is() {
     client.close().await;
 }
 
-/// Our adapter on its usual ports.
+/// Our adapter on its default ports.
 fn serve(address: Ipv4Addr) -> Option<Server<Mirror>> {
     Server::start(setup(), Mirror::default(), Listen::usual(address), None).ok()
 }
@@ -189,9 +189,9 @@ fn pycomm3_asks_our_adapter() {
     assert_eq!(found["refused"]["error"], "Attribute not settable");
 }
 
-/// A whole exchange as a capture file, read by tshark.
+/// A complete exchange as a capture file, read by tshark.
 #[tokio::test]
-async fn tshark_reads_what_passes() {
+async fn tshark_decodes_recorded_packets() {
     if Command::new("tshark").arg("--version").output().is_err() {
         return println!("skipped: tshark is not installed");
     }
@@ -249,7 +249,7 @@ async fn tshark_reads_what_passes() {
     assert_eq!(numbers("cip.cm.sc == 0x4e && cip.rr == 1", &["cip.genstat"]), [0]);
     assert_eq!(read("enip.lir.vendor == 636", &["enip.lir.name"]), ["RCX"]);
 
-    // tshark knows the connections from their opening, and so which way an image goes.
+    // tshark needs the opening of a connection to know the direction of an image.
     let out =
         read("cipio && cip.32bitheader", &["enip.cpf.sai.seq", "cip.seq", "cip.32bitheader.run_idle", "udp.length"]);
     let mut runs = Vec::new();
@@ -259,7 +259,7 @@ async fn tshark_reads_what_passes() {
         runs.push(run.ends_with('1'));
     }
     runs.dedup();
-    // Idle until told to run, and idle once more before the end.
+    // Idle until run is set, and idle again before the end.
     assert!([&[true, false][..], &[false, true, false]].contains(&&runs[..]), "{out:?}");
     let back = read("cipio && !cip.32bitheader", &["udp.length"]);
     assert!(back.len() >= 3 && back.iter().all(|len| len == "76"), "{back:?}");

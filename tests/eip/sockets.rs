@@ -1,4 +1,4 @@
-//! Both ends on sockets of the loopback. Nothing here waits for a time, only for what is to come.
+//! Both ends on loopback sockets. The tests wait for events, never for a time.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex};
@@ -32,7 +32,7 @@ fn quick() -> Settings {
 }
 
 #[tokio::test]
-async fn images_and_messages_travel() {
+async fn exchanges_images_and_messages() {
     let server = serve(setup());
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
@@ -55,7 +55,7 @@ async fn images_and_messages_travel() {
 }
 
 #[tokio::test]
-async fn what_a_device_shows_can_be_read_beside_its_owner() {
+async fn reads_images_of_an_owned_device() {
     let server = serve(setup());
     let client = || Client::new(server.address(), 200 * MS, Tap::default());
     let assembly = Assembly { instance: 100, size: 48 };
@@ -75,7 +75,7 @@ async fn what_a_device_shows_can_be_read_beside_its_owner() {
     owner.set_image(1, &[0x5A; 48]).unwrap();
     owner.set_run(1, true).unwrap();
     shows(&mut reader, &|reading| reading.as_deref().is_ok_and(|image| image == [0xA5; 48])).await;
-    // A device that goes silent is told, and so is that it is back.
+    // Reports a silent device, and its return.
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Mute)));
     shows(&mut reader, &|reading| matches!(reading, Err(EipError::NoAnswer { .. }))).await;
     server.with(|adapter, _| adapter.set_fault(None));
@@ -86,7 +86,7 @@ async fn what_a_device_shows_can_be_read_beside_its_owner() {
 }
 
 #[tokio::test]
-async fn a_survey_reads_assemblies_and_asks_for_no_connection() {
+async fn survey_reads_assemblies_without_a_connection() {
     let server = serve(setup());
     let mut client = Client::new(server.address(), Duration::from_secs(20), Tap::default());
     let right = Instances { output: 150, input: 100, configuration: Some(1) };
@@ -102,7 +102,7 @@ async fn a_survey_reads_assemblies_and_asks_for_no_connection() {
 }
 
 #[tokio::test]
-async fn many_connections_share_a_socket() {
+async fn several_connections_share_a_socket() {
     let servers: Vec<_> = (0..20).map(|_| serve(setup())).collect();
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connections = Vec::new();
@@ -119,7 +119,7 @@ async fn many_connections_share_a_socket() {
 }
 
 #[tokio::test]
-async fn a_bad_network_is_survived() {
+async fn survives_a_bad_network() {
     let faults: FaultSpec = "drop=10%,dup=5%,delay=0..20ms,reorder=2%,seed=5".parse().unwrap();
     let listen = Listen::anywhere(LOOPBACK);
     let server = Server::start(setup(), Mirror::default(), listen, Some(Faults::pair(faults))).unwrap();
@@ -134,7 +134,7 @@ async fn a_bad_network_is_survived() {
 }
 
 #[tokio::test]
-async fn refusals_come_back_from_open() {
+async fn open_returns_refusals() {
     let server = serve(setup());
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let wrong = Settings { input_size: 46, ..quick() };
@@ -152,18 +152,18 @@ async fn refusals_come_back_from_open() {
 }
 
 #[tokio::test]
-async fn a_dropped_connection_is_closed() {
+async fn closes_a_dropped_connection() {
     let server = serve(setup());
     let scanner = Scanner::start(LOOPBACK).unwrap();
     drop(scanner.open(server.address(), quick(), Tap::default()).await.unwrap());
-    // The device is free for the next owner, which may have to wait for the close to arrive.
+    // The device is free for the next owner, which may have to wait for the close.
     while let Err(trouble) = scanner.open(server.address(), quick(), Tap::default()).await {
         assert_eq!(trouble.code().unwrap().code, 0x0106, "{trouble}");
     }
 }
 
 #[tokio::test]
-async fn a_lost_link_is_opened_again() {
+async fn reopens_a_lost_link() {
     let server = serve(setup());
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let settings = Settings { multiplier: Multiplier::of(64).unwrap(), ..quick() };
@@ -181,7 +181,7 @@ async fn a_lost_link_is_opened_again() {
 }
 
 #[tokio::test]
-async fn nobody_there_is_told() {
+async fn reports_an_absent_device() {
     let server = serve(setup());
     let address = server.address();
     drop(server);
@@ -192,7 +192,7 @@ async fn nobody_there_is_told() {
 }
 
 #[tokio::test]
-async fn a_reset_is_told_and_the_next_request_goes_by_a_new_connection() {
+async fn reports_a_reset_and_uses_a_new_connection() {
     let server = serve(setup());
     let mut client = Client::new(server.address(), Duration::from_secs(3), Tap::default());
     let message = Message::get(1, 1, 1);
@@ -205,7 +205,7 @@ async fn a_reset_is_told_and_the_next_request_goes_by_a_new_connection() {
 }
 
 #[tokio::test]
-async fn a_device_says_who_it_is_by_tcp_and_by_udp() {
+async fn reads_the_identity_over_tcp_and_udp() {
     let server = serve(setup());
     let expected = armctl::transport::eip::wire::Identity { address: server.address(), status: 0x30, ..identity() };
     let mut client = Client::new(server.address(), Duration::from_secs(3), Tap::default());
@@ -223,7 +223,7 @@ async fn a_device_says_who_it_is_by_tcp_and_by_udp() {
 }
 
 #[tokio::test]
-async fn a_tap_sees_all_that_passes() {
+async fn tap_receives_all_packets() {
     let server = serve(setup());
     let seen = Arc::new(Mutex::new(Vec::new()));
     let tap = {
@@ -243,12 +243,12 @@ async fn a_tap_sees_all_that_passes() {
 }
 
 #[tokio::test]
-async fn a_probe_finds_instances_and_sizes() {
+async fn probe_finds_instances_and_sizes() {
     let right = Instances { output: 101, input: 102, configuration: Some(151) };
     let setup = Setup::new(identity(), (102, 36), (101, 20), 151);
     let server = serve(setup);
     let mut client = Client::new(server.address(), Duration::from_secs(20), Tap::default());
-    // Wrong in every way, and one way round or the other.
+    // Wrong in every way, in both orders.
     for thought in
         [Instances { output: 150, input: 100, configuration: Some(1) }, Instances { input: 101, output: 102, ..right }]
     {
@@ -259,7 +259,7 @@ async fn a_probe_finds_instances_and_sizes() {
         let found = Connectable { instances: right, output_size: Some(20), input_size: Some(36) };
         assert_eq!(findings.connectable, Some(found), "{:?}", findings.attempts);
     }
-    // Nothing was opened on the way, not even for a moment.
+    // No connection was opened, not even for a moment.
     assert_eq!(server.with(|adapter, _| adapter.application().events.clone()), []);
     client.close().await;
 }

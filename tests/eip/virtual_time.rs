@@ -11,7 +11,7 @@ use armctl::transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, 
 
 use super::world::{HERE, MS, Mirror, World, identity, resting, settings, setup};
 
-/// An image that is easily told from others.
+/// A recognizable image.
 fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
 }
@@ -28,7 +28,7 @@ fn refusal(world: &World) -> Status {
 }
 
 #[test]
-fn images_travel_both_ways() {
+fn exchanges_images_in_both_directions() {
     let mut world = World::open(setup(), settings(), "");
     assert_eq!(world.adapter.application().image, resting());
     assert!(!world.adapter.application().run, "it begins idle");
@@ -42,7 +42,7 @@ fn images_travel_both_ways() {
 }
 
 #[test]
-fn images_keep_their_time() {
+fn sends_images_at_their_interval() {
     let mut world = World::open(setup(), settings(), "delay=0..3ms,seed=4");
     world.run(10_000 * MS);
     let first = world.images_out[0].0;
@@ -55,7 +55,7 @@ fn images_keep_their_time() {
 }
 
 #[test]
-fn both_counters_go_up_with_every_image() {
+fn increments_both_counters_per_image() {
     let mut world = World::open(setup(), settings(), "");
     world.run(2_000_000 * MS);
     for (sent, index) in world.images_out.iter().zip(1u32..) {
@@ -68,7 +68,7 @@ fn both_counters_go_up_with_every_image() {
 }
 
 #[test]
-fn the_time_is_that_of_the_answer() {
+fn uses_the_interval_of_the_answer() {
     let setup = Setup { tick: 8 * MS, ..setup() };
     let mut world = World::open(setup, settings(), "");
     assert_eq!(world.view().details.intervals, Some((24 * MS, 24 * MS)));
@@ -78,7 +78,7 @@ fn the_time_is_that_of_the_answer() {
 }
 
 #[test]
-fn a_bad_network_is_survived() {
+fn survives_a_bad_network() {
     for seed in 0..20 {
         let faults = format!("drop=20%,dup=10%,reorder=10%,delay=0..15ms,corrupt=5%,seed={seed}");
         let mut world =
@@ -90,7 +90,7 @@ fn a_bad_network_is_survived() {
                 world.view().input.is_some_and(|input| *input.image == *native_order(&image(mark)))
             });
         }
-        // Never an old image after a newer one, although the network mixes them up.
+        // Never an old image after a newer one, although the network reorders them.
         let history = &world.adapter.application().history;
         let marks: Vec<u8> = history.iter().map(|(image, _)| image[0]).filter(|mark| (1..100).contains(mark)).collect();
         assert!(marks.is_sorted(), "seed {seed}: {marks:?}");
@@ -101,7 +101,7 @@ fn a_bad_network_is_survived() {
 }
 
 #[test]
-fn a_close_is_announced_idle_and_confirmed() {
+fn close_sends_idle_and_is_confirmed() {
     let mut world = World::open(setup(), settings(), "");
     let generation = world.view().generation;
     world.originator.set_run(generation, true).unwrap();
@@ -119,7 +119,7 @@ fn a_close_is_announced_idle_and_confirmed() {
 }
 
 #[test]
-fn a_lost_device_is_found_again_and_begins_at_rest() {
+fn reopened_device_starts_with_resting_image() {
     let mut world = World::open(setup(), settings(), "");
     world.originator.set_image(1, &image(7)).unwrap();
     world.originator.set_run(1, true).unwrap();
@@ -141,14 +141,14 @@ fn a_lost_device_is_found_again_and_begins_at_rest() {
 }
 
 #[test]
-fn every_opening_has_a_number_of_its_own() {
+fn every_opening_has_a_unique_number() {
     let mut world = World::open(setup(), settings(), "");
     for generation in 2..6 {
         world.adapter.set_fault(Some(AdapterFault::Stall));
         world.until(400 * MS, |world| world.view().state == State::Lost);
         world.adapter.set_fault(None);
         world.until(20_000 * MS, |world| world.view().generation == generation);
-        // A stream that was heard makes the next wait short again.
+        // After a received image, the next wait is short again.
         world.run(100 * MS);
     }
     let opens: Vec<Open> =
@@ -170,7 +170,7 @@ fn opened(frame: &[u8]) -> Option<Open> {
 }
 
 #[test]
-fn images_go_on_without_tcp() {
+fn images_continue_without_tcp() {
     let mut world = World::open(setup(), settings(), "");
     world.tcp = false;
     world.originator.hung_up(&EipError::Hangup { what: "the test" });
@@ -184,7 +184,7 @@ fn images_go_on_without_tcp() {
 }
 
 #[test]
-fn the_first_image_may_take_ten_seconds() {
+fn scanner_waits_ten_seconds_for_the_first_image() {
     let mut world = World::new(setup(), settings(), "");
     world.adapter.set_fault(Some(AdapterFault::Stall));
     world.until(100 * MS, |world| world.view().state == State::Open);
@@ -195,7 +195,7 @@ fn the_first_image_may_take_ten_seconds() {
 }
 
 #[test]
-fn the_adapter_waits_ten_seconds_for_the_first_image_and_the_time_out_for_the_next() {
+fn adapter_waits_ten_seconds_for_the_first_image_only() {
     let mut world = World::new(setup(), settings(), "");
     world.until(100 * MS, |world| world.adapter.peers().next().is_some());
     world.cable = false;
@@ -214,8 +214,8 @@ fn the_adapter_waits_ten_seconds_for_the_first_image_and_the_time_out_for_the_ne
 }
 
 #[test]
-fn what_an_adapter_can_do_wrong_is_noticed() {
-    // What it does, and whether the connection is lost by it.
+fn detects_adapter_faults() {
+    // The fault, and whether the connection is lost.
     let cases = [
         (AdapterFault::HalfRate, false),
         (AdapterFault::Double, false),
@@ -245,7 +245,7 @@ fn what_an_adapter_can_do_wrong_is_noticed() {
 }
 
 #[test]
-fn an_adapter_that_answers_nothing_ends_the_opening() {
+fn silent_adapter_ends_the_opening() {
     type IsIt = fn(&EipError) -> bool;
     let cases: [(AdapterFault, IsIt); 3] = [
         (AdapterFault::Mute, |trouble| matches!(trouble, EipError::NoAnswer { what: "RegisterSession", .. })),
@@ -263,7 +263,7 @@ fn an_adapter_that_answers_nothing_ends_the_opening() {
 }
 
 #[test]
-fn nobody_there_is_told_at_once() {
+fn reports_an_absent_device_at_once() {
     let mut world = World::new(setup(), settings(), "");
     world.tcp = false;
     world.until(100 * MS, |world| world.originator.is_finished());
@@ -275,9 +275,9 @@ fn nobody_there_is_told_at_once() {
     assert_eq!(world.view().trouble, Some(EipError::NoAnswer { what: "the TCP connection", after }));
 }
 
-/// A lost answer to ForwardOpen: the device may hold the connection, so it is closed in any case.
+/// If the answer to ForwardOpen is lost, the device may have the connection, so it is closed.
 #[test]
-fn an_opening_of_unknown_outcome_is_closed() {
+fn closes_an_opening_of_unknown_outcome() {
     let mut world = World::new(setup(), settings(), "");
     world.until(100 * MS, |world| world.adapter.peers().next().is_some());
     world.cable = false;
@@ -290,7 +290,7 @@ fn an_opening_of_unknown_outcome_is_closed() {
 }
 
 #[test]
-fn refusals_say_why() {
+fn refusals_have_a_reason() {
     let key = |key: Key| Settings { key: Some(key), ..settings() };
     let own = Key { vendor: 636, device_type: 43, product: 5, major: 1, minor: 2, compatible: false };
     let short = Settings { output_size: 40, resting: vec![0; 40], ..settings() };
@@ -321,7 +321,7 @@ fn refusals_say_why() {
 }
 
 #[test]
-fn what_fits_is_taken() {
+fn accepts_matching_settings() {
     let own = Key { vendor: 636, device_type: 43, product: 5, major: 1, minor: 2, compatible: false };
     let cases = [
         Settings { key: Some(own), ..settings() },
@@ -338,7 +338,7 @@ fn what_fits_is_taken() {
 }
 
 #[test]
-fn large_images_take_the_large_opening() {
+fn large_images_use_the_large_opening() {
     let mut setup = setup();
     setup.assemblies = vec![
         Assembly { instance: 100, purpose: Purpose::Input, size: 1400 },
@@ -358,7 +358,7 @@ fn large_images_take_the_large_opening() {
 }
 
 #[test]
-fn a_group_is_joined_when_asked_for_and_left_again() {
+fn joins_and_leaves_a_multicast_group() {
     let mut world = World::open(setup(), Settings { multicast: true, ..settings() }, "");
     assert_eq!(world.joined, [setup().group]);
     world.run(1000 * MS);
@@ -368,7 +368,7 @@ fn a_group_is_joined_when_asked_for_and_left_again() {
     assert!(world.joined.is_empty());
 }
 
-/// A second originator is played by hand.
+/// The second originator is simulated by hand.
 fn second(world: &mut World, settings: &Settings, serial: u16) -> Status {
     let open = Open {
         o_t_id: 0,
@@ -387,7 +387,7 @@ fn second(world: &mut World, settings: &Settings, serial: u16) -> Status {
 }
 
 #[test]
-fn there_is_one_owner_and_many_listeners() {
+fn accepts_one_owner_and_many_listeners() {
     let multicast = Settings { multicast: true, ..settings() };
     let mut world = World::open(setup(), multicast.clone(), "");
     let listener = |role, output| Settings { role, output, output_size: 0, resting: vec![], ..multicast.clone() };
@@ -395,11 +395,11 @@ fn there_is_one_owner_and_many_listeners() {
     assert_eq!(second(&mut world, &listener(Role::ListenOnly, 237), 2), Status::OK);
     assert_eq!(second(&mut world, &listener(Role::ListenOnly, 237), 2), Status::connection(0x0100, &[]));
     assert_eq!(world.adapter.peers().count(), 2);
-    // One group, served once.
+    // One group, sent once.
     let before = world.view().statistics.received;
     world.run(1000 * MS);
     assert!((50..=51).contains(&(world.view().statistics.received - before)));
-    // Who listens goes with the last who has something sent.
+    // Listeners are closed with the last connection that has data sent.
     world.originator.close();
     world.until(1000 * MS, |world| world.originator.is_finished());
     assert_eq!(world.adapter.peers().count(), 0);
@@ -408,7 +408,7 @@ fn there_is_one_owner_and_many_listeners() {
 }
 
 #[test]
-fn connections_are_counted() {
+fn limits_the_number_of_connections() {
     let setup = Setup { most_connections: 3, ..setup() };
     let mut world = World::open(setup, settings(), "");
     let inputs = Settings { role: Role::InputOnly, output: 238, output_size: 0, resting: vec![], ..settings() };
@@ -457,7 +457,7 @@ fn objects_answer() {
 }
 
 #[test]
-fn an_image_is_taken_by_a_message_while_nobody_owns_it() {
+fn message_writes_an_image_without_an_owner() {
     let mut adapter = Adapter::new(setup(), Mirror::default());
     adapter.connected(1, HERE);
     let mut ask = |frame: Frame<'_>| {
@@ -480,7 +480,7 @@ fn an_image_is_taken_by_a_message_while_nobody_owns_it() {
 }
 
 #[test]
-fn images_of_strangers_are_not_heard() {
+fn ignores_images_of_other_senders() {
     let mut world = World::open(setup(), settings(), "");
     world.run(100 * MS);
     let mut forged = world.images_out.last().unwrap().1.clone();

@@ -1,4 +1,4 @@
-//! An originator and an adapter on a network in virtual time: TCP is reliable or down, UDP as faulty as asked for.
+//! An originator and an adapter on a network in virtual time: TCP is reliable or down, UDP has the requested faults.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -16,17 +16,17 @@ use armctl::transport::eip::{IO_PORT, Now, PORT};
 use armctl::transport::fault::{FaultSpec, Faults};
 
 pub const MS: Duration = Duration::from_millis(1);
-/// How long TCP takes.
+/// Transit time of TCP.
 const TRIP: Duration = MS;
 pub const HERE: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 1);
 pub const THERE: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 2);
 
-/// Sends back what it is sent, with every bit turned.
+/// Returns the received image with every bit inverted.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub image: Vec<u8>,
     pub run: bool,
-    /// Every image that differed from the one before, with the run bit.
+    /// Every image that differs from the previous one, with the run bit.
     pub history: Vec<(Vec<u8>, bool)>,
     pub events: Vec<Event>,
 }
@@ -50,7 +50,7 @@ impl Application for Mirror {
     }
 }
 
-/// An RCX of 2011, as its data sheet has it.
+/// An RCX of 2011, with the values of its data sheet.
 pub fn identity() -> Identity {
     Identity {
         address: SocketAddrV4::new(THERE, PORT),
@@ -73,19 +73,19 @@ pub fn settings() -> Settings {
     Settings { output_size: 48, input_size: 48, resting: resting(), ..Settings::default() }
 }
 
-/// The same with the longest time-out, for real time: a busy machine must not lose a connection.
+/// Settings with the longest timeout, for real time: a busy machine must not lose a connection.
 pub fn patient() -> Settings {
     Settings { multiplier: Multiplier::of(512).unwrap(), ..settings() }
 }
 
-/// An image that does nothing, and is not all zeros.
+/// A resting image that is not all zeros.
 pub fn resting() -> Vec<u8> {
     let mut image = vec![0; 48];
     image[32] = 0x41;
     image
 }
 
-/// Something on its way.
+/// A packet in transit.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum Packet {
     Connected(u32),
@@ -102,14 +102,14 @@ pub struct World {
     pub now: Now,
     pub originator: Originator,
     pub adapter: Adapter<Mirror>,
-    /// Whether TCP connections come about and last.
+    /// Whether TCP connections are possible.
     pub tcp: bool,
-    /// Whether anything gets through at all.
+    /// Whether any packet arrives.
     pub cable: bool,
     pub answers: Vec<(Token, Result<Vec<u8>, EipError>)>,
-    /// Every frame that was sent on TCP, with the way it went.
+    /// Every frame sent on TCP, with its direction.
     pub frames: Vec<(bool, Vec<u8>)>,
-    /// Every cyclic datagram that was sent to the adapter.
+    /// Every cyclic datagram sent to the adapter.
     pub images_out: Vec<(Now, Vec<u8>)>,
     pub joined: Vec<Ipv4Addr>,
     /// Number of the TCP connection.
@@ -125,7 +125,7 @@ impl World {
         let numbers = Arc::new(Numbers::new(0x0506_0708, 0x0101, 0x1000));
         let faults: FaultSpec = if faults.is_empty() { FaultSpec::default() } else { faults.parse().unwrap() };
         Self {
-            // Not 0, so that nothing relies on it.
+            // Not 0, so that no code can rely on 0.
             now: Duration::from_secs(1000),
             originator: Originator::new(target, IO_PORT, settings, numbers).unwrap(),
             adapter: Adapter::new(setup, Mirror::default()),
@@ -142,7 +142,7 @@ impl World {
         }
     }
 
-    /// A world in which the connection is open and an image has come back.
+    /// A world with an open connection and a returned image.
     pub fn open(setup: Setup, settings: Settings, faults: &str) -> Self {
         let mut world = Self::new(setup, settings, faults);
         world.until(20_000 * MS, |world| world.view().input.is_some());
@@ -154,13 +154,13 @@ impl World {
         self.originator.view()
     }
 
-    /// Asks over the session.
+    /// Sends a request over the session.
     pub fn ask(&mut self, token: u64, data: Vec<u8>) {
         let ask = Ask { token: Token(token), what: "the test", command: Command::SEND_RR_DATA, data };
         self.originator.ask(ask);
     }
 
-    /// Goes on until the condition holds, which must come within `most`.
+    /// Runs until the condition is true, which must happen within `most`.
     pub fn until(&mut self, most: Duration, condition: impl Fn(&Self) -> bool) {
         let end = self.now + most;
         while !condition(self) {
@@ -169,13 +169,13 @@ impl World {
         }
     }
 
-    /// Goes on for a while.
+    /// Runs for this time.
     pub fn run(&mut self, time: Duration) {
         let end = self.now + time;
         while self.step(end) {}
     }
 
-    /// Does what is next, or nothing after `end`.
+    /// Executes the next event, if it is before `end`.
     fn step(&mut self, end: Now) -> bool {
         self.settle();
         let next = self.wire.peek().map(|Reverse((at, ..))| *at);
@@ -193,7 +193,7 @@ impl World {
         true
     }
 
-    /// Lets both ends do all they have to do now.
+    /// Lets both ends finish all current work.
     fn settle(&mut self) {
         loop {
             let action = self.originator.poll(self.now);
@@ -243,14 +243,14 @@ impl World {
         }
     }
 
-    /// By TCP.
+    /// Sends by TCP.
     fn send(&mut self, packet: Packet) {
         if self.cable {
             self.put(self.now + TRIP, packet);
         }
     }
 
-    /// By UDP.
+    /// Sends by UDP.
     fn launch(&mut self, outward: bool, to: SocketAddrV4, bytes: &[u8]) {
         if !self.cable {
             return;

@@ -9,12 +9,12 @@ use armctl::controller::yerc::wire::Status;
 use armctl::controller::{Now, Session, Step};
 use armctl::transport::fault::{FaultSpec, Faults};
 
-/// How long a controller takes to answer.
+/// Answer time of a controller.
 const SERVICE_TIME: Duration = Duration::from_millis(8);
-/// More steps than any session needs: one that takes more will never end.
+/// Upper limit of the steps of a session; a session with more steps does not end.
 const MOST_STEPS: usize = 100_000;
 
-/// A class of commands: what a repeat would do.
+/// Class of commands: the effect of a repetition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Class {
     Read,
@@ -23,7 +23,7 @@ pub(crate) enum Class {
     Move,
 }
 
-/// Where a transfer goes.
+/// Direction of a transfer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
     Save,
@@ -31,17 +31,17 @@ pub(crate) enum Way {
     Load,
 }
 
-/// A controller at the far end of a link, with what the tests want to know of it.
+/// A controller at the remote end of a link, with its state for the tests.
 pub(crate) trait Controller {
-    /// The datagrams with which it answers one.
+    /// Datagrams that answer one.
     fn receive(&mut self, now: Now, datagram: &[u8]) -> Vec<Vec<u8>>;
 
-    /// When it sends something by itself.
+    /// Time of the next own datagram.
     fn wake(&self) -> Option<Now> {
         None
     }
 
-    /// What it sends by itself.
+    /// Datagrams that it sends without a request.
     fn transmit(&mut self, _now: Now) -> Vec<Vec<u8>> {
         Vec::new()
     }
@@ -49,57 +49,58 @@ pub(crate) trait Controller {
     /// A request of this class.
     fn order(&mut self, class: Class) -> Request;
 
-    /// Whether it has answered a read with this.
+    /// Whether it has answered a read with this data.
     fn has_answered(&self, data: &[u8]) -> bool;
 
-    /// Whether it has a reason to refuse like this, beside being busy.
+    /// Whether it can refuse with this status for another reason than being busy.
     fn may_refuse(&self, status: Status) -> bool;
 
-    /// How often it carried out a request that changes state, all told. Nothing may be under way to it.
+    /// Total number of executed state-changing requests. No datagram to it may be in transit.
     fn executed(&self) -> u32;
 
-    /// Has a file of this content, and tells what to name in the request and what a transfer in this direction brings.
+    /// Creates a file with this content. Returns the name for the request and the content that a transfer in this
+    /// direction yields.
     fn offer(&mut self, way: Way, content: &[u8]) -> (&'static [u8], Vec<u8>);
 
-    /// Removes the file that was stored by an upload, where that can be done.
+    /// Removes the file of an upload, if possible.
     fn forget(&mut self);
 
-    /// The file that was stored by an upload.
+    /// The file of an upload.
     fn stored(&self) -> Option<Vec<u8>>;
 
-    /// Whether it may leave out blocks of a file when frames are lost.
+    /// Whether it can omit blocks of a file when frames are lost.
     fn skips(&self) -> bool;
 }
 
-/// Where a datagram is heading.
+/// Destination of a datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum To {
     Client,
     Controller,
 }
 
-/// A datagram on its way: when it arrives, a number that keeps the order of equals, where to, and what.
+/// A datagram in transit: arrival time, a number that keeps the order of equal times, destination, bytes.
 type Flight = Reverse<(Now, u64, To, Vec<u8>)>;
 
-/// What a session did.
+/// Result of a session.
 pub(crate) struct Run<O> {
-    /// How it ended.
+    /// Its end.
     pub(crate) outcome: O,
-    /// The content it handed out.
+    /// Content that it delivered.
     pub(crate) data: Vec<u8>,
-    /// Every frame it sent.
+    /// Every frame that it sent.
     pub(crate) sent: Vec<Vec<u8>>,
-    /// Refusals the controller gave meanwhile because it was busy.
+    /// Number of busy refusals of the controller.
     pub(crate) busy: usize,
-    /// From its first step to its last.
+    /// Duration from its first to its last step.
     pub(crate) lasted: Duration,
-    /// From its last progress (content, or a frame that is new but for its id) to its end.
+    /// Duration from its last progress (content, or a new frame apart from the id) to its end.
     pub(crate) idle: Duration,
 }
 
-/// A client's end, a faulty wire and a controller.
+/// A client, a faulty wire and a controller.
 pub(crate) struct Link<C> {
-    /// The controller.
+    /// Controller.
     pub(crate) controller: C,
     now: Now,
     there: Faults,
@@ -108,7 +109,7 @@ pub(crate) struct Link<C> {
     launched: u64,
     /// Busy refusals so far.
     busy: usize,
-    /// Client frames until one is lost for certain.
+    /// Number of client frames until one is lost.
     lose_in: Option<usize>,
 }
 
@@ -127,12 +128,12 @@ impl<C: Controller> Link<C> {
         }
     }
 
-    /// Loses the client's frame of this number, counted from 0.
+    /// Loses the client frame with this number, starting with 0.
     pub(crate) fn lose_client_frame(&mut self, number: usize) {
         self.lose_in = Some(number);
     }
 
-    /// Runs a session to its end; `feed` answers its calls for content.
+    /// Runs a session to its end; `feed` provides content for it.
     pub(crate) fn run<S: Session>(&mut self, session: &mut S, mut feed: impl FnMut(&mut S)) -> Run<S::Outcome> {
         let (started, busy) = (self.now, self.busy);
         let mut progress = started;
@@ -165,14 +166,14 @@ impl<C: Controller> Link<C> {
         panic!("the session has not ended after {MOST_STEPS} steps at {:?}", self.now);
     }
 
-    /// Lets everything arrive that is under way.
+    /// Delivers all datagrams in transit.
     pub(crate) fn settle(&mut self) {
         while !self.flights.is_empty() {
             self.advance(Now::MAX, |_, _| {});
         }
     }
 
-    /// The next arrival, what the controller does by itself, or `until` if neither is before.
+    /// The next arrival or own datagram of the controller, or `until` if it is earlier.
     fn advance(&mut self, until: Now, handle: impl FnOnce(Now, &[u8])) {
         let arrival = self.flights.peek().map_or(until, |Reverse((at, ..))| (*at).min(until));
         if let Some(at) = self.controller.wake().filter(|at| *at < arrival) {

@@ -1,8 +1,8 @@
-//! The sessions against a controller behind a bad link, in virtual time.
+//! Sessions with a controller on a bad link, in virtual time.
 //!
-//! Every combination of fault, controller, command class, transfer and file size runs under many seeds. What must hold
-//! is little and absolute: no wrong data is ever reported as success, a change leaves once unless it was refused as
-//! busy, nothing outlives its deadline, and every end is one of the typed ones.
+//! Every combination of fault, controller, command class, transfer and file size runs with many seeds. The guarantees
+//! are absolute: no wrong data is reported as success, a change is sent once unless it was refused as busy, no session
+//! outlives its deadline, and every end is a typed one.
 
 mod link;
 mod model;
@@ -20,7 +20,7 @@ use armctl::transport::fault::{FaultSpec, Share};
 use link::{Class, Controller, Link, Run, Way};
 use model::{Manners, Model};
 
-/// Each fault alone, all in moderation, all at their worst.
+/// Each fault alone, all moderately, all at the maximum.
 const FAULTS: [&str; 8] = [
     "drop=10%",
     "dup=20%",
@@ -49,7 +49,7 @@ fn file_request(service: u8, data: &[u8]) -> RequestFrame<'_> {
     RequestFrame { division, ack: false, id: 0, block: 0, command: 0, instance: 0, attribute: 0, service, data }
 }
 
-/// Bytes that differ from block to block.
+/// Bytes that differ in each block.
 fn content(size: usize, seed: u64) -> Vec<u8> {
     let mut bytes = vec![0; size];
     fastrand::Rng::with_seed(seed ^ 0xC0_FFEE).fill(&mut bytes);
@@ -65,7 +65,7 @@ fn link_to(manners: Manners, faults: FaultSpec) -> Link<Model> {
 
 const CLASSES: [Class; 4] = [Class::Read, Class::Write, Class::Start, Class::Move];
 
-/// What one exchange did.
+/// Result of one exchange.
 struct Exchanged {
     class: Class,
     ended: Ended,
@@ -80,7 +80,7 @@ fn exchange(link: &mut Link<impl Controller>, class: Class, ids: &Ids) -> Exchan
     let run = link.run(&mut session, |_| unreachable!("an exchange asks for no content"));
     let what = format!("{class:?}: {:?} after {:?}, {:?}", run.outcome, run.lasted, session.counters());
 
-    // After a busy refusal at the last moment, a change still has its one try.
+    // After a late busy refusal, a change still has its one try.
     let last_try = if class == Class::Read { Duration::ZERO } else { policy.timeout };
     assert!(run.lasted <= policy.patience() + last_try, "{what}");
     assert!(run.data.is_empty(), "{what}");
@@ -94,13 +94,13 @@ fn exchange(link: &mut Link<impl Controller>, class: Class, ids: &Ids) -> Exchan
         (Ended::NoAnswer(_) | Ended::OutcomeUnknown(_), _) => panic!("{what}"),
     }
     if class != Class::Read {
-        // Counted at the controller: a second copy of a refusal must not pass for a second refusal.
+        // Counted at the controller: a duplicate of a refusal must not count as a second refusal.
         assert!((1..=1 + run.busy).contains(&run.sent.len()), "{} left, {} busy; {what}", run.sent.len(), run.busy);
     }
     Exchanged { class, ended: run.outcome, sends: run.sent.len() }
 }
 
-/// Several exchanges of every class over one link, so that what comes late meets the ones that follow.
+/// Several exchanges of every class on one link, so that late datagrams meet later exchanges.
 fn exchanges(mut link: Link<impl Controller>) -> (Vec<Exchanged>, u32) {
     let ids = Ids::default();
     let done = CLASSES.iter().cycle().take(12).map(|&class| exchange(&mut link, class, &ids)).collect();
@@ -112,13 +112,13 @@ fn answered_well(exchanged: &Exchanged) -> bool {
     matches!(&exchanged.ended, Ended::Answered(reply) if reply.status.is_ok())
 }
 
-/// What must hold of any exchanges under these faults.
+/// Checks the guarantees of exchanges under these faults.
 fn check_exchanges(faults: &FaultSpec, link: Link<impl Controller>) {
     let (all, executed) = exchanges(link);
     let changes = || all.iter().filter(|exchanged| exchanged.class != Class::Read);
     let done = changes().filter(|exchanged| answered_well(exchanged)).count();
     let executed = usize::try_from(executed).expect("few executions");
-    // Whether a change was done at all, and done once, is only in the client's hands if nobody doubles it.
+    // Without duplication, the client alone decides whether a change is executed, and only once.
     assert!(executed >= done, "{faults}: {done} reported as done, {executed} executed");
     let most =
         if faults.dup == Share::NONE { changes().count() } else { 2 * changes().map(|it| it.sends).sum::<usize>() };
@@ -126,7 +126,7 @@ fn check_exchanges(faults: &FaultSpec, link: Link<impl Controller>) {
 }
 
 #[test]
-fn exchanges_keep_their_promises_under_every_fault() {
+fn exchanges_keep_their_guarantees_under_every_fault() {
     for text in FAULTS {
         for seed in 0..EXCHANGE_SEEDS {
             let faults = spec(text, seed);
@@ -136,7 +136,7 @@ fn exchanges_keep_their_promises_under_every_fault() {
 }
 
 #[test]
-fn without_loss_every_exchange_is_answered() {
+fn answers_every_exchange_without_loss() {
     for text in ["seed=0", "delay=0..50ms", "dup=20%"] {
         for seed in 0..EXCHANGE_SEEDS {
             let (all, _) = exchanges(link_to(Manners::Resends, spec(text, seed)));
@@ -146,7 +146,7 @@ fn without_loss_every_exchange_is_answered() {
 }
 
 #[test]
-fn moderate_loss_hardly_stops_a_read() {
+fn reads_survive_moderate_loss() {
     let (mut reads, mut good) = (0, 0);
     for seed in 0..EXCHANGE_SEEDS {
         let (all, _) = exchanges(link_to(Manners::Resends, spec(MODERATE, seed)));
@@ -160,7 +160,7 @@ fn moderate_loss_hardly_stops_a_read() {
 
 const WAYS: [Way; 3] = [Way::Save, Way::List, Way::Load];
 
-/// The kinds of ends of transfers.
+/// Kinds of ends of transfers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
     Success,
@@ -168,11 +168,11 @@ enum End {
     Violated,
     NoAnswer,
     Unknown,
-    /// The request for an upload was not answered. It leaves once.
+    /// The request for an upload was not answered. It is sent once.
     Unopened,
 }
 
-/// Runs a transfer, checks all that must hold whatever happens, and tells how it ended.
+/// Runs a transfer, checks all guarantees, and returns its end.
 fn transfer(link: &mut Link<impl Controller>, way: Way, content: &[u8], ids: &Ids) -> End {
     match way {
         Way::Save | Way::List => download(link, way, content, ids),
@@ -228,7 +228,7 @@ fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
     let mut session = Upload::new(&request, policy, ids);
     let mut pieces = content.chunks(1000);
     let Run { outcome, idle, sent, .. } = link.run(&mut session, |session| match pieces.next() {
-        // The end comes with the last piece or after it.
+        // The end is reported with the last piece or after it.
         Some(piece) => session.feed(piece, pieces.len() == 0 && content.len().is_multiple_of(2)),
         None => session.feed(&[], true),
     });
@@ -285,7 +285,7 @@ fn successes(ends: &[End]) -> usize {
     ends.iter().filter(|end| **end == End::Success).count()
 }
 
-/// Moderate loss leaves the request of some uploads unanswered, and stops hardly any other transfer.
+/// Moderate loss leaves the request of some uploads unanswered, and stops very few other transfers.
 fn check_moderate_loss(ends: &[End]) {
     let unopened = ends.iter().filter(|end| **end == End::Unopened).count();
     assert!(
@@ -299,14 +299,14 @@ fn check_moderate_loss(ends: &[End]) {
 }
 
 #[test]
-fn transfers_keep_their_promises_under_every_fault() {
+fn transfers_keep_their_guarantees_under_every_fault() {
     let mut seen = BTreeSet::new();
     for text in FAULTS {
         for manners in MANNERS {
             seen.extend(transfers(text, manners, TRANSFER_SEEDS));
         }
     }
-    // Or the checks above have not been put to the test.
+    // Otherwise the checks above have not been exercised.
     assert!(seen.into_iter().eq([
         End::Success,
         End::Refused,
@@ -318,7 +318,7 @@ fn transfers_keep_their_promises_under_every_fault() {
 }
 
 #[test]
-fn without_faults_every_transfer_succeeds() {
+fn every_transfer_succeeds_without_faults() {
     for manners in MANNERS {
         for text in ["seed=0", "delay=0..50ms"] {
             let ends = transfers(text, manners, 3);
@@ -328,7 +328,7 @@ fn without_faults_every_transfer_succeeds() {
 }
 
 #[test]
-fn doubling_and_reordering_alone_stop_no_transfer_with_a_controller_that_resends() {
+fn transfers_survive_duplication_and_reordering_if_the_controller_resends() {
     for text in ["dup=20%", "reorder=15%", "dup=100%"] {
         let ends = transfers(text, Manners::Resends, 10);
         assert_eq!(successes(&ends), ends.len(), "{text}");
@@ -336,13 +336,13 @@ fn doubling_and_reordering_alone_stop_no_transfer_with_a_controller_that_resends
 }
 
 #[test]
-fn moderate_loss_hardly_stops_a_transfer_with_a_controller_that_resends() {
+fn transfers_survive_moderate_loss_if_the_controller_resends() {
     check_moderate_loss(&transfers(MODERATE, Manners::Resends, TRANSFER_SEEDS));
 }
 
-/// Transfers that follow each other over one link: what comes late from one meets the next.
+/// Consecutive transfers on one link: late datagrams of one meet the next.
 #[test]
-fn transfers_in_a_row_do_not_mix() {
+fn consecutive_transfers_do_not_mix() {
     for text in FAULTS {
         for seed in 0..TRANSFER_SEEDS {
             let mut link = link_to(Manners::Resends, spec(text, seed));
@@ -357,9 +357,9 @@ fn transfers_in_a_row_do_not_mix() {
     }
 }
 
-/// The last ACK gets lost: the controller sends its last block again, and the session that has ended acknowledges it.
+/// If the last ACK is lost, the controller sends its last block again, and the ended session acknowledges it.
 #[test]
-fn a_lost_last_ack_is_made_good_by_lingering() {
+fn lingering_repairs_a_lost_last_ack() {
     let mut link = link_to(Manners::Resends, FaultSpec::default());
     let (name, _) = link.controller.offer(Way::Save, &[7; 600]);
     let request = file_request(0x16, name);

@@ -1,4 +1,4 @@
-//! A controller in a few lines, with byte handling of its own: it shares nothing with the code under test.
+//! A minimal controller with its own byte handling, independent of the code under test.
 
 use armctl::controller::Now;
 use armctl::controller::yerc::request::Request;
@@ -6,39 +6,39 @@ use armctl::controller::yerc::wire::Status;
 
 use super::link::{Class, Controller, Way};
 
-/// What every read answers.
+/// Answer to every read.
 const STATE: [u8; 8] = [0x42, 0, 0, 0, 0x40, 0, 0, 0];
-/// The refusal of a block that is not due (DX chapter 4).
+/// Refusal of an unexpected block (DX chapter 4).
 const WRONG_BLOCK: u32 = 0xE4A1;
-/// The refusal of an ACK without a transfer (DX chapter 4).
+/// Refusal of an ACK without a transfer (DX chapter 4).
 const NO_SUCH_ACK: u32 = 0xE4A2;
 
 const LAST: u32 = 0x8000_0000;
 const BLOCK: usize = 479;
 
-/// What a controller makes of frames that come twice; the manuals do not say.
+/// Handling of duplicate frames; the manuals do not specify it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Manners {
-    /// It knows a frame by its id and number and sends its last frame again.
+    /// Recognizes a frame by its id and number, and sends its last frame again.
     Resends,
-    /// It takes every ACK as a call for the next block and every request as a new one, and never sends twice.
+    /// Handles every ACK as a request for the next block and every request as a new one, and never sends a frame again.
     Naive,
 }
 
-/// A transfer, from the controller's side.
+/// Transfer state of the controller.
 enum Transfer {
     None,
-    /// Block `block` of a file has been sent with `service`.
+    /// Block `block` of a file was sent with `service`.
     Out {
         id: u8,
         service: u8,
         block: u32,
     },
-    /// Every block has been acknowledged.
+    /// Every block was acknowledged.
     OutDone {
         id: u8,
     },
-    /// Blocks up to `taken` have come.
+    /// Blocks up to `taken` were received.
     In {
         id: u8,
         taken: u32,
@@ -51,7 +51,7 @@ enum Transfer {
     },
 }
 
-/// The controller.
+/// Controller.
 pub(crate) struct Model {
     manners: Manners,
     busy_per_10_000: u16,
@@ -62,7 +62,7 @@ pub(crate) struct Model {
     transfer: Transfer,
 }
 
-/// The fields of a client's frame.
+/// Fields of a client frame.
 struct Frame<'a> {
     division: u8,
     ack: bool,
@@ -125,7 +125,7 @@ impl Model {
         matches!(self.transfer, Transfer::Out { .. } | Transfer::In { .. })
     }
 
-    /// The block that waits for its ACK, once more.
+    /// The block that waits for its ACK, again.
     pub(crate) fn resend(&self) -> Option<Vec<u8>> {
         match self.transfer {
             Transfer::Out { id, service, block } => Some(self.block(id, service, block)),
@@ -138,7 +138,7 @@ impl Model {
         frame(2, id, self.marked(number), service, [0, 0], 0, data)
     }
 
-    /// The number of a block as it is sent.
+    /// Block number as sent.
     fn marked(&self, number: u32) -> u32 {
         let last = number as usize == self.file.len().div_ceil(BLOCK);
         if last { number | LAST } else { number }
@@ -179,7 +179,7 @@ impl Model {
         }
     }
 
-    /// An ACK of the client.
+    /// Handles an ACK of the client.
     fn acknowledged(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
         let resends = self.manners == Manners::Resends;
         match self.transfer {
@@ -200,7 +200,7 @@ impl Model {
         }
     }
 
-    /// A data block of the client.
+    /// Handles a data block of the client.
     fn loaded(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
         let resends = self.manners == Manners::Resends;
         let number = frame.block & !LAST;

@@ -1,4 +1,4 @@
-//! The simulator of this project behind the same bad links: what a bad line does to a controller with a life.
+//! The simulator of this project on the same bad links.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -29,25 +29,25 @@ const MODELS: [Model; 2] = [Dx200, Fs100];
 const EXCHANGE_SEEDS: u64 = 150;
 const TRANSFER_SEEDS: u64 = 25;
 
-/// The client under test, and one that looks on.
+/// The client under test, and an observer.
 const CLIENT: u64 = 1;
 const ONLOOKER: u64 = 2;
-/// Longer than anything that a controller has begun goes on, the wait for a lost client included.
+/// Longer than all work of a controller, including its wait for a lost client.
 const REST: Duration = Duration::from_secs(30);
 /// Longer than the simulator takes for a backup.
 const LONG: Duration = Duration::from_secs(600);
-/// The first of the D variables that are written, each once.
+/// First of the written D variables; each is written once.
 const FIRST_WRITTEN: u16 = 10;
-/// How far each move goes along X, in micrometres.
+/// Distance of each move along X, in micrometres.
 const STEP: i32 = 1000;
-/// The content of a file of this many bytes, which the client saves.
+/// Content of a file of this size, which the client saves.
 const SEED: u64 = 0;
-/// Refusals of what arrives damaged, out of turn, or while something moves (DX chapter 4).
+/// Refusals of damaged, unexpected or conflicting requests (DX chapter 4).
 const REFUSALS: [u32; 9] = [0x2010, 0xE28B, 0xE49E, 0xE4A1, 0xE4A2, 0xE4A3, 0xE4A5, 0xE4A6, 0xE4A7];
-/// No such file, which an FS100 says of an empty one too.
+/// Missing file; an FS100 also reports this for an empty one.
 const NO_SUCH_FILE: u32 = 0xE2B3;
 
-/// The simulator, and what it was asked and has answered.
+/// The simulator with its requests and answers.
 #[derive(Clone)]
 struct Simulated {
     simulator: Simulator,
@@ -67,7 +67,7 @@ fn start(model: Model) -> Start {
     Start::parse(&text, |size| Ok(content(size.parse().expect("a size"), SEED))).expect("a good start state")
 }
 
-/// The file of this size that is there from the start.
+/// The file of this size in the start state.
 fn name(size: usize) -> &'static [u8] {
     match size {
         0 => b"EMPTY.DAT",
@@ -88,7 +88,7 @@ impl Simulated {
         Self { simulator: Simulator::new(start), model, now: Now::ZERO, written: 0, read: BTreeSet::new() }
     }
 
-    /// The same controller when all is at rest and never busy, to be looked at.
+    /// The same controller at rest and never busy, for reading its state.
     fn rested(&self) -> Self {
         let mut copy = self.clone();
         copy.now += REST;
@@ -96,7 +96,7 @@ impl Simulated {
         copy
     }
 
-    /// What the onlooker is answered, after as many attempts as a busy controller wants.
+    /// Answer to the observer, with retries while the controller is busy.
     fn look<Q: Query>(&mut self, query: &Q) -> Q::Answer {
         loop {
             self.simulator.receive(self.now, Division::Robot, ONLOOKER, &query.request().frame(1));
@@ -115,7 +115,7 @@ impl Simulated {
         }
     }
 
-    /// A file as the onlooker fetches it, who can wait.
+    /// File as fetched by the observer, with waiting.
     fn file(&mut self, name: &[u8]) -> Option<Vec<u8>> {
         let session = Download::new(&file_request(0x16, name), 1 << 20, Policy::default(), &Ids::default());
         let mut session = session.with_first_wait(LONG);
@@ -131,7 +131,7 @@ impl Simulated {
 
     fn exchange(&mut self, peer: u64, now: Now, datagram: &[u8]) -> Vec<Vec<u8>> {
         self.now = self.now.max(now);
-        // Sockets are bound to one port, so what arrives damaged arrives at the right one.
+        // Sockets have one port, so damaged datagrams arrive at the right one.
         let division = if datagram.get(9) == Some(&2) { Division::File } else { Division::Robot };
         self.simulator.receive(self.now, division, peer, datagram);
         self.transmit(now)
@@ -233,7 +233,7 @@ impl Controller for Simulated {
     }
 }
 
-/// The other client, on a line without faults.
+/// The other client, on a link without faults.
 struct Onlooker<'a>(&'a mut Simulated);
 
 impl Controller for Onlooker<'_> {
@@ -284,7 +284,7 @@ thread_local! {
     static STARTS: [OnceCell<Start>; 2] = const { [OnceCell::new(), OnceCell::new()] };
 }
 
-/// The start state of a model, which takes longer to read than to copy.
+/// Start state of a model, cached because parsing it takes longer than copying.
 fn start_of(model: Model) -> Start {
     STARTS.with(|starts| starts[usize::from(model == Fs100)].get_or_init(|| start(model)).clone())
 }
@@ -294,7 +294,7 @@ fn link_to(model: Model, faults: FaultSpec) -> Link<Simulated> {
 }
 
 #[test]
-fn exchanges_keep_their_promises_under_every_fault() {
+fn exchanges_keep_their_guarantees_under_every_fault() {
     for model in MODELS {
         for text in FAULTS {
             for seed in 0..EXCHANGE_SEEDS {
@@ -306,7 +306,7 @@ fn exchanges_keep_their_promises_under_every_fault() {
 }
 
 #[test]
-fn without_faults_everything_is_done_once() {
+fn executes_everything_once_without_faults() {
     for model in MODELS {
         for text in ["seed=0", "delay=0..50ms"] {
             let (all, executed) = exchanges(link_to(model, spec(text, 3)));
@@ -331,19 +331,19 @@ fn transfers(model: Model, text: &str, seeds: u64) -> Vec<End> {
 }
 
 #[test]
-fn transfers_keep_their_promises_under_every_fault() {
+fn transfers_keep_their_guarantees_under_every_fault() {
     let mut seen = BTreeSet::new();
     for model in MODELS {
         for text in FAULTS {
             seen.extend(transfers(model, text, TRANSFER_SEEDS));
         }
     }
-    // Or the checks have not been put to the test.
+    // Otherwise the checks have not been exercised.
     assert!(seen.into_iter().eq([End::Success, End::Refused, End::NoAnswer, End::Unknown, End::Unopened]));
 }
 
 #[test]
-fn without_loss_every_transfer_succeeds() {
+fn every_transfer_succeeds_without_loss() {
     for text in ["seed=0", "delay=0..50ms", "dup=20%", "dup=100%", "reorder=15%"] {
         let ends = transfers(Dx200, text, 10);
         assert_eq!(successes(&ends), ends.len(), "{text}");
@@ -351,13 +351,13 @@ fn without_loss_every_transfer_succeeds() {
 }
 
 #[test]
-fn moderate_loss_hardly_stops_a_transfer() {
+fn transfers_survive_moderate_loss() {
     check_moderate_loss(&transfers(Dx200, "drop=5%,dup=2%,delay=0..50ms,reorder=3%", TRANSFER_SEEDS));
 }
 
-/// Transfers that follow each other over one link: what comes late from one meets the next.
+/// Consecutive transfers on one link: late datagrams of one meet the next.
 #[test]
-fn transfers_in_a_row_do_not_mix() {
+fn consecutive_transfers_do_not_mix() {
     for text in FAULTS {
         for seed in 0..TRANSFER_SEEDS {
             let mut link = link_to(Dx200, spec(text, seed));
@@ -372,9 +372,9 @@ fn transfers_in_a_row_do_not_mix() {
     }
 }
 
-/// The first request makes the backup and is answered long after; the second fetches it.
+/// The first request makes the backup and is answered much later; the second fetches it.
 #[test]
-fn a_batch_backup_is_whole_or_fails() {
+fn batch_backup_is_complete_or_fails() {
     let mut seen = BTreeSet::new();
     for model in MODELS {
         for text in FAULTS {
@@ -390,7 +390,7 @@ fn a_batch_backup_is_whole_or_fails() {
     assert!(seen.iter().all(|(_, second)| *second != End::Unknown));
 }
 
-/// One of the two requests of a batch backup; `first_wait` tells them apart.
+/// One of the two requests of a batch backup; `first_wait` distinguishes them.
 fn backup(link: &mut Link<Simulated>, ids: &Ids, first_wait: Option<Duration>) -> End {
     let order = batch_backup();
     let request = file_request(order.service, &order.data);

@@ -1,16 +1,16 @@
-//! A desk with an inventory of its own.
+//! Test environment with an inventory.
 
 use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A home of a test's own, where the inventory, sessions and files are.
+/// Home folder of a test, with inventory, sessions and files.
 pub struct Desk {
     pub folder: TempDir,
 }
 
-/// What a command line came to.
+/// Result of a command line.
 #[derive(Debug)]
 pub struct Came {
     pub exit: Option<i32>,
@@ -27,7 +27,7 @@ impl Desk {
         Self { folder }
     }
 
-    /// A command line, its words between blanks.
+    /// A command line, with words separated by blanks.
     pub fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
         command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path().join("run"));
@@ -36,12 +36,12 @@ impl Desk {
         command
     }
 
-    /// Runs a command line where nobody can be asked.
+    /// Runs a command line without a terminal for questions.
     pub fn run(&self, line: &str) -> Came {
         came(&self.command(line).output().expect("it runs"))
     }
 
-    /// The `data` of a command line that must succeed.
+    /// `data` of a command line that must succeed.
     #[track_caller]
     pub fn data(&self, line: &str) -> Value {
         let came = self.run(&format!("{line} --json"));
@@ -49,7 +49,7 @@ impl Desk {
         serde_json::from_str::<Value>(&came.stdout).expect("JSON")["data"].clone()
     }
 
-    /// Demands an exit code and a part of what is said on stderr.
+    /// Asserts an exit code and a part of stderr.
     #[track_caller]
     pub fn fails(&self, line: &str, exit: i32, part: &str) {
         let came = self.run(line);

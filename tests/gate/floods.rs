@@ -1,5 +1,5 @@
-//! Peers that send without end, little by little, or something else than what was asked: a command ends with an error, in
-//! its time, and its memory stays flat.
+//! Peers that send endlessly, slowly, or wrong data: a command ends in time with an error, and its memory use stays
+//! constant.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::{TcpListener, UdpSocket};
@@ -16,14 +16,14 @@ use super::desk::{Came, Desk, came};
 #[derive(Debug, Clone, Copy)]
 enum Manner {
     Floods,
-    /// One byte, or datagram, after the other, each long before the time of a try is over.
+    /// Single bytes or datagrams, each long before the timeout of a try.
     Trickles,
 }
 
 const MANNERS: [Manner; 2] = [Manner::Floods, Manner::Trickles];
 
 impl Manner {
-    /// Sends this again and again, until nobody takes it any more.
+    /// Sends this repeatedly until the peer closes.
     fn send(self, text: &[u8], mut send: impl FnMut(&[u8]) -> bool) {
         match self {
             Self::Floods => while send(text) {},
@@ -49,7 +49,7 @@ fn tcp(text: &'static [u8], manner: Manner) -> u16 {
     port
 }
 
-/// A UDP server that sends this to whoever asks.
+/// A UDP server that answers every request with this.
 fn udp(manner: Manner) -> u16 {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let port = socket.local_addr().expect("an address").port();
@@ -65,7 +65,7 @@ fn udp(manner: Manner) -> u16 {
     port
 }
 
-/// A serial line on which this comes; it ends with the first one that is returned.
+/// A serial line with this input, until the returned handle is dropped.
 fn pty(text: &'static [u8], manner: Manner) -> (TTYPort, String) {
     let (mut master, port) = TTYPort::pair().expect("a pseudo-terminal");
     let path = port.name().expect("it has a name");
@@ -74,7 +74,7 @@ fn pty(text: &'static [u8], manner: Manner) -> (TTYPort, String) {
     (port, path)
 }
 
-/// What came of a line, with little memory, and a minute at the most.
+/// Result of a line, with limited memory and a limit of one minute.
 fn run(desk: &Desk, target: &str, line: &str) -> Came {
     let armctl = env!("CARGO_BIN_EXE_armctl");
     let line = format!("ulimit -v 900000; exec timeout 60 {armctl} -t '{target}' --timeout 500ms --yes {line}");
@@ -84,7 +84,7 @@ fn run(desk: &Desk, target: &str, line: &str) -> Came {
 }
 
 #[test]
-fn an_slcan_adapter_that_floods_is_given_up() {
+fn gives_up_a_flooding_slcan_adapter() {
     let desk = Desk::new("");
     for text in [&b"t4058AABBCCDDEEFF0011\r"[..], b"t42b8AABBCCDDEEFF0011\r", b"\r", b"t"] {
         let target = format!("slcan://127.0.0.1:{}?mac=5", tcp(text, Manner::Floods));
@@ -96,7 +96,7 @@ fn an_slcan_adapter_that_floods_is_given_up() {
 }
 
 #[test]
-fn who_sends_without_end_or_little_by_little_holds_up_no_command() {
+fn flooding_and_trickling_peers_do_not_block_commands() {
     let desk = Desk::new("");
     let check = |target: &str, cases: &[(&str, i32, &str)]| {
         for (line, exit, part) in cases {
@@ -127,9 +127,9 @@ fn who_sends_without_end_or_little_by_little_holds_up_no_command() {
     }
 }
 
-/// A device server behind which something else is: each question has its tries, and the next one is not asked.
+/// Another program behind a device server: the first request has its tries, and no other request is sent.
 #[test]
-fn what_answers_something_else_is_asked_one_question() {
+fn sends_one_request_to_an_unknown_peer() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     let asked = Arc::new(Mutex::new(Vec::new()));

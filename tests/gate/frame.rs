@@ -1,4 +1,4 @@
-//! What holds for every family.
+//! Rules for every family.
 
 use super::desk::Desk;
 use crate::support::simulator::Simulator;
@@ -8,7 +8,7 @@ fn entry(name: &str, target: &str, more: &str) -> String {
 }
 
 #[test]
-fn read_only_binds_the_address_whatever_names_it() {
+fn read_only_applies_to_every_name_of_an_address() {
     let controller = Simulator::start("yerc");
     let (address, settings) = controller.place();
     let desk = Desk::new(&entry("line3", &controller.url, "read_only = true"));
@@ -21,7 +21,7 @@ fn read_only_binds_the_address_whatever_names_it() {
         for order in ["var set B0=1", "servo on --yes", "file delete A.JBI --yes"] {
             desk.fails(&format!("{spelling} yerc {order}"), 7, "is read-only");
         }
-        // To stop it is always allowed, and to read.
+        // Stops and reads are always allowed.
         assert_eq!(desk.run(&format!("{spelling} yerc hold on")).exit, Some(0));
         assert!(desk.data(&format!("{spelling} yerc var get B0")).to_string().contains("\"value\":0"));
     }
@@ -31,11 +31,11 @@ fn read_only_binds_the_address_whatever_names_it() {
 }
 
 #[test]
-fn a_session_of_a_read_only_robot_passes_reads_and_stops_whoever_asks() {
+fn session_of_a_read_only_robot_passes_reads_and_stops_only() {
     let controller = Simulator::start("yerc");
     let desk = Desk::new(&entry("line3", &controller.url, "read_only = true"));
     assert_eq!(desk.run("-r line3 session open --background").exit, Some(0));
-    // A client that knows nothing of the entry: the same address in an inventory of its own.
+    // A client without this entry: the same address in another inventory.
     std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
     let around = |words: &str| desk.run(&format!("--config other.toml -t {} yerc {words}", controller.url));
     let refused = around("var set B0=1");
@@ -46,10 +46,10 @@ fn a_session_of_a_read_only_robot_passes_reads_and_stops_whoever_asks() {
     assert_eq!(desk.run("session close line3").exit, Some(0));
 }
 
-/// A session that was opened before the robot became read-only passes no change from then on, and tells a client that
-/// knows nothing of it why.
+/// A session that was opened before the robot became read-only passes no change from then on, and reports the reason to
+/// a client with another inventory.
 #[test]
-fn read_only_holds_in_a_session_that_is_open_already() {
+fn read_only_applies_to_an_open_session() {
     for (family, changes, stop, read) in [
         ("yerc", &["var set B0=1", "servo on --yes", "var set B0=2"][..], "hold on", "var get B0"),
         ("toyo", &["host on", "point set 7 1 2 3 4 --yes", "home --yes", "jog X + inch --yes"], "stop", "status"),
@@ -63,7 +63,7 @@ fn read_only_holds_in_a_session_that_is_open_already() {
         let controller = Simulator::start(family);
         let desk = Desk::new(&entry("cell", &controller.url, ""));
         assert_eq!(desk.run("-r cell session open --background").exit, Some(0), "{family}");
-        // An inventory of its own does not know what the other one says.
+        // Another inventory does not have this setting.
         std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
         let around = |words: &str| desk.run(&format!("--config other.toml -t {} {family} {words}", controller.url));
         assert_eq!(around(changes[0]).exit, Some(0), "{family}");
@@ -74,7 +74,7 @@ fn read_only_holds_in_a_session_that_is_open_already() {
             assert!(refused.stderr.contains("is read-only: the session sent nothing"), "{change}: {refused:?}");
         }
         assert_eq!(around(read).exit, Some(0), "{family}: {:?}", around(read));
-        // It never relaxes.
+        // The session stays read-only.
         assert_eq!(desk.run("robots set cell read_only=off").exit, Some(0));
         assert_eq!(around(changes[0]).exit, Some(7), "{family}");
         assert_eq!(around(stop).exit, Some(0), "{family}");
@@ -83,7 +83,7 @@ fn read_only_holds_in_a_session_that_is_open_already() {
 }
 
 #[test]
-fn the_command_connection_of_a_yrcx_is_a_motion_outside_a_session() {
+fn yrcx_command_connection_outside_a_session_is_a_motion() {
     let controller = Simulator::start("yrcx");
     let inventory = [entry("free", &controller.url, ""), entry("kept", "eip://127.0.0.1:1", "read_only = true")];
     let desk = Desk::new(&inventory.concat());
@@ -98,7 +98,7 @@ fn the_command_connection_of_a_yrcx_is_a_motion_outside_a_session() {
 }
 
 #[test]
-fn a_robot_that_wants_it_has_its_session_opened() {
+fn opens_the_session_of_a_robot_with_hold() {
     let controller = Simulator::start("yrcx");
     let desk = Desk::new(&entry("cell", &controller.url, "hold = true"));
     let first = desk.run("-r cell yrcx info version");
@@ -110,7 +110,7 @@ fn a_robot_that_wants_it_has_its_session_opened() {
 }
 
 #[test]
-fn fleets_want_each_robot_named() {
+fn several_robots_must_be_named() {
     let controllers = [Simulator::start("yerc"), Simulator::start("yerc")];
     let inventory: String = controllers
         .iter()
@@ -128,7 +128,7 @@ fn fleets_want_each_robot_named() {
 }
 
 #[test]
-fn a_flag_that_means_nothing_is_a_mistake() {
+fn rejects_flags_without_effect() {
     let desk = Desk::new("");
     for (line, part) in [
         ("robots add foo udp://127.0.0.1 --tag line1", "--tag has no effect"),
@@ -147,7 +147,7 @@ fn a_flag_that_means_nothing_is_a_mistake() {
 }
 
 #[test]
-fn an_endless_motion_wants_an_end_where_nobody_can_give_one() {
+fn endless_motion_needs_a_limit_without_a_terminal() {
     let desk = Desk::new("");
     desk.fails("--sim yrcx jog pulse 1 + --yes", 2, "no terminal for Ctrl-C");
     assert_eq!(desk.run("--sim yrcx jog pulse 1 + --for 50ms --yes").exit, Some(0));

@@ -1,4 +1,4 @@
-//! What the gate lets through, through the built binary: risks, questions, read-only robots, fleets, dry runs.
+//! The safety gate through the built binary: risks, questions, read-only robots, several robots, dry runs.
 
 #![cfg(unix)]
 

@@ -1,4 +1,4 @@
-//! What `docs/safety.md` promises: every sentence has a test, and here are those that no other file has.
+//! Every sentence of `docs/safety.md` has a test. This file has the tests that no other file has.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::desk::Desk;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-/// Names of the tests that a file of Rust has.
+/// Names of the tests in a Rust file.
 fn tests_of(code: &str) -> impl Iterator<Item = &str> {
     code.split("#[test]").skip(1).filter_map(|rest| {
         let (_, named) = rest.split_once("fn ")?;
@@ -69,14 +69,14 @@ fn every_sentence_of_the_page_has_a_test() {
         let missing = names.split(", ").filter(|name| !tests.contains(*name));
         wrong.extend(missing.map(|name| format!("{number}: there is no test '{name}'")));
     }
-    // What is a list in any other way would be a promise without a number.
+    // A list without numbers would be a rule without a number.
     wrong.extend(page.lines().filter(|line| line.trim_start().starts_with(['-', '*'])).map(str::to_owned));
     assert_eq!(page.matches("<!-- test: ").count(), sentences.len(), "a marker behind no sentence");
     assert!(sentences.len() > 30 && wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn each_risk_needs_what_the_page_says() {
+fn each_risk_needs_the_documented_confirmation() {
     let controller = Simulator::start("yerc");
     let desk = Desk::new("");
     let run = |words: &str| desk.run(&format!("-t {} yerc {words}", controller.url)).exit;
@@ -108,7 +108,7 @@ fn at_terminal(desk: &Desk, line: &str) -> Terminal {
 }
 
 #[test]
-fn the_question_says_where_and_what_and_a_no_sends_nothing() {
+fn question_names_robot_and_action_and_no_sends_nothing() {
     let controller = Simulator::start("yerc");
     let desk = Desk::new(&format!("[[robot]]\nname = \"cell3\"\ntarget = \"{}\"\n", controller.url));
     let position = || desk.data("-r cell3 yerc position")["positions"][1].clone();
@@ -127,7 +127,7 @@ fn the_question_says_where_and_what_and_a_no_sends_nothing() {
 }
 
 #[test]
-fn what_clears_memories_wants_its_word() {
+fn clearing_memory_needs_a_typed_word() {
     let controllers = [Simulator::start("toyo"), Simulator::start("yrcx")];
     let desk = Desk::new("");
     let [toyo, yrcx] = [0, 1].map(|index| controllers[index].url.as_str());
@@ -138,7 +138,7 @@ fn what_clears_memories_wants_its_word() {
     ] {
         let mut asked = at_terminal(&desk, &line);
         asked.says("REAL CONTROLLER");
-        // Also where its connection is a risk of its own.
+        // Also if the connection itself is a risk.
         asked.says("Type '");
         asked.press("y\r");
         assert_eq!(asked.end().code(), Some(7), "{line}");
@@ -146,7 +146,7 @@ fn what_clears_memories_wants_its_word() {
 }
 
 #[test]
-fn the_simulator_in_the_command_never_asks() {
+fn built_in_simulator_never_asks() {
     let served = Simulator::start("yerc");
     let desk = Desk::new("[[robot]]\nname = \"desk\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n");
     for order in ["servo on", "file delete COUNT.JBI"] {
@@ -158,7 +158,7 @@ fn the_simulator_in_the_command_never_asks() {
 }
 
 #[test]
-fn a_stop_is_always_allowed() {
+fn stop_is_always_allowed() {
     for (family, stop, other) in
         [("yerc", "hold on", "servo on"), ("toyo", "stop", "home"), ("yrcx", "stop", "servo on")]
     {
@@ -170,7 +170,7 @@ fn a_stop_is_always_allowed() {
 }
 
 #[test]
-fn a_dry_run_shows_the_frame_of_the_order() {
+fn dry_run_shows_the_frame_of_the_command() {
     let desk = Desk::new("[[robot]]\nname = \"r\"\ntarget = \"udp://127.0.0.1:1\"\nread_only = true\n");
     let plan = desk.data("-r r yerc servo on --dry-run");
     // Command 0x83, instance 2, attribute 1, service 0x10, the value 1: the end of the frame.

@@ -8,7 +8,7 @@ fn desk(controller: &Simulator, more: &str) -> Desk {
     Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
 }
 
-/// The blocks of a dry run.
+/// Blocks of a dry run.
 fn blocks(desk: &Desk, line: &str) -> Vec<String> {
     let data = desk.data(&format!("-r cell toyo {line} --dry-run"));
     let frames = data["frames"].as_array().expect("frames").iter();
@@ -102,7 +102,7 @@ fn the_confirmation_of_a_start_shows_program_step_position_and_speed() {
 }
 
 #[test]
-fn dry_runs_go_to_their_end() {
+fn dry_runs_plan_to_the_end() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "read_only = true");
     assert_eq!(
@@ -139,7 +139,7 @@ fn dry_runs_go_to_their_end() {
 }
 
 #[test]
-fn a_stop_is_allowed_on_a_read_only_robot() {
+fn stop_is_allowed_on_a_read_only_robot() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "read_only = true");
     assert_eq!(desk.run("-r cell toyo stop").exit, Some(0));

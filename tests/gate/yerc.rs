@@ -1,4 +1,4 @@
-//! What holds for Yaskawa.
+//! Rules for Yaskawa controllers.
 
 use serde_json::Value;
 
@@ -15,7 +15,7 @@ fn desk(controller: &Simulator) -> Desk {
     desk
 }
 
-/// The names of the jobs on the controller.
+/// Names of the jobs on the controller.
 fn jobs(desk: &Desk) -> Vec<String> {
     let data = desk.data("-r cell yerc file list");
     data["files"]
@@ -26,7 +26,7 @@ fn jobs(desk: &Desk) -> Vec<String> {
         .collect()
 }
 
-/// The frames of a dry run: command, instance and service each, and whether something decides about it.
+/// Frames of a dry run: command, instance and service of each, and whether it depends on an answer.
 fn frames(desk: &Desk, line: &str) -> Vec<(String, bool)> {
     let data = desk.data(&format!("-r cell yerc {line} --dry-run"));
     assert_eq!(data["complete"], true, "{line}");
@@ -38,7 +38,7 @@ fn frames(desk: &Desk, line: &str) -> Vec<(String, bool)> {
 }
 
 #[test]
-fn files_are_overwritten_and_deleted_only_after_a_yes() {
+fn overwrites_and_deletes_files_only_after_confirmation() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     let before = jobs(&desk);
@@ -50,7 +50,7 @@ fn files_are_overwritten_and_deleted_only_after_a_yes() {
     );
     assert_eq!(jobs(&desk), before, "nothing was done");
 
-    // What is not there is said, and what is new overwrites nothing.
+    // Missing files are reported; new files overwrite nothing.
     desk.fails("-r cell yerc file delete NONE.JBI", 3, "the file does not exist on the controller");
     assert_eq!(desk.run("-r cell yerc file put NEW.JBI").exit, Some(0));
     assert_eq!(desk.run("-r cell yerc file put HOME.JBI --replace --yes").exit, Some(0));
@@ -59,7 +59,7 @@ fn files_are_overwritten_and_deleted_only_after_a_yes() {
 }
 
 #[test]
-fn a_restore_asks_for_what_differs_alone() {
+fn restore_asks_only_about_differences() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     assert_eq!(desk.run("-r cell yerc backup saved").exit, Some(0));
@@ -75,9 +75,9 @@ fn a_restore_asks_for_what_differs_alone() {
     assert_eq!(desk.run("-r cell restore saved").exit, Some(0), "it is as it was");
 }
 
-/// Parameters of one controller do not go to another, whichever way they are sent.
+/// Parameters of one controller are not sent to another, by any command.
 #[test]
-fn parameters_of_another_controller_are_refused_by_both_commands() {
+fn both_commands_refuse_parameters_of_another_controller() {
     let [one, other] = [Simulator::start("yerc"), Simulator::start("yerc")];
     let desk = desk(&one);
     assert_eq!(desk.run("-r cell yerc backup saved").exit, Some(0));
@@ -88,7 +88,7 @@ fn parameters_of_another_controller_are_refused_by_both_commands() {
 }
 
 #[test]
-fn variables_are_restored_after_a_yes_with_old_and_new() {
+fn restores_variables_after_a_question_with_old_and_new() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     assert_eq!(desk.run("-r cell yerc var set B7=7 R3=1.5").exit, Some(0), "to set one is a write");
@@ -109,7 +109,7 @@ fn variables_are_restored_after_a_yes_with_old_and_new() {
 }
 
 #[test]
-fn a_taught_position_is_overwritten_after_a_yes_by_whatever_verb() {
+fn every_verb_asks_before_overwriting_a_taught_position() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     let sets = "-r cell yerc var set";
@@ -133,14 +133,14 @@ fn a_taught_position_is_overwritten_after_a_yes_by_whatever_verb() {
             format!("raw --command 0x309 --instance 3 --service 0x34 --data 0100000000000000{}", seven.repeat(8)),
             "(EX3: ",
         ),
-        // What cannot be taken apart is asked about as a whole.
+        // A request that cannot be decoded is confirmed as a whole.
         ("raw --command 0x309 --instance 3 --service 0x34 --data 01".to_owned(), "send a raw request"),
     ] {
         desk.fails(&format!("-r cell yerc {line}"), 7, old_and_new);
     }
     assert_eq!(held(), before);
     assert_eq!(desk.data("-r cell yerc var get B1")["items"][0]["value"], 0, "nothing of the line was written");
-    // What is there already, and what is new, wants no yes.
+    // Equal and new data needs no confirmation.
     for line in ["P9=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "P9.tool=0 BP6.axis1=1", "EX4=pulse:1=9"] {
         assert_eq!(desk.run(&format!("{sets} {line}")).exit, Some(0), "{line}");
     }
@@ -157,7 +157,7 @@ fn a_taught_position_is_overwritten_after_a_yes_by_whatever_verb() {
 }
 
 #[test]
-fn a_job_is_started_by_its_name() {
+fn starts_a_job_by_its_name() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     desk.fails("-r cell yerc job start", 7, "would start the selected job");
@@ -167,9 +167,9 @@ fn a_job_is_started_by_its_name() {
     assert_eq!(frames(&desk, "job start"), [("7300 0100 01".to_owned(), false), ("8600 0100 10".to_owned(), false)]);
 }
 
-/// What a person said yes to is what is started.
+/// The job of the question is the job that starts.
 #[test]
-fn a_job_that_was_not_asked_about_is_not_started() {
+fn does_not_start_a_job_that_changed_during_the_question() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     assert_eq!(desk.run("-r cell yerc servo on --yes").exit, Some(0));
@@ -184,9 +184,9 @@ fn a_job_that_was_not_asked_about_is_not_started() {
     }
 }
 
-/// Each axis from where it is to where it goes; whoever moves the robot meanwhile makes the answer worth nothing.
+/// Each axis with start and target; a motion during the question makes the answer invalid.
 #[test]
-fn a_motion_is_asked_about_in_numbers() {
+fn question_of_a_motion_has_numbers() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     assert_eq!(desk.run("-r cell yerc servo on --yes").exit, Some(0));
@@ -219,7 +219,7 @@ fn a_motion_is_asked_about_in_numbers() {
 }
 
 #[test]
-fn a_dry_run_goes_to_its_end() {
+fn dry_run_plans_to_the_end() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     let shown = |line: &str| {

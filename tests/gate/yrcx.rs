@@ -1,4 +1,4 @@
-//! What holds for a YRCX controller.
+//! Rules for YRCX controllers.
 
 use super::desk::Desk;
 use crate::support::simulator::Simulator;
@@ -8,7 +8,7 @@ fn entry(url: &str, more: &str) -> String {
     format!("[[robot]]\nname = \"cell\"\ntarget = \"{url}\"\n{more}\n")
 }
 
-/// A desk with a controller whose connection a session holds.
+/// An environment with a controller and an open session.
 fn held(controller: &Simulator) -> Desk {
     let desk = Desk::new(&entry(&controller.url, ""));
     assert_eq!(desk.run("-r cell session open --background").exit, Some(0));
@@ -16,7 +16,7 @@ fn held(controller: &Simulator) -> Desk {
 }
 
 #[test]
-fn a_motion_through_a_session_is_asked_about_in_numbers() {
+fn question_of_a_motion_through_a_session_has_numbers() {
     let controller = Simulator::start("yrcx");
     let desk = held(&controller);
     assert_eq!(desk.run("-r cell yrcx point set 19 mm=30,40,0,90 --yes").exit, Some(0));
@@ -37,7 +37,7 @@ fn a_motion_through_a_session_is_asked_about_in_numbers() {
         terminal.press("n\n");
         assert_eq!(terminal.end().code(), Some(7), "{line}");
     }
-    // A point that was taught anew meanwhile is another one.
+    // The point was taught again during the question.
     for (x, exit) in [("30", 0), ("31", 7)] {
         let mut terminal = Terminal::start(desk.command("-r cell yrcx move --point 19"), 100, 24).unwrap();
         terminal.says("Continue?");
@@ -49,7 +49,7 @@ fn a_motion_through_a_session_is_asked_about_in_numbers() {
 }
 
 #[test]
-fn taught_points_are_not_overwritten_unasked() {
+fn asks_before_overwriting_taught_points() {
     let controller = Simulator::start("yrcx");
     let desk = held(&controller);
     let point = || desk.data("-r cell yrcx point get 1")["items"][0]["value"]["text"].to_string();
@@ -81,7 +81,7 @@ fn taught_points_are_not_overwritten_unasked() {
 }
 
 #[test]
-fn what_wants_a_word_wants_it_with_its_connection_too() {
+fn typed_word_also_confirms_the_connection() {
     let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
     let refused = desk.run("-r cell yrcx abs-reset --axis 2");
     assert_eq!(refused.exit, Some(7));
@@ -93,7 +93,7 @@ fn what_wants_a_word_wants_it_with_its_connection_too() {
 }
 
 #[test]
-fn a_restore_asks_once_with_old_and_new() {
+fn restore_asks_once_with_old_and_new() {
     let controller = Simulator::start("yrcx");
     let desk = held(&controller);
     desk.data("-r cell yrcx backup saved --only shifts,pallets");
@@ -112,10 +112,10 @@ fn a_restore_asks_once_with_old_and_new() {
 }
 
 #[test]
-fn a_reset_ends_in_no_circle() {
+fn reset_does_not_repeat() {
     let controller = Simulator::start("yrcx");
     let desk = Desk::new(&entry(&controller.url, ""));
-    // Said before the connection is taken.
+    // Refused before the connection is opened.
     desk.fails("-r cell yrcx alarm reset", 7, "alarm 12.551 (`armctl session open` keeps a connection open)");
     assert_eq!(desk.run("-r cell yrcx alarm reset --yes").exit, Some(0));
     let again = desk.run("-r cell yrcx alarm reset --yes");
@@ -130,7 +130,7 @@ fn a_reset_ends_in_no_circle() {
 }
 
 #[test]
-fn a_read_only_controller_is_stopped_and_looked_at() {
+fn read_only_controller_accepts_stops_and_reads() {
     let controller = Simulator::start("yrcx");
     let desk = Desk::new(&entry(&controller.url, "read_only = true"));
     for order in ["info version", "alarm reset", "var set SGI1 1", "teach --point 1 --in mm", "run", "status --full"] {
@@ -145,13 +145,13 @@ fn a_read_only_controller_is_stopped_and_looked_at() {
 }
 
 #[test]
-fn what_would_end_with_the_connection_is_refused_before_anybody_is_asked() {
+fn refuses_effects_that_end_with_the_connection_before_the_question() {
     let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
     desk.fails("-r cell yrcx move --point 1 --no-wait", 2, "the connection would end now");
 }
 
 #[test]
-fn dry_runs_go_to_their_end() {
+fn dry_runs_plan_to_the_end() {
     let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
     let set = desk.data("-r cell yrcx point set 7 --mm 1,2,3,4 --dry-run");
     let codes: Vec<&str> =

@@ -1,4 +1,4 @@
-//! A real broker (mosquitto) as a process, who listens to it (`mosquitto_sub`), and brokers that are none.
+//! A real broker process (mosquitto), a subscriber (`mosquitto_sub`), and peers that are not brokers.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -8,15 +8,15 @@ use std::thread;
 
 use tempfile::TempDir;
 
-/// What a test says that has no broker.
+/// Message of a test without a broker.
 pub const ABSENT: &str = "skipped: mosquitto and mosquitto-clients are not installed";
 
-/// Debian keeps daemons out of the way of people.
+/// Debian installs daemons outside of the user's PATH.
 fn path() -> String {
     format!("{}:/usr/sbin:/sbin", std::env::var("PATH").unwrap_or_default())
 }
 
-/// Whether there is one on this machine.
+/// Whether the program is installed.
 pub fn is_there() -> bool {
     let is_there = |name: &str| {
         let ran =
@@ -26,7 +26,7 @@ pub fn is_there() -> bool {
     is_there("mosquitto") && is_there("mosquitto_sub")
 }
 
-/// A broker, as long as it is wanted.
+/// A broker, until it is dropped.
 pub struct Mosquitto {
     process: Child,
     pub port: u16,
@@ -34,12 +34,12 @@ pub struct Mosquitto {
 }
 
 impl Mosquitto {
-    /// One that takes everybody.
+    /// A broker without authentication.
     pub fn start() -> Self {
         Self::with("allow_anonymous true\n", |_| {})
     }
 
-    /// With these settings; `prepare` makes files in its folder, which `FOLDER` stands for in the settings.
+    /// With these settings; `prepare` creates files in its folder, which the settings call `FOLDER`.
     pub fn with(settings: &str, prepare: impl FnOnce(&Path)) -> Self {
         let folder = tempfile::tempdir().unwrap();
         prepare(folder.path());
@@ -59,7 +59,7 @@ impl Mosquitto {
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
     }
 
-    /// Until it listens.
+    /// Waits until it listens.
     fn wait(&mut self) {
         while TcpStream::connect((Ipv4Addr::LOCALHOST, self.port)).is_err() {
             assert!(self.process.try_wait().unwrap().is_none(), "the broker ended");
@@ -80,23 +80,23 @@ impl Mosquitto {
         self.process.wait().unwrap();
     }
 
-    /// At the same place as before.
+    /// At the same address as before.
     pub fn start_again(&mut self) {
         self.process = Self::spawn(self.folder.path());
         self.wait();
     }
 
-    /// Somebody who listens to these topics from now on, with what was kept before.
+    /// Subscribes to these topics, including retained messages.
     pub fn listen(&self, topics: &str) -> Listener {
         Listener::new(self.port, topics, "%r %t %p", &[])
     }
 
-    /// The same, with payloads as hex digits.
+    /// Subscribes with payloads as hex digits.
     pub fn listen_hex(&self, topics: &str) -> Listener {
         Listener::new(self.port, topics, "%r %t %x", &[])
     }
 
-    /// Sends a message as somebody else.
+    /// Publishes a message as another client.
     pub fn tell(&self, topic: &str, payload: &[u8], is_kept: bool) {
         let mut command = Command::new("mosquitto_pub");
         command.env("PATH", path()).args([
@@ -126,13 +126,13 @@ impl Drop for Mosquitto {
     }
 }
 
-/// Somebody who listens.
+/// A subscriber.
 pub struct Listener {
     process: Child,
     lines: BufReader<ChildStdout>,
 }
 
-/// What was heard.
+/// A received message.
 #[derive(Debug, Clone)]
 pub struct Heard {
     pub is_kept: bool,
@@ -142,7 +142,7 @@ pub struct Heard {
 
 impl Listener {
     pub fn new(port: u16, topics: &str, format: &str, more: &[&str]) -> Self {
-        // In a pipe it would keep lines to itself.
+        // With a pipe, the program would buffer lines.
         let mut command = Command::new("stdbuf");
         command.env("PATH", path()).args([
             "-oL",
@@ -160,7 +160,7 @@ impl Listener {
         command.args(["-p", &port.to_string()]).args(more);
         let mut process = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut lines = BufReader::new(process.stdout.take().unwrap());
-        // With -d it says when it is subscribed.
+        // With -d it reports the subscription.
         let mut line = String::new();
         while !line.contains("Subscribed") {
             line.clear();
@@ -174,7 +174,7 @@ impl Listener {
         loop {
             let mut line = String::new();
             assert!(self.lines.read_line(&mut line).unwrap() > 0, "the broker is gone");
-            // What it says of itself begins otherwise.
+            // Its own log lines begin differently.
             let mut fields = line.trim_end().splitn(3, ' ');
             if let (Some(kept @ ("0" | "1")), Some(topic)) = (fields.next(), fields.next()) {
                 let payload = fields.next().unwrap_or_default().to_owned();
@@ -183,7 +183,7 @@ impl Listener {
         }
     }
 
-    /// Messages up to the first one of this topic that fits.
+    /// Messages up to the first matching one of this topic.
     pub fn until(&mut self, topic: &str, fits: impl Fn(&str) -> bool) -> Heard {
         loop {
             let heard = self.next();
@@ -205,7 +205,8 @@ fn free_port() -> u16 {
     TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap().port()
 }
 
-/// A broker that is none: it reads what is said first, answers so, and goes on reading, or closes the connection.
+/// A peer that is not a broker: it reads the first packet, sends this answer, and then continues to read, or closes the
+/// connection.
 pub fn hostile(answer: &'static [u8], closes: bool) -> String {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let port = listener.local_addr().unwrap().port();
@@ -224,7 +225,7 @@ pub fn hostile(answer: &'static [u8], closes: bool) -> String {
     format!("mqtt://127.0.0.1:{port}")
 }
 
-/// A broker that takes each client, and then repeats a packet for as long as the connection is open.
+/// A broker that accepts each client, and then repeats a packet until the connection closes.
 pub fn flooding(packet: &'static [u8]) -> String {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let port = listener.local_addr().unwrap().port();

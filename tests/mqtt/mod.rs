@@ -1,5 +1,5 @@
-//! `armctl publish` against a real broker, and against brokers that are none. What is waited for is a condition, never a
-//! time.
+//! `armctl publish` with a real broker, and with peers that are not brokers. The tests wait for conditions, never for
+//! times.
 #![allow(clippy::unwrap_used, reason = "what fails in here fails the test that wants it")]
 #![cfg(all(unix, feature = "plant"))]
 
@@ -53,7 +53,7 @@ pub fn fleet() -> Desk {
     Desk::new(&[("press", "yerc", "sim:"), ("loader", "toyo", "sim:"), ("picker", "yrcx", "sim:")])
 }
 
-/// A publisher, as long as it is wanted.
+/// A publisher, until it is dropped.
 pub struct Publisher {
     process: Child,
     stderr: BufReader<ChildStderr>,
@@ -66,7 +66,7 @@ impl Publisher {
         Self { process, stderr }
     }
 
-    /// Waits until it has said this; the number of lines up to it.
+    /// Waits for this text on stderr. Returns the number of lines up to it.
     pub fn says(&mut self, part: &str) -> usize {
         let (mut line, mut lines) = (String::new(), 0);
         while !line.contains(part) {
@@ -81,7 +81,7 @@ impl Publisher {
         assert!(Command::new("kill").args([signal, &self.process.id().to_string()]).status().unwrap().success());
     }
 
-    /// Waits for its end: its exit code, and its report.
+    /// Waits for its end. Returns its exit code and its report.
     pub fn end(mut self) -> (Option<i32>, Value) {
         let (mut report, mut said) = (String::new(), String::new());
         self.process.stdout.take().unwrap().read_to_string(&mut report).unwrap();
@@ -103,7 +103,7 @@ pub fn stderr(output: &Output) -> String {
 }
 
 #[test]
-fn every_robot_has_a_topic_for_each_kind_with_an_envelope() {
+fn publishes_an_envelope_per_robot_and_kind() {
     if !broker::is_there() {
         return eprintln!("{ABSENT}");
     }
@@ -153,7 +153,7 @@ fn every_robot_has_a_topic_for_each_kind_with_an_envelope() {
 }
 
 #[test]
-fn the_last_will_tells_of_every_way_out() {
+fn every_exit_publishes_the_last_will() {
     if !broker::is_there() {
         return eprintln!("{ABSENT}");
     }
@@ -170,13 +170,13 @@ fn the_last_will_tells_of_every_way_out() {
 }
 
 #[test]
-fn a_broker_that_comes_back_is_told_what_it_missed_in_order() {
+fn returning_broker_gets_missed_records_in_order() {
     if !broker::is_there() {
         return eprintln!("{ABSENT}");
     }
     let mut broker = Mosquitto::start();
     let (desk, url) = (fleet(), broker.url());
-    // What does not change is told at every look.
+    // Unchanged data is also published at every poll.
     let words =
         ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
     let mut publisher = Publisher::start(desk.command(&words));
@@ -198,7 +198,7 @@ fn a_broker_that_comes_back_is_told_what_it_missed_in_order() {
             times.push(time(&listener.next().payload));
         }
         assert!(times.is_sorted(), "{times:?}");
-        // Where the publisher was there before who listens, what waited has passed.
+        // If the publisher was faster than the subscriber, the queue is already sent.
         if times.iter().filter(|time| **time < back).count() > 1 {
             break;
         }
@@ -211,7 +211,7 @@ fn a_broker_that_comes_back_is_told_what_it_missed_in_order() {
 }
 
 #[test]
-fn what_waits_outlives_the_process() {
+fn queued_records_outlive_the_process() {
     if !broker::is_there() {
         return eprintln!("{ABSENT}");
     }
@@ -222,7 +222,7 @@ fn what_waits_outlives_the_process() {
         ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
     let mut publisher = Publisher::start(desk.command(&[&words[..], &["-v"]].concat()));
     publisher.says("next try in");
-    // A second later there are looks.
+    // A second later there were polls.
     publisher.says("next try in");
     publisher.signal("-TERM");
     publisher.says("stored on disk");
@@ -238,7 +238,7 @@ fn what_waits_outlives_the_process() {
 }
 
 #[test]
-fn a_robot_that_goes_is_forgotten_by_the_broker() {
+fn removed_robot_is_cleared_at_the_broker() {
     if !broker::is_there() {
         return eprintln!("{ABSENT}");
     }
@@ -253,13 +253,13 @@ fn a_robot_that_goes_is_forgotten_by_the_broker() {
 }
 
 #[test]
-fn odd_names_are_levels_of_topics() {
+fn escapes_unusual_names_in_topics() {
     if !broker::is_there() {
         return eprintln!("{ABSENT}");
     }
     let broker = Mosquitto::start();
     let desk = Desk::new(&[]);
-    // Nobody is there; the name is that of the port.
+    // The port is closed; the robot has the name of the port.
     let words = [
         "-t",
         "serial:///dev/no+such#port",
@@ -281,7 +281,7 @@ fn odd_names_are_levels_of_topics() {
 }
 
 #[test]
-fn a_user_needs_the_right_password_and_nobody_sees_it() {
+fn needs_the_right_password_and_never_prints_it() {
     if !broker::is_there() {
         return eprintln!("{ABSENT}");
     }
@@ -310,14 +310,14 @@ fn a_user_needs_the_right_password_and_nobody_sees_it() {
     std::fs::write(&file, "hunter2\n").unwrap();
     let words = [&publish[..], &["--password-file", file.to_str().unwrap()]].concat();
     assert!(desk.run(&words).status.success());
-    // A password in the URL would be there for everybody to see.
+    // A password in the URL would be visible to everyone.
     let output = desk.run(&["publish", "mqtt://plant:hunter2@127.0.0.1"]);
     assert_eq!(output.status.code(), Some(2));
     let said = stderr(&output);
     assert!(said.contains("--password-file") && said.matches("hunter2").count() <= 1, "{said}");
 }
 
-/// What is said of a password in this file, sent to this URL; in a network of its own, where nothing is.
+/// Messages about a password in this file, sent to this URL, in an empty network.
 fn said_of_password(url: &str, rights: u32, more: &[&str]) -> String {
     let desk = fleet();
     let file = desk.folder.path().join("password");
@@ -332,7 +332,7 @@ fn said_of_password(url: &str, rights: u32, more: &[&str]) -> String {
 }
 
 #[test]
-fn a_password_that_others_can_read_is_warned_of_once() {
+fn warns_once_about_a_readable_password() {
     let alone = Command::new("unshare").args(["-Urn", "true"]).output();
     if !alone.is_ok_and(|output| output.status.success()) {
         return eprintln!("skipped: there are no user namespaces here");
@@ -354,7 +354,7 @@ fn a_password_that_others_can_read_is_warned_of_once() {
 }
 
 #[test]
-fn brokers_that_are_none_are_told_in_words() {
+fn reports_peers_that_are_not_brokers() {
     let desk = fleet();
     for (answer, closes, code, why) in [
         (&[0x20, 2, 0, 5][..], false, 2, "not authorized to connect"),
@@ -377,8 +377,8 @@ fn brokers_that_are_none_are_told_in_words() {
 }
 
 #[test]
-fn brokers_that_flood_are_left_tried_again_and_hold_up_no_end() {
-    /// Lines of two connections: taken, lost, back, lost; each time with messages that waited or were refused.
+fn leaves_and_retries_flooding_brokers_without_blocking_the_exit() {
+    /// Lines of two connections: connected, lost, connected, lost; each time with queued or refused messages.
     const LINES: usize = 8;
 
     for (packet, why) in [
@@ -399,9 +399,9 @@ fn brokers_that_flood_are_left_tried_again_and_hold_up_no_end() {
     }
 }
 
-/// In a namespace of its own, where a disk can be as small as is wanted.
+/// In a namespace with a disk of limited size.
 #[test]
-fn a_disk_that_is_full_is_said_and_ends_nothing() {
+fn reports_a_full_disk_and_continues() {
     let alone = Command::new("unshare").args(["-Urm", "true"]).output();
     if !alone.is_ok_and(|output| output.status.success()) {
         return eprintln!("skipped: there are no user namespaces here");
@@ -428,7 +428,7 @@ fn a_disk_that_is_full_is_said_and_ends_nothing() {
 }
 
 #[test]
-fn two_publishers_of_one_name_are_told_apart_at_once() {
+fn reports_two_publishers_with_the_same_name() {
     if !broker::is_there() {
         return eprintln!("{ABSENT}");
     }

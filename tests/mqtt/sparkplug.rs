@@ -1,4 +1,4 @@
-//! Sparkplug through a real broker, read by a decoder that others wrote.
+//! Sparkplug through a real broker, decoded by another implementation.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ fn peers() -> Option<PathBuf> {
 
 const NO_FOLDER: &str = "skipped: ARMCTL_SPARKPLUG_PEERS does not name a folder of tests/mqtt/peers/install";
 
-/// Payloads as sparkplug-payload reads them.
+/// Payloads as decoded by sparkplug-payload.
 fn decoded(folder: &Path, heard: &[Heard]) -> Vec<Value> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mqtt/peers/decode.js");
     let mut command = Command::new("node");
@@ -43,7 +43,7 @@ fn metric<'a>(payload: &'a Value, name: &str) -> &'a Value {
 }
 
 #[test]
-fn births_data_and_deaths_are_read_by_others() {
+fn another_decoder_reads_births_data_and_deaths() {
     let (true, Some(folder)) = (broker::is_there(), peers()) else { return eprintln!("{ABSENT}, or {NO_FOLDER}") };
     let broker = Mosquitto::start();
     let desk = fleet();
@@ -71,11 +71,11 @@ fn births_data_and_deaths_are_read_by_others() {
     let told = by_alias.iter().find(|metric| metric["alias"] == x["alias"]).unwrap();
     assert_eq!((&told["value"], &told["type"]), (&x["value"], &json!("Double")));
 
-    // A host asks for the births again; everything else that it orders is ignored.
+    // A host requests the births again; all its other commands are ignored.
     let rebirth = b"\x12\x1a\x0a\x14Node Control/Rebirth\x20\x0b\x70\x01";
     broker.tell("spBv1.0/Plant/NCMD/Cell7", b"\x12\x08\x0a\x02xx\x20\x0b\x70\x01", false);
     publisher.says("armctl only publishes");
-    // An order right behind a birth is left out: it would say the same.
+    // A request directly after a birth is ignored, because the birth would be the same.
     let born_again = loop {
         broker.tell("spBv1.0/Plant/NCMD/Cell7", rebirth, false);
         if let Some(heard) = (0..20).map(|_| listener.next()).find(|heard| heard.topic.contains("/NBIRTH/")) {
@@ -89,7 +89,7 @@ fn births_data_and_deaths_are_read_by_others() {
     assert_eq!(metric(death, "bdSeq")["value"], 0);
     assert_eq!(publisher.end().0, Some(0));
 
-    // The next process has a number of its own, and its will comes when it is killed.
+    // The next process has a new number, and its will is published when it is killed.
     let publisher = Publisher::start(desk.command(&words));
     let birth = next(&mut listener, "spBv1.0/Plant/NBIRTH/Cell7");
     publisher.signal("-KILL");
@@ -102,7 +102,7 @@ fn births_data_and_deaths_are_read_by_others() {
 }
 
 #[test]
-fn nothing_is_told_while_the_primary_host_is_away() {
+fn waits_for_the_primary_host() {
     let (true, Some(folder)) = (broker::is_there(), peers()) else { return eprintln!("{ABSENT}, or {NO_FOLDER}") };
     let broker = Mosquitto::start();
     let desk = fleet();
@@ -122,7 +122,7 @@ fn nothing_is_told_while_the_primary_host_is_away() {
     assert_eq!(metric(&decoded(&folder, &[death])[0], "bdSeq")["value"], 0);
     publisher.says("waiting for the primary host SCADA");
     broker.tell("spBv1.0/STATE/SCADA", b"{\"online\":true,\"timestamp\":4}", true);
-    // Deaths that come with it are those of the connection before.
+    // Deaths that arrive with it belong to the previous connection.
     let birth = next(&mut listener, "spBv1.0/Plant/NBIRTH/Cell7");
     let data = next(&mut listener, "spBv1.0/Plant/DDATA/Cell7/press");
     let payloads = decoded(&folder, &[birth, data]);

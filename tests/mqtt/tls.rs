@@ -1,4 +1,4 @@
-//! TLS with certificates that are right, and with those that are wrong. `openssl` makes them.
+//! TLS with valid and invalid certificates, made by `openssl`.
 #![cfg(feature = "plant-tls")]
 
 use std::fs::Permissions;
@@ -13,7 +13,7 @@ fn has_openssl() -> bool {
     Command::new("openssl").arg("version").stdout(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
-/// An authority, and certificates that it signed: of the broker, of a client, of a broker elsewhere.
+/// A certificate authority and its certificates: broker, client, another broker.
 fn certificates(folder: &Path) {
     let script = r#"
 set -e
@@ -51,7 +51,7 @@ fn publish(desk: &Desk, broker: &Mosquitto, more: &[&str]) -> (Option<i32>, Stri
 }
 
 #[test]
-fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
+fn trusts_a_broker_only_by_its_certificate() {
     if !broker::is_there() || !has_openssl() {
         return eprintln!("{ABSENT}, or there is no openssl");
     }
@@ -88,7 +88,7 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
     let (code, said) = publish(&desk, &strict, &["--ca", "ca.pem"]);
     assert!(code == Some(2) && said.contains("does not accept this client's certificate"), "{code:?} {said}");
 
-    // A port without TLS, and one with it that is talked to without.
+    // A port without TLS, and a TLS port used without TLS.
     let plain = Mosquitto::start();
     let (code, said) = publish(&desk, &plain, &[]);
     assert!(code == Some(2) && said.contains("does not use TLS"), "{code:?} {said}");
@@ -97,7 +97,7 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
 }
 
 #[test]
-fn a_service_waits_for_a_broker_to_get_the_right_certificate() {
+fn service_waits_for_the_right_certificate() {
     if !broker::is_there() || !has_openssl() {
         return eprintln!("{ABSENT}, or there is no openssl");
     }

@@ -1,11 +1,10 @@
-//! `moto-hses-client` on the simulator of this project, beside this project's own client: what one writes the other
-//! reads.
+//! `moto-hses-client` and the client of this project on the same simulator: each reads what the other wrote.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use armctl::command::yerc::link::Link;
-use armctl::command::yerc::simulated::Simulated;
+use armctl::command::yerc::simulator_start::Simulated;
 use armctl::controller::yerc::Model::{self, Dx200, Fs100};
 use armctl::controller::yerc::files::FileName;
 use armctl::controller::yerc::group::Group;
@@ -23,10 +22,10 @@ use moto_hses_client::{ClientConfig, HsesClient, TextEncoding};
 use moto_hses_proto::commands::JobSelectType;
 use moto_hses_proto::{AlarmAttribute, CycleMode, Position as TheirPosition, Status};
 
-/// A patience that only a broken test uses up.
+/// Timeout that only a broken test reaches.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// The simulator on two ports, and three clients: theirs on each port, and ours.
+/// The simulator on two ports, and three clients: `moto-hses-client` on each port, and ours.
 struct Peer {
     robot: HsesClient,
     files: HsesClient,
@@ -65,7 +64,7 @@ impl Peer {
         self.ask(WriteVariable::new(number, value).unwrap()).await;
     }
 
-    /// The status as they read it, whole and by halves, which must be what we read.
+    /// Status of the other client, complete and in halves, which must be equal to ours.
     async fn status(&mut self) -> ControllerStatus {
         let status = self.robot.read_status().await.unwrap();
         assert_eq!(self.robot.read_status_data1().await.unwrap(), status.data1);
@@ -110,7 +109,7 @@ fn bits(status: &Status) -> [(StatusBit, bool); 14] {
     ]
 }
 
-/// A string variable in the 16-byte form, which is the only one they have.
+/// A string variable in the 16-byte form, the only one of the other client.
 fn short(text: &[u8]) -> Value {
     Value::Short(Text::new(text).unwrap())
 }
@@ -142,7 +141,7 @@ async fn status_and_switches_agree() {
 }
 
 #[tokio::test]
-async fn alarms_agree_and_are_reset() {
+async fn alarms_and_resets_agree() {
     let state = "alarm = [{ code = 4315, data = 3, type = 1, time = '2026/03/14 08:01', name = 'ワークなし' }]
         history = [{ code = 9001, data = 5, type = 1, time = '2026/02/28 17:30', name = 'PART MISSING', class = 'user' }]";
     let mut peer = Peer::start(Dx200, state).await;
@@ -196,7 +195,7 @@ async fn positions_agree_in_pulses_and_in_base_coordinates() {
 }
 
 #[tokio::test]
-async fn numbers_agree_one_by_one_and_several_at_once() {
+async fn single_and_multiple_numbers_agree() {
     use VariableKind::{B, D, I, R};
 
     for model in [Dx200, Fs100] {
@@ -274,7 +273,7 @@ async fn signals_and_registers_agree() {
     let mut peer = Peer::start(Dx200, "io = { 10010 = true }\nregisters = { 10 = 4660 }").await;
     assert_eq!(peer.robot.read_io(1).await.unwrap(), 1);
     assert_eq!(peer.robot.read_io(1001).await.unwrap(), 1);
-    // They write one element as four bytes, of which the controller takes the first (28).
+    // The other client writes one element as four bytes; the controller uses the first one (28).
     peer.robot.write_io(2701, 0x5A).await.unwrap();
     assert_eq!(peer.ask(ReadIo::new(Dx200, 2701).unwrap()).await, 0x5A);
     peer.ask(WriteIo::new(Dx200, 2702, 0xA5).unwrap()).await;
@@ -296,7 +295,7 @@ async fn signals_and_registers_agree() {
 }
 
 #[tokio::test]
-async fn jobs_are_selected_shown_and_started() {
+async fn selects_shows_and_starts_jobs() {
     for model in [Dx200, Fs100] {
         let mut peer = Peer::start(model, "").await;
         for (name, line) in [("TESTJOB", 4), ("テスト", 1), ("WAITIN", 0)] {
@@ -314,7 +313,7 @@ async fn jobs_are_selected_shown_and_started() {
         }
         peer.robot.select_job(JobSelectType::MasterTask0, "MAIN", 0).await.unwrap();
         assert!(!peer.status().await.running());
-        // This job waits for an input, so it runs for as long as nobody sets it.
+        // This job waits for an input, so it runs until the input is set.
         peer.robot.start_job().await.unwrap();
         assert!(peer.status().await.running());
         peer.robot.set_hold(true).await.unwrap();
@@ -323,7 +322,7 @@ async fn jobs_are_selected_shown_and_started() {
 }
 
 #[tokio::test]
-async fn files_are_listed_fetched_and_deleted() {
+async fn lists_fetches_and_deletes_files() {
     for model in [Dx200, Fs100] {
         let text = "0,1,2,3,4,5,6,7,8,9\\n".repeat(70);
         let mut peer = Peer::start(model, &format!("file = [{{ name = 'LONG.DAT', text = \"{text}\" }}]")).await;
@@ -348,7 +347,8 @@ async fn files_are_listed_fetched_and_deleted() {
         peer.files.delete_file("HOME.JBI").await.unwrap();
         let jobs = peer.files.read_file_list("*.JBI").await.unwrap();
         assert_eq!(jobs, ["COUNT.JBI", "MAIN.JBI", "TESTJOB.JBI", "WAITIN.JBI", "テスト.JBI"]);
-        // They send name, NUL and content in one frame, which no controller takes: a NUL in the name is E49D (56).
+        // The other client sends name, NUL and content in one frame, which no controller accepts: a NUL in the name is
+        // E49D (56).
         let refused = peer.files.send_file("NEW.JBI", b"/JOB\r\n").await.unwrap_err();
         assert!(refused.to_string().contains("E49D"), "{refused}");
     }

@@ -21,10 +21,10 @@ use moto_hses_mock::{MockServer, VariableType};
 use moto_hses_proto as proto;
 use tokio::net::UdpSocket;
 
-/// Attempts at a free port for the mock's file server, whose socket cannot be asked for the port it chose.
+/// Number of attempts to find a free port for the file server of the mock, which does not report its port.
 const PORT_ATTEMPTS: usize = 20;
 
-/// A mock that listens, and this project's client on it.
+/// A mock, and this project's client connected to it.
 struct Peer {
     mock: Arc<MockServer>,
     link: Link,
@@ -39,7 +39,7 @@ impl Peer {
         for _ in 0..PORT_ATTEMPTS {
             let file = UdpSocket::bind("127.0.0.1:0").await.unwrap().local_addr().unwrap();
             let builder = MockServerBuilder::new().host("127.0.0.1").robot_port(0).file_port(file.port());
-            // Somebody else may have taken the port meanwhile.
+            // Another process may have taken the port in the meantime.
             let Ok(mock) = configure(builder).build().await else { continue };
             let robot = mock.local_addr().unwrap();
             let mock = Arc::new(mock);
@@ -60,7 +60,7 @@ impl Peer {
         StatusBit::all().filter(|bit| status.has(*bit)).collect()
     }
 
-    /// Writes values one by one and several at once, and reads them back both ways.
+    /// Writes values singly and together, and reads them back in both ways.
     async fn variables(&mut self, kind: VariableKind, values: Vec<Value>) {
         let count = u16::try_from(values.len()).unwrap();
         for (number, value) in (10..).zip(&values) {
@@ -80,11 +80,11 @@ impl Peer {
     }
 }
 
-// Every answer of the mock says "two words of added status" beside success, as no controller does (31); it is success
-// all the same, and each test below would fail if it were not taken so.
+// Every answer of the mock has "two words of added status" with success, which no controller sends (31). It must count
+// as success, or each test below would fail.
 
 #[tokio::test]
-async fn status_agrees_bit_by_bit() {
+async fn status_bits_agree() {
     use StatusBit as Bit;
 
     let data1 = |bit| proto::StatusData1 {
@@ -113,7 +113,7 @@ async fn status_agrees_bit_by_bit() {
 }
 
 #[tokio::test]
-async fn alarms_agree_and_are_reset() {
+async fn alarms_and_resets_agree() {
     let mut peer = Peer::start().await;
     let expected = [
         (1, 1001, 1, 1, "2024/01/01 12:00", "Servo Error"),
@@ -183,14 +183,14 @@ async fn torque_error_and_times_agree() {
     let error = peer.ask(ReadPositionError::new(Dx200, Group::R1).unwrap()).await;
     assert_eq!(error.as_slice(), [0, 10, 20, 30, 40, 50, 60]);
     let time = peer.ask(ReadManagementTime::new(Dx200, TimeCounter::ControlPower).unwrap()).await;
-    // The mock sends four bytes more than 3.3.25 has; what is there counts.
+    // The mock sends four bytes more than 3.3.25 has; they are ignored.
     assert_eq!((time.start.as_bytes(), time.elapsed.as_bytes()), (&b"1234567890"[..], &b"987654321"[..]));
-    // Not compared: axis names of eight bytes where 3.3.5 has four, and system information in three fields of 16 bytes
-    // where 3.3.26 has 24, 16 and 8.
+    // Not compared: axis names of eight bytes instead of four (3.3.5), and system information in three fields of 16
+    // bytes instead of 24, 16 and 8 (3.3.26).
 }
 
 #[tokio::test]
-async fn numbers_agree_one_by_one_and_several_at_once() {
+async fn single_and_multiple_numbers_agree() {
     let mut peer = Peer::start().await;
     peer.variables(VariableKind::B, [0, 1, 0x7F, 0x80, 0xFE, 0xFF].map(Value::Byte).to_vec()).await;
     peer.variables(VariableKind::I, [0, -1, i16::MIN, i16::MAX, 0x1234].map(Value::Integer).to_vec()).await;
@@ -212,9 +212,9 @@ async fn strings_agree_in_any_encoding() {
     assert_eq!(peer.stored(VariableType::String, 43).await, b"SIXTEEN BYTES OK");
 }
 
-/// The mock keeps one position for all of them, and drops what it has no field for: form, tool and user frame of a
-/// pulse position, the axes after the sixth of a cartesian one. BP and EX variables it reads by the layout of P, so
-/// those are not compared.
+/// The mock stores one position type for all variables, and drops other fields: form, tool and user frame of a pulse
+/// position, the axes after the sixth of a cartesian one. It reads BP and EX variables with the layout of P, so they
+/// are not compared.
 #[tokio::test]
 async fn position_variables_agree() {
     let mut peer = Peer::start().await;
@@ -311,13 +311,13 @@ async fn switches_agree() {
         assert_eq!(peer.mock.get_cycle_mode().await, expected);
     }
     peer.ask(Say::new(b"PART MISSING").unwrap()).await;
-    // Not compared: moves, whose first words (robot, station, class) the mock reads as a position.
+    // Not compared: moves, because the mock reads their first words (robot, station, class) as a position.
 }
 
-/// The mock answers a list or file of any size in one frame with block number 0x80000000, which is how some number a
-/// single block (49), and answers the ACK of it once more as if it were a request.
+/// The mock answers a list or file of any size in one frame with block number 0x80000000, a possible number of a single
+/// block (49), and answers its ACK again like a request.
 #[tokio::test]
-async fn files_are_listed_fetched_and_deleted() {
+async fn lists_fetches_and_deletes_files() {
     let content = b"/JOB\r\n//NAME A\r\nNOP\r\n'\x00\xFF\x83e\r\nEND\r\n".to_vec();
     let mut peer = Peer::start().await;
     {
@@ -354,15 +354,15 @@ async fn fetch(link: &mut Link, request: &armctl::controller::yerc::request::Req
     (got, end)
 }
 
-/// The mock takes an upload for one frame with name, NUL and content, and says yes to anything else without keeping it:
-/// nobody may report that as done.
+/// The mock expects an upload in one frame with name, NUL and content. It accepts other uploads without storing them;
+/// the client must not report this as done.
 #[tokio::test]
-async fn an_upload_that_the_mock_swallows_is_not_reported_as_done() {
+async fn does_not_report_a_lost_upload_as_done() {
     let mut peer = Peer::start_with(|builder| builder, Some(Duration::from_millis(100))).await;
     let mut pieces = vec![Vec::new(), vec![b'x'; 600]];
     let request = FileName::new("NEW.JBI").unwrap().load();
     let end = peer.link.upload(&request, || Ok(pieces.pop().unwrap_or_default())).await;
-    // A busy machine may let the whole wait pass before the mock has its turn.
+    // On a busy machine, the mock may answer only after the whole wait.
     assert!(matches!(end, Ok(UploadEnd::OutcomeUnknown { sent: 479, taken: 0, .. }) | Err(_)), "{end:?}");
     assert!(peer.mock.state().read().await.get_file("NEW.JBI").is_none());
 }

@@ -1,9 +1,9 @@
-//! What others wrote, at the other end of a real socket: `moto-hses-mock` as the controller under the client of this
-//! project, and `moto-hses-client` as the client on its simulator. What both sides support must agree value by value.
+//! Other implementations at the remote end of a real socket: `moto-hses-mock` as the controller, and `moto-hses-client`
+//! as a client of the simulator. Values that both sides support must agree.
 //!
-//! Neither is a reference for errors, retries or uploads. Where a peer departs from the manuals a comment says so and
-//! why it is believed to be the peer; the numbers in parentheses are those of the protocol's list of ambiguities.
-//! Everything is on 127.0.0.1 and on ports that the system chooses; sockets are bound before anybody sends.
+//! Neither is a reference for errors, retries or uploads. If a peer departs from the manuals, a comment has the reason;
+//! the numbers in parentheses are those of the protocol's list of ambiguities. Everything is on 127.0.0.1 and on free
+//! ports; sockets are bound before anything is sent.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -20,7 +20,7 @@ use armctl::output::{ColorChoice, Format, Screen};
 use armctl::settings::target::Family;
 use armctl::settings::{Selection, Sources};
 
-/// The client of this project, on a controller at these ports of this machine.
+/// The client of this project, for a controller at these local ports.
 async fn connect(model: Model, robot: SocketAddr, file: SocketAddr) -> Link {
     connect_with(&format!("udp://{robot}?file_port={}&model={model}", file.port()), None).await
 }

@@ -1,5 +1,5 @@
-//! PROFIBUS against ends that share nothing with ours: a strict slave in Python, and the master of PyPI's `pyprofibus`. Both
-//! run beside the binary, on pseudo-terminals; where Python or the package is missing, the tests say that they are skipped.
+//! PROFIBUS with independent implementations: a strict slave in Python, and the master of PyPI's `pyprofibus`. Both run
+//! on pseudo-terminals; without Python or the package, the tests are skipped with a message.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use serialport::{SerialPort, TTYPort};
 
-/// A program that says on its first line where it is, and is ended with this.
+/// A program that prints its address on its first line, until it is dropped.
 struct Running {
     child: Child,
     lines: BufReader<ChildStdout>,
@@ -33,7 +33,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // One that has ended cannot be ended.
+        // The program may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -58,7 +58,7 @@ fn text(output: &Output) -> String {
 }
 
 #[test]
-fn a_strict_slave_that_shares_nothing_with_ours_has_nothing_to_complain_of() {
+fn independent_strict_slave_accepts_our_master() {
     if !has_python() {
         eprintln!("skipped: python3 is not here");
         return;
@@ -66,7 +66,8 @@ fn a_strict_slave_that_shares_nothing_with_ours_has_nothing_to_complain_of() {
     let mut slave = Running::start(Command::new("python3").arg(script("slave.py")).arg("3"));
     let port = slave.line();
     let url = format!("profibus://{port}?station=5&slot=500ms&watchdog=20s");
-    // The slave shows what it is shown, which is no controller: the command fails, and the link is opened and closed.
+    // The slave returns its outputs as inputs, unlike a controller: the command fails, and the link is opened and
+    // closed.
     let asked =
         armctl().args(["-t", &url, "--timeout", "1s", "--yes", "yrcx", "info", "servo"]).output().expect("it runs");
     let mut said = Vec::new();
@@ -84,7 +85,7 @@ fn a_strict_slave_that_shares_nothing_with_ours_has_nothing_to_complain_of() {
 }
 
 #[test]
-fn the_master_of_pyprofibus_exchanges_images_with_our_simulator() {
+fn pyprofibus_exchanges_images_with_our_simulator() {
     let Some(folder) = std::env::var_os("ARMCTL_PROFIBUS_PEERS").map(PathBuf::from) else {
         eprintln!("skipped: ARMCTL_PROFIBUS_PEERS does not name a folder of tests/profibus/install");
         return;
@@ -97,22 +98,22 @@ fn the_master_of_pyprofibus_exchanges_images_with_our_simulator() {
     assert!(driven.status.success(), "{}", text(&driven));
 }
 
-/// A line with three ends: a slave, a master, and one that hears all of it. Pseudo-terminals have two.
+/// A line with three ends: slave, master, listener. A pseudo-terminal has only two.
 struct Line {
     is_over: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
-    /// How many bytes came from the one that hears.
+    /// Number of bytes from the listener.
     said: Arc<AtomicUsize>,
 }
 
 impl Line {
-    /// To the slave at this port; gives the ports of the master and of the other one.
+    /// Connects to the slave at this port. Returns the ports of the master and of the listener.
     fn to(slave: &str) -> (Self, String, String) {
         let slave = serialport::new(slave, 115_200).open_native().expect("the simulator's port opens");
         let [(master, of_master), (other, of_other)] = [(), ()].map(|()| {
             let (near, far) = TTYPort::pair().expect("a pseudo-terminal");
             let name = far.name().expect("it has a name");
-            // It has a lock as long as it is open.
+            // The port is locked while it is open.
             drop(far);
             (near, name)
         });
@@ -126,7 +127,7 @@ impl Line {
             std::thread::spawn(move || {
                 let mut buffer = [0; 512];
                 while !over.load(Ordering::SeqCst) {
-                    // An error while nobody has the other end open.
+                    // Reads fail while the other end is closed.
                     let len = from.read(&mut buffer).unwrap_or(0);
                     if len == 0 {
                         std::thread::yield_now();
@@ -153,14 +154,14 @@ impl Drop for Line {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::SeqCst);
         for thread in self.threads.drain(..) {
-            // One that panicked has said so already.
+            // A panic has already printed its message.
             let _ = thread.join();
         }
     }
 }
 
 #[test]
-fn a_listener_sees_the_images_of_a_live_exchange_and_sends_nothing() {
+fn listener_reads_images_and_sends_nothing() {
     let mut simulator = Running::start(armctl().args(["sim", "yrcx", "--bus", "profibus"]));
     let said = simulator.line();
     let port = said.split("profibus://").nth(1).and_then(|rest| rest.split('?').next()).expect("a port");

@@ -1,5 +1,5 @@
-//! The binary as controller and as simulated device, each in a network namespace of its own: from finding the station up
-//! to remote commands, sessions and records. Where there are no user namespaces it says so and passes.
+//! The binary as controller and as simulated device, each in a network namespace: discovery, naming, remote commands,
+//! sessions and recordings. Without user namespaces the test prints a message and passes.
 
 #![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 
@@ -7,7 +7,7 @@ mod namespaces;
 
 use std::process::Command;
 
-/// What is typed, each with what came of it behind.
+/// Typed commands; each is followed by its exit code.
 const TYPED: &str = r#"
 export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"
 unset XDG_CONFIG_HOME ARMCTL_TARGET
@@ -44,7 +44,7 @@ wait $D
 "#;
 
 #[test]
-fn the_binary_commands_a_simulated_device_on_another_network_card() {
+fn commands_a_simulated_device_on_another_network_card() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().to_str().expect("its path is UTF-8");
     let variables = [("ARMCTL", env!("CARGO_BIN_EXE_armctl")), ("FOLDER", place)];
@@ -99,7 +99,7 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
     well_recorded(&format!("{place}/trace.pcapng"));
 }
 
-/// A controller and a client of DCP that others wrote, and a simulator on the other card.
+/// A controller and a DCP client of other authors, and a simulator on the other network card.
 const DRIVEN: &str = r#"
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
 until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
@@ -110,7 +110,7 @@ wait $D
 "#;
 
 #[test]
-fn controllers_that_others_wrote_command_the_simulated_device() {
+fn other_controllers_command_the_simulated_device() {
     let Some(peers) = std::env::var_os("ARMCTL_PROFINET_PEERS") else {
         println!("skipped: ARMCTL_PROFINET_PEERS does not name a folder of tests/profinet/install");
         return;
@@ -129,7 +129,7 @@ fn controllers_that_others_wrote_command_the_simulated_device() {
     assert!(text.contains("pnio-dcp has seen all"), "{text}");
 }
 
-/// A record that tshark reads whole, with cyclic data taken apart as Connect said, where it is installed.
+/// Checks that tshark can read the complete recording, with cyclic data decoded as in Connect; skipped without tshark.
 fn well_recorded(path: &str) {
     let tshark = |arguments: &[&str]| {
         let output = Command::new("tshark").args(["-r", path]).args(arguments).output().ok()?;

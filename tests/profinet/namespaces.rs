@@ -1,12 +1,13 @@
-//! Two network namespaces with a pair of virtual cards between them: `pc0` here with 192.168.79.1 and
-//! 02:00:00:00:00:01, `pd0` there with 192.168.79.2 and 02:00:00:00:00:02. Needs no rights, but user namespaces.
+//! Two network namespaces connected by virtual network cards: `pc0` in the first with 192.168.79.1 and
+//! 02:00:00:00:00:01, `pd0` in the second with 192.168.79.2 and 02:00:00:00:00:02. Needs user namespaces, but no
+//! privileges.
 
 use std::process::{Command, Stdio};
 
-/// What is said where there are none.
+/// Message without user namespaces.
 pub const SKIPPED: &str = "skipped: there are no user namespaces here";
 
-/// Makes both and runs `$INSIDE` here; `$THERE COMMAND` runs there.
+/// Creates both and runs `$INSIDE` in the first; `$THERE COMMAND` runs a command in the second.
 const SCRIPT: &str = r#"
 set -e
 mount -t sysfs none /sys
@@ -27,7 +28,7 @@ kill $P
 exit $R
 "#;
 
-/// Runs commands of a shell there, with these variables, and gives all that they said; `None` without user namespaces.
+/// Runs shell commands inside, with these variables, and returns their output; `None` without user namespaces.
 pub fn run(inside: &str, variables: &[(&str, &str)]) -> Option<String> {
     let can = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
     if !can.is_ok_and(|status| status.success()) {

@@ -1,6 +1,6 @@
-//! Our controller and a device that others wrote (the crate `pnio`), and our controller and our simulated device: each
-//! in a network namespace of its own with a pair of virtual cards between them. Needs no rights, but user namespaces;
-//! where there are none it says so and passes.
+//! Our controller with a device of other authors (the crate `pnio`), and with our simulated device: each in its own
+//! network namespace, connected by virtual network cards. Needs user namespaces, but no privileges; without them the
+//! tests print a message and pass.
 
 #![cfg(target_os = "linux")]
 #![expect(clippy::print_stdout, reason = "one end tells the other, and the log says what is skipped")]
@@ -31,7 +31,7 @@ use pnio::diag::{ChannelError, Severity};
 
 mod namespaces;
 
-/// The two programs are this one, told by the name of the test which end it is.
+/// Both programs are this test binary; the test name selects the end.
 const ENDS: &str = r#"
 export ROLE=end
 C=
@@ -48,34 +48,34 @@ exit $R
 "#;
 
 #[test]
-fn our_controller_runs_a_device_that_others_wrote() {
+fn our_controller_runs_another_device() {
     match run("others") {
         Some(text) => assert!(text.contains(TRIPPED), "{text}"),
         None => println!("{}", namespaces::SKIPPED),
     }
 }
 
-/// What the device that others wrote says when its controller falls silent.
+/// Message of the other device when its controller is silent.
 const TRIPPED: &str = "the device's watchdog has expired";
 
 #[test]
-fn our_controller_finds_asks_and_runs_our_device() {
+fn our_controller_finds_reads_and_runs_our_device() {
     if run("our").is_none() {
         println!("{}", namespaces::SKIPPED);
     }
 }
 
 #[test]
-fn a_controller_that_others_wrote_runs_our_device() {
+fn another_controller_runs_our_device() {
     run_theirs("python");
 }
 
 #[test]
-fn a_client_of_dcp_that_others_wrote_finds_and_names_our_device() {
+fn another_dcp_client_finds_and_names_our_device() {
     run_theirs("dcp");
 }
 
-/// Needs what `tests/profinet/install` put into a folder.
+/// Needs the folder made by `tests/profinet/install`.
 fn run_theirs(name: &str) {
     if std::env::var_os(PEERS).is_none() {
         println!("skipped: {PEERS} does not name a folder of tests/profinet/install");
@@ -86,8 +86,8 @@ fn run_theirs(name: &str) {
 
 const PEERS: &str = "ARMCTL_PROFINET_PEERS";
 
-/// Runs the two ends of this name, and wants the controller's to come to its end; gives what was said, or `None` where
-/// that cannot be.
+/// Runs the two ends of this name, and asserts that the controller finishes. Returns the output, or `None` if this is
+/// not possible.
 fn run(name: &str) -> Option<String> {
     let program = std::env::current_exe().expect("this program has a path");
     let program = program.to_str().expect("the path is UTF-8");
@@ -97,7 +97,7 @@ fn run(name: &str) -> Option<String> {
     let variables = [("PROGRAM", program), ("NAME", name), ("CAPTURE", capture)];
     let text = namespaces::run(ENDS, &variables)?;
     assert!(text.contains("the controller has seen all"), "{text}");
-    // Not what others sent; and ICMP is what systems say of ports that are closed.
+    // Ignores frames of other programs, and ICMP, which systems send for closed ports.
     let ours = if ["others", "our"].contains(&name) { "02:00:00:00:00:01" } else { "02:00:00:00:00:02" };
     let wrong = format!("(_ws.malformed || _ws.expert.severity >= 0x600000) && eth.src == {ours} && !icmp");
     let read = |filter: &str| {
@@ -119,8 +119,7 @@ fn is_an_end() -> bool {
     std::env::var_os("ROLE").is_some()
 }
 
-/// Shows back what it is shown, raises a diagnosis while the first word says so, and tells of a controller that fell
-/// silent.
+/// Returns its outputs as inputs, raises a diagnosis while the first word requests it, and reports a silent controller.
 #[test]
 #[ignore = "one end of a test above"]
 fn others_device() {
@@ -204,7 +203,7 @@ fn others_controller() {
             let shown = image.clone();
             connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *shown)).await;
             assert_eq!(connection.view().generation, 1);
-            // Diagnosis comes, and goes.
+            // The diagnosis appears and disappears.
             for (word, kind) in [(0x41, 0x01), (0, 0x0C)] {
                 image[..2].fill(word);
                 connection.set_image(generation, &image).unwrap();
@@ -219,7 +218,7 @@ fn others_controller() {
         println!("{counted:?}");
         assert_eq!((connection.view().generation, counted.losses, counted.stale), (1, 0, 0));
 
-        // A program that stands still sends nothing: both ends give up, and begin anew.
+        // A suspended program sends nothing: both ends close and start again.
         let pause = format!("kill -STOP {0}; sleep 4; kill -CONT {0}", std::process::id());
         let mut pause = Command::new("sh").args(["-c", &pause]).spawn().unwrap();
         let lost = connection.until(|view| view.statistics.losses == 1).await;
@@ -228,7 +227,7 @@ fn others_controller() {
         pause.wait().unwrap();
         connection.close().await.unwrap();
 
-        // Once more at once: the release has freed it.
+        // A second connection at once: the release has freed the device.
         let connection = network.open(settings(), Tap::default()).await.unwrap();
         connection.close().await.unwrap();
 
@@ -244,7 +243,7 @@ fn others_controller() {
     println!("the controller has seen all");
 }
 
-/// Shows back what it is shown.
+/// Returns its outputs as inputs.
 #[derive(Debug, Default)]
 struct Echo(Vec<u8>);
 
@@ -284,11 +283,11 @@ fn our_device() {
     let server = Server::start(&interface, setup, Echo::default()).unwrap();
     assert!(matches!(Network::shared("pd0"), Err(ProfinetError::PortTaken { .. })));
     loop {
-        // Whoever shows 0x55 first wants the device to stop.
+        // The first word 0x55 asks the device to stop.
         let wants_stop = server.with(|device, _| device.application().0.first() == Some(&0x55));
         if wants_stop {
             server.with(|device, _| device.set_fault(Some(Fault::Stop)));
-            // Until the controller has seen it and let go, however long that takes.
+            // Until the controller has received it and disconnected.
             while server.with(|device, _| device.application().0.first() == Some(&0x55)) {
                 std::thread::park_timeout(Duration::from_millis(5));
             }
@@ -326,7 +325,7 @@ fn our_controller() {
     let nobody = Mac([2, 0, 0, 0, 0, 0x77]);
     let silent = commission::change(&interface, nobody, "DCP signal", &Block::signal()).unwrap_err();
     assert!(matches!(silent, ProfinetError::NoAnswer { .. }), "{silent}");
-    // The systems at both ends answer ARP, not our device.
+    // The operating systems at both ends answer ARP, not our device.
     let holder = |last, except| commission::holder(&interface, [192, 168, 79, last].into(), except).unwrap();
     assert_eq!((holder(2, nobody), holder(2, found.mac), holder(7, nobody)), (Some(found.mac), None, None));
     assert_eq!(holder(1, nobody), Some(interface.mac));
@@ -350,7 +349,7 @@ fn our_controller() {
             _ => None,
         });
         assert!(lost.unwrap().contains("in stop"));
-        // What was shown before is not shown again.
+        // The old inputs are not shown again.
         let rest = settings().resting;
         loop {
             match link.next(soon()).await {
@@ -394,7 +393,7 @@ fn dcp_controller() {
     }
 }
 
-/// Runs a program of theirs, once our device is there.
+/// Runs another program, once our device has started.
 fn theirs(program: &str, arguments: &[&str], end: &str) {
     let interface = Interface::find("pc0").expect("the namespace has it");
     let station = Station::Name("yrcx-sim".to_owned());

@@ -1,5 +1,5 @@
-//! No motion outlives its operator: the process that moves a robot is killed or frozen, in every family and on every bus, by
-//! every way to type the motion, directly and through a session, whose holder may end with it.
+//! No motion continues without its operator: the process that moves a robot is killed or frozen, in every family and on
+//! every bus, with every way to start the motion, directly and through a session, which can end at the same time.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -9,19 +9,19 @@ use super::{Desk, Running, serving, stderr};
 use crate::support::namespaces;
 use crate::support::terminal::Terminal;
 
-/// How the process ends.
+/// Signals that end the process.
 const SIGNALS: [&str; 2] = ["KILL", "STOP"];
 
 /// A motion that takes a minute.
 struct Motion {
     family: &'static str,
-    /// How its simulator is served, and what its target says besides.
+    /// Arguments of its simulator, and additional parameters of its target.
     serve: &'static str,
     with: &'static str,
     words: &'static str,
-    /// What `-vv` shows once it moves.
+    /// Text of `-vv` when it moves.
     moves: &'static str,
-    /// What is read then, and whether it says that the robot stands.
+    /// Command that reads the state, and whether its report shows a stopped robot.
     look: &'static str,
     stands: fn(&serde_json::Value) -> bool,
 }
@@ -36,7 +36,7 @@ const JOG: Motion = Motion {
     stands: |status| status["running"] == false,
 };
 
-/// A return to origin, on a slow line: a jog shows its frames at its end, and a look beside it needs a session.
+/// A return to origin on a slow line: a jog prints its frames only at its end, and other reads need a session.
 const HOME: Motion = Motion { words: "toyo home", moves: "-> @HOME", ..JOG };
 
 const SERIAL: Motion = Motion { serve: "toyo --pty", ..HOME };
@@ -51,7 +51,7 @@ const MOVE: Motion = Motion {
     stands: |status| status["held"] == true,
 };
 
-/// A busy machine is late: nobody shall think that the other is gone. What stands there is seen at the machine.
+/// Long timeouts for a busy machine. The state is read from the simulator itself.
 const ETHERNET: Motion = Motion {
     family: "yrcx",
     serve: "yrcx --bind 127.0.0.1:0",
@@ -66,7 +66,7 @@ const DEVICENET: Motion = Motion { serve: "yrcx --bus devicenet", with: "", ..ET
 
 const PROFIBUS: Motion = Motion { serve: "yrcx --bus profibus", with: "", ..ETHERNET };
 
-/// How a motion is typed.
+/// How a motion is started.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Way {
     Direct,
@@ -76,7 +76,7 @@ enum Way {
     Prompt,
 }
 
-/// All ways, each with whether a session of another process holds the links.
+/// All ways, and whether a session of another process holds the links.
 const WAYS: [(Way, bool); 7] = [
     (Way::Direct, false),
     (Way::Direct, true),
@@ -87,7 +87,7 @@ const WAYS: [(Way, bool); 7] = [
     (Way::Prompt, true),
 ];
 
-/// The robots `a` and `b`, each behind a simulator of its own.
+/// The robots `a` and `b`, each with its own simulator.
 fn two(motion: &Motion) -> (Vec<Running>, Desk) {
     let nobody = Desk::new(&[]);
     let simulators: Vec<_> = (0..2).map(|_| serving(&nobody, motion.serve)).collect();
@@ -96,7 +96,7 @@ fn two(motion: &Motion) -> (Vec<Running>, Desk) {
     (simulators, desk)
 }
 
-/// Waits until the machine itself says that a robot stands, and that its master has gone.
+/// Waits until the simulator itself reports a stopped robot without a master.
 fn stands_alone(simulator: &mut Running) {
     loop {
         writeln!(simulator.process.stdin.as_ref().unwrap(), "robot").unwrap();
@@ -157,11 +157,11 @@ impl Moving {
         }
     }
 
-    /// Waits until it was killed, by whomever, and until nobody is left who would stop the robot but for the guardian of a
-    /// session. What was said.
+    /// Waits until the process has ended, and until no guardian remains that would stop the robot, except for that of a
+    /// session. Returns the output.
     fn ends(self, desk: &Desk, session: Option<&Running>) -> String {
         let (code, said) = match self {
-            // Its guardian has the same stderr: both have ended.
+            // Its guardian has the same stderr, so both have ended.
             Self::Process(process) => process.end(),
             Self::Prompt(mut prompt) => (prompt.end().code(), String::from_utf8_lossy(&prompt.written).into_owned()),
         };
@@ -171,7 +171,7 @@ impl Moving {
     }
 }
 
-/// Waits until no guardian of this user is left but for that of a session.
+/// Waits until no guardian of this user remains, except for that of a session.
 fn no_guardian(desk: &Desk, session: Option<&Running>) {
     let home = format!("HOME={}", desk.folder.path().display());
     let parent = session.map_or_else(|| "none".to_owned(), |session| format!("PPid:\t{}\n", session.process.id()));
@@ -200,7 +200,7 @@ fn stops(motion: &Motion, signals: &[&str], ways: &[(Way, bool)]) {
                     desk.until(|session| session["under_way"] == false);
                     continue;
                 }
-                // With the session goes the link that it held.
+                // The session and its link end together.
             }
             let robots: &[_] = if way == Way::Several { &["a", "b"] } else { &["a"] };
             for (robot, simulator) in robots.iter().zip(&mut simulators) {
@@ -216,57 +216,57 @@ fn stops(motion: &Motion, signals: &[&str], ways: &[(Way, bool)]) {
 }
 
 #[test]
-fn a_jog_whose_process_is_killed_or_frozen_is_stopped() {
+fn stops_the_jog_of_a_killed_or_frozen_process() {
     stops(&JOG, &SIGNALS, &[(Way::Direct, true)]);
 }
 
 #[test]
-fn a_return_to_origin_whose_process_is_killed_is_stopped() {
+fn stops_the_origin_return_of_a_killed_process() {
     stops(&HOME, &SIGNALS, &WAYS[..2]);
     stops(&HOME, &SIGNALS[..1], &WAYS[2..]);
 }
 
 #[test]
-fn a_motion_over_a_serial_port_whose_process_is_killed_or_frozen_is_stopped() {
+fn stops_a_serial_motion_of_a_killed_or_frozen_process() {
     stops(&SERIAL, &SIGNALS, &WAYS[..2]);
     stops(&SERIAL, &SIGNALS[..1], &WAYS[2..]);
 }
 
 #[test]
-fn a_move_whose_process_is_killed_or_frozen_is_stopped() {
+fn stops_the_move_of_a_killed_or_frozen_process() {
     stops(&MOVE, &SIGNALS, &WAYS[..2]);
     stops(&MOVE, &SIGNALS[..1], &WAYS[2..]);
 }
 
-/// A yrcx is not stopped by the guardian outside a session: its adapter misses the master.
+/// Outside a session, the adapter stops a yrcx when it misses its master, not the guardian.
 #[test]
-fn a_yrcx_whose_master_or_client_is_killed_or_frozen_stops() {
+fn yrcx_stops_if_its_master_or_client_is_killed_or_frozen() {
     stops(&ETHERNET, &SIGNALS, &WAYS[..2]);
     stops(&ETHERNET, &SIGNALS[..1], &WAYS[2..]);
 }
 
 #[test]
-fn a_yrcx_on_devicenet_whose_master_or_client_is_killed_or_frozen_stops() {
+fn yrcx_on_devicenet_stops_if_its_master_or_client_is_killed_or_frozen() {
     stops(&DEVICENET, &SIGNALS, &WAYS[..2]);
     stops(&DEVICENET, &SIGNALS[..1], &WAYS[2..]);
 }
 
 #[test]
-fn a_yrcx_on_profibus_whose_master_or_client_is_killed_or_frozen_stops() {
+fn yrcx_on_profibus_stops_if_its_master_or_client_is_killed_or_frozen() {
     stops(&PROFIBUS, &SIGNALS, &WAYS[..2]);
     stops(&PROFIBUS, &SIGNALS[..1], &WAYS[2..]);
 }
 
-/// Who holds the link ends, alone or with who moves the robot.
+/// The session process ends, alone or together with the process that moves the robot.
 #[test]
-fn a_motion_is_stopped_when_the_holder_of_its_session_ends() {
+fn stops_a_motion_when_its_session_process_ends() {
     for motion in [&MOVE, &HOME, &SERIAL] {
         for (holder, client) in [("KILL", "KILL"), ("KILL", ""), ("STOP", ""), ("TERM", ""), ("STOP", "KILL")] {
             let (_simulators, desk) = two(motion);
             let session = Running::session(&desk, "a");
             let moving = Moving::starts(&desk, motion, Way::Direct);
             let (session_id, moving_id) = (session.process.id(), moving.pid());
-            // Both at the same time: who is left for a moment ends by itself.
+            // Both at the same time: the remaining process ends by itself.
             let kill = |signal: &str, pids: &[u32]| {
                 let pids = pids.iter().map(u32::to_string);
                 assert!(Command::new("kill").args(["-s", signal]).args(pids).status().unwrap().success());
@@ -292,7 +292,7 @@ fn a_motion_is_stopped_when_the_holder_of_its_session_ends() {
 }
 
 #[test]
-fn what_came_of_a_stop_is_in_the_log_of_a_session_in_the_background() {
+fn background_session_logs_the_result_of_a_stop() {
     let (_simulators, desk) = two(&MOVE);
     desk.data("-r a session open --background");
     let moving = Moving::starts(&desk, &MOVE, Way::Direct);
@@ -301,9 +301,9 @@ fn what_came_of_a_stop_is_in_the_log_of_a_session_in_the_background() {
     while !std::fs::read_to_string(&log).unwrap().contains(": the robot was stopped\n") {}
 }
 
-/// An update takes the file of the program away while it moves a robot.
+/// An update removes the program file while it moves a robot.
 #[test]
-fn a_program_that_was_removed_stops_what_it_moves() {
+fn removed_program_file_does_not_prevent_the_stop() {
     for in_session in [false, true] {
         let (_simulators, mut desk) = two(&MOVE);
         let copy = desk.folder.path().join("armctl");
@@ -323,18 +323,18 @@ fn a_program_that_was_removed_stops_what_it_moves() {
     }
 }
 
-/// What ends in order is not stopped once more: HOLD stays off.
+/// After a normal end there is no additional stop: HOLD stays off.
 #[test]
-fn a_motion_that_ends_in_order_is_not_stopped() {
+fn does_not_stop_a_finished_motion() {
     let (_simulators, desk) = two(&MOVE);
     let moved = desk.run("-r a yerc move relative --x 1 --speed 100mm/s --yes");
     assert!(moved.status.success(), "{}", stderr(&moved));
-    // The guardian has stderr as long as it lives, so it had ended when that was whole.
+    // The guardian keeps stderr open, so it has ended at the end of stderr.
     assert_eq!(desk.data("-r a yerc status")["held"], false);
 }
 
 #[test]
-fn a_move_that_is_to_be_left_goes_on_when_its_process_is_killed() {
+fn move_with_on_interrupt_leave_continues_after_a_kill() {
     for in_session in [false, true] {
         let (_simulators, desk) = two(&MOVE);
         let mut session = in_session.then(|| Running::session(&desk, "a"));
@@ -351,9 +351,9 @@ fn a_move_that_is_to_be_left_goes_on_when_its_process_is_killed() {
     }
 }
 
-/// Keys that would end or suspend the process stop the robot, as Ctrl-C does.
+/// Keys that end or suspend the process stop the robot, like Ctrl-C.
 #[test]
-fn keys_that_end_or_suspend_a_process_stop_what_it_moves() {
+fn terminal_signals_stop_the_motion() {
     for signal in ["QUIT", "TSTP"] {
         for motion in [&MOVE, &JOG] {
             let (_simulators, desk) = two(motion);
@@ -375,9 +375,9 @@ fn keys_that_end_or_suspend_a_process_stop_what_it_moves() {
     }
 }
 
-/// A controller on UDP takes a stop from anybody; whoever else wants the link is told who has it.
+/// A controller on UDP accepts a stop from any client; other commands report the process that holds the link.
 #[test]
-fn a_stop_goes_around_a_session_that_does_not_respond() {
+fn stop_bypasses_an_unresponsive_session() {
     for (motion, stop) in [(&MOVE, "yerc hold on"), (&JOG, "toyo stop")] {
         let (_simulators, desk) = two(motion);
         let session = Running::session(&desk, "a");
@@ -401,7 +401,7 @@ fn a_stop_goes_around_a_session_that_does_not_respond() {
     }
 }
 
-/// A motion over PROFINET, which takes a network of its own: the machine says that the robot stands, and what is the matter.
+/// A motion over PROFINET in its own network: the simulator reports a stopped robot and the alarm.
 #[cfg(target_os = "linux")]
 const PROFINET: &str = r#"
 export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"
@@ -439,7 +439,7 @@ done; done
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_yrcx_on_profinet_whose_master_or_client_is_killed_or_frozen_stops() {
+fn yrcx_on_profinet_stops_if_its_master_or_client_is_killed_or_frozen() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().to_str().unwrap();
     let variables = [("ARMCTL", env!("CARGO_BIN_EXE_armctl")), ("FOLDER", place)];

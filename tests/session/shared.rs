@@ -1,5 +1,5 @@
-//! A link that takes one client, which `top`, services, watches and commands want at the same time: a device server in front
-//! of a simulated controller counts how often two of them would have met.
+//! A link for one client, used by `top`, services, watches and commands at the same time: a device server for a
+//! simulated controller counts simultaneous connections.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -16,13 +16,14 @@ use crate::support::terminal::Terminal;
 /// A serial device server.
 struct DeviceServer {
     url: String,
-    /// Connections that came while another one was there.
+    /// Number of connections during another one.
     conflicts: Arc<AtomicUsize>,
     accepted: Arc<AtomicUsize>,
 }
 
 impl DeviceServer {
-    /// In front of a simulator; of two clients it lets the first one go if it `evicts`, or else the second one.
+    /// Starts it for a simulator. At a second client, it closes the first connection if it `evicts`, otherwise the
+    /// second.
     fn before(target: &str, evicts: bool) -> Self {
         let controller: SocketAddr = target.strip_prefix("tcp://").unwrap().parse().unwrap();
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -58,7 +59,7 @@ impl DeviceServer {
     }
 }
 
-/// The one connection that a simulator takes, as soon as it has let go of the one before.
+/// The only connection that a simulator accepts, once the previous one is closed.
 fn connected(controller: SocketAddr) -> TcpStream {
     loop {
         let line = TcpStream::connect(controller).unwrap();
@@ -83,7 +84,7 @@ fn pass(mut from: TcpStream, mut to: TcpStream) {
     });
 }
 
-/// What a watch prints, line by line, until it is ended.
+/// Output lines of a watch, until it is ended.
 struct Watch {
     running: Running,
     lines: Arc<Mutex<Vec<String>>>,
@@ -103,7 +104,7 @@ impl Watch {
 }
 
 #[test]
-fn what_looks_at_a_robot_shares_a_link_that_takes_one_client() {
+fn monitors_share_a_link_for_one_client() {
     for evicts in [false, true] {
         let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
         let server = DeviceServer::before(&simulator.first, evicts);
@@ -111,7 +112,7 @@ fn what_looks_at_a_robot_shares_a_link_that_takes_one_client() {
         let mut top = Terminal::start(desk.command("top --all --watch 50ms"), 100, 30).unwrap();
         let watch = Watch::start(desk.command("-r cell toyo position --watch 50ms -o jsonl"));
         let metrics = Watch::start(desk.command("serve metrics --all --listen 127.0.0.1:0 --watch 50ms"));
-        // Whatever it is told of, it looks at robots whether or not there is a broker.
+        // It polls robots with and without a broker.
         let publish = Watch::start(desk.command("publish mqtt://127.0.0.1:1 --all --watch 50ms"));
         let seen = |watch: &Watch| watch.lines.lock().unwrap().len();
         while seen(&watch) < 40 {
@@ -132,14 +133,14 @@ fn what_looks_at_a_robot_shares_a_link_that_takes_one_client() {
         }
         top.press("q");
         assert!(top.end().success());
-        // Nobody uses the session any more, so it ends.
+        // The unused session ends.
         while !desk.files("sock").is_empty() {}
     }
 }
 
 /// Commands without a session open the link one after the other.
 #[test]
-fn commands_wait_for_each_other_where_a_link_takes_one_client() {
+fn commands_wait_for_a_link_for_one_client() {
     let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
     let server = DeviceServer::before(&simulator.first, true);
     let desk = Desk::new(&[("cell", "toyo", &server.url)]);
@@ -152,9 +153,9 @@ fn commands_wait_for_each_other_where_a_link_takes_one_client() {
     assert!(desk.files("sock").is_empty(), "a command opens no session");
 }
 
-/// A command that keeps the link to itself is not evicted, and whoever wants it is told who has it.
+/// A command with a direct link is not evicted, and other commands report its process.
 #[test]
-fn who_keeps_a_link_to_himself_is_named() {
+fn names_the_process_that_holds_a_link() {
     let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
     let server = DeviceServer::before(&simulator.first, true);
     let desk = Desk::new(&[("cell", "toyo", &server.url)]);

@@ -1,4 +1,4 @@
-//! Holds JSON documents against the schemas that `armctl schema` prints, with a validator that others wrote.
+//! Validates JSON documents against the schemas of `armctl schema`, with a validator of other authors.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
@@ -7,8 +7,8 @@ use armctl::failure::Kind;
 use jsonschema::Validator;
 use serde_json::Value;
 
-/// What an envelope promises: its own schema, its keys in the order of the contract, an exit code that is that of its
-/// kind, and data that follows the schema of its command, or that of a dry run.
+/// Checks an envelope: its schema, the order of its keys, the exit code of its kind, and data that matches the schema
+/// of its command or of a dry run.
 pub fn check(envelope: &Value) -> Result<(), String> {
     follows(envelope, "envelope")?;
     let schema = schema("envelope")?;
@@ -29,14 +29,14 @@ pub fn check(envelope: &Value) -> Result<(), String> {
     follows(data, if is_rehearsal { "dry-run" } else { command })
 }
 
-/// Whether a value follows the schema of this name, and has no field that it does not know.
+/// Checks a value against the schema of this name, without additional fields.
 fn follows(value: &Value, id: &str) -> Result<(), String> {
     let wrong: Vec<String> =
         validator(id)?.iter_errors(value).map(|error| format!("{}: {error}", error.instance_path())).collect();
     if wrong.is_empty() { Ok(()) } else { Err(format!("not as the schema of {id} says: {}", wrong.join("; "))) }
 }
 
-/// The validator of a schema, made once: there are many schemas, and a transcript needs a few.
+/// Cached validator of a schema, because a transcript needs only a few of many schemas.
 fn validator(id: &str) -> Result<Arc<Validator>, String> {
     static MADE: Mutex<Option<HashMap<String, Arc<Validator>>>> = Mutex::new(None);
     let mut made = MADE.lock().expect("nobody panics with it");
@@ -55,7 +55,7 @@ fn schema(id: &str) -> Result<Value, String> {
     Ok((entry.ok_or_else(|| format!("`armctl schema` does not know {id}"))?.schema)().to_value())
 }
 
-/// A schema leaves room for fields to come; what is written today must have none that it does not name.
+/// Schemas allow additional fields for the future; current data must not have any.
 fn close(schema: &mut Value) {
     match schema {
         Value::Object(keys) => {
@@ -64,7 +64,7 @@ fn close(schema: &mut Value) {
                 keys.insert("unevaluatedProperties".into(), false.into());
             }
             for (key, inner) in keys {
-                // Conditions and the ways of a flattened enum name some of the fields; the rest stand beside them.
+                // Conditions and variants of a flattened enum contain some of the fields; the others are next to them.
                 let is_part = matches!(key.as_str(), "if" | "then" | "else" | "not" | "allOf");
                 let is_way = is_object && matches!(key.as_str(), "anyOf" | "oneOf");
                 if !(is_part || is_way) {

@@ -4,20 +4,20 @@ use std::io::{BufRead as _, BufReader};
 use std::net::SocketAddr;
 use std::process::{Child, Command, Stdio};
 
-/// A simulated controller, as long as it is wanted.
+/// A simulated controller, until it is dropped.
 pub struct Simulator {
     process: Child,
-    /// Where it is.
+    /// URL of the controller.
     pub url: String,
 }
 
 impl Simulator {
-    /// Starts one of a family, at a place of its own.
+    /// Starts a simulator of a family on a free port.
     pub fn start(family: &str) -> Self {
         Self::start_with(family, &[])
     }
 
-    /// The same with further arguments.
+    /// Starts a simulator with additional arguments.
     pub fn start_with(family: &str, arguments: &[&str]) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
         command.args(["sim", family, "-q"]).args(arguments);
@@ -35,7 +35,7 @@ impl Simulator {
 }
 
 impl Simulator {
-    /// Its address, and what follows that in the URL.
+    /// Its address, and the rest of the URL.
     #[allow(dead_code, reason = "whoever stands between wants it")]
     pub fn place(&self) -> (SocketAddr, &str) {
         let (_, place) = self.url.split_once("://").expect("a URL");

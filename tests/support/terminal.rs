@@ -1,4 +1,4 @@
-//! A terminal for a program: a pseudo-terminal, and the picture that the program draws on it.
+//! A pseudo-terminal for a program, and the picture that the program draws on it.
 #![allow(dead_code, reason = "some watch the picture, some what is said line after line")]
 
 use std::fs::File;
@@ -10,38 +10,38 @@ use std::time::{Duration, Instant};
 use rustix::termios::{InputModes, LocalModes, OptionalActions, Termios, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
 use serialport::{SerialPort as _, TTYPort};
 
-/// How long a read waits before it looks whether the program is still there, and how often it does.
+/// Wait of one read, and the maximum number of reads.
 const LOOK: Duration = Duration::from_secs(1);
 const LOOKS: usize = 60;
-/// A program that has not ended by then hangs, and the test fails instead of hanging with it.
+/// Time limit: a program that has not ended then hangs, and the test fails.
 const END: Duration = Duration::from_secs(600);
 
-/// A program on a terminal of its own.
+/// A program on its own terminal.
 pub struct Terminal {
-    /// Where what the program writes comes out.
+    /// Output of the program.
     master: TTYPort,
-    /// The terminal itself, kept open to look at its modes.
+    /// The terminal itself, kept open to check its modes.
     slave: File,
-    /// Keeps the terminal there.
+    /// Keeps the terminal open.
     _port: TTYPort,
     before: Termios,
     start: Instant,
     pub child: Child,
     pub picture: Picture,
-    /// All that was written.
+    /// All output.
     pub written: Vec<u8>,
-    /// How much of it, without escape sequences, was read by [`Terminal::says`].
+    /// Length of the output, without escape sequences, that [`Terminal::says`] has consumed.
     heard: usize,
 }
 
 impl Terminal {
-    /// Starts it, in a process group of its own.
+    /// Starts it in its own process group.
     pub fn start(mut command: Command, columns: u16, lines: u16) -> std::io::Result<Self> {
         let (mut master, port) = TTYPort::pair()?;
         master.set_timeout(LOOK)?;
         let name = port.name().expect("a pseudo-terminal has a name");
         let slave = File::options().read(true).write(true).open(name)?;
-        // As a shell has it: lines, echo, signals from keys.
+        // As in a shell: lines, echo, signals from keys.
         let mut modes = tcgetattr(&slave)?;
         modes.local_modes |= LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG;
         modes.input_modes |= InputModes::ICRNL;
@@ -65,7 +65,7 @@ impl Terminal {
         })
     }
 
-    /// Reads until the picture is as it shall be.
+    /// Reads until the picture is as expected.
     pub fn until(&mut self, what: &str, is_so: impl Fn(&Picture) -> bool) {
         while !is_so(&self.picture) {
             let read = self.read();
@@ -73,17 +73,17 @@ impl Terminal {
         }
     }
 
-    /// Reads until the picture has this text.
+    /// Reads until the picture contains this text.
     pub fn shows(&mut self, text: &str) {
         self.until(text, |picture| picture.text().contains(text));
     }
 
-    /// Reads until this text comes, after what was waited for before: for programs that write line after line.
+    /// Reads until this text follows the earlier ones: for programs that print lines.
     pub fn says(&mut self, text: &str) {
         self.says_one_of(&[text]);
     }
 
-    /// Reads until the first of these texts comes, likewise, and tells which.
+    /// Reads until the first of these texts follows, and returns it.
     pub fn says_one_of(&mut self, texts: &[&str]) -> usize {
         loop {
             let written = plain(&self.written);
@@ -98,7 +98,7 @@ impl Terminal {
         }
     }
 
-    /// Takes what was written; `false` if nothing comes any more.
+    /// Reads output; `false` at the end.
     pub fn read(&mut self) -> bool {
         for _ in 0..LOOKS {
             self.fails_when_it_hangs();
@@ -116,7 +116,7 @@ impl Terminal {
         assert!(self.start.elapsed() < END, "it hangs:\n{}", self.picture.text());
     }
 
-    /// Takes what has been written, or is in a moment; `false` if nothing is.
+    /// Reads available output; `false` without any.
     fn take(&mut self) -> bool {
         let mut buffer = [0; 4096];
         match self.master.read(&mut buffer) {
@@ -134,7 +134,7 @@ impl Terminal {
         self.master.write_all(keys.as_bytes()).expect("the terminal takes keys");
     }
 
-    /// Waits until the program reads single keys: what is pressed before is lost.
+    /// Waits until the program reads single keys; earlier keys would be lost.
     pub fn reads_keys(&self) {
         let is_canonical = || {
             let modes = tcgetattr(&self.slave).expect("a terminal has modes");
@@ -163,16 +163,16 @@ impl Terminal {
         }
     }
 
-    /// Whether the terminal is as it was before the program: its modes, the screen, the cursor.
+    /// Whether modes, screen and cursor of the terminal are restored.
     pub fn is_as_before(&self) -> bool {
         let now = tcgetattr(&self.slave).expect("a terminal has modes");
         let modes = |modes: &Termios| (modes.local_modes, modes.input_modes, modes.output_modes, modes.control_modes);
         modes(&now) == modes(&self.before) && !self.picture.is_alternate && self.picture.has_cursor
     }
 
-    /// Waits for its end, and takes the rest of what it wrote.
+    /// Waits for its end, and reads the remaining output.
     pub fn end(&mut self) -> ExitStatus {
-        // Read meanwhile: a terminal that is full holds up what writes to it.
+        // Continues to read, because a full terminal would block the program.
         self.master.set_timeout(Duration::from_millis(20)).expect("a terminal takes a timeout");
         let status = loop {
             self.fails_when_it_hangs();
@@ -181,7 +181,7 @@ impl Terminal {
                 break status;
             }
         };
-        // All that was written is there by now.
+        // All output is available now.
         self.master.set_timeout(Duration::ZERO).expect("a terminal takes a timeout");
         while self.take() {}
         status
@@ -196,21 +196,21 @@ impl Drop for Terminal {
     }
 }
 
-/// What a terminal shows: as much of one as a program that draws with a cursor needs.
+/// Content of a terminal, with the functions that full-screen programs need.
 pub struct Picture {
     columns: usize,
     cells: Vec<char>,
     at: (usize, usize),
-    /// What of a sequence or character has come.
+    /// Received part of an incomplete sequence or character.
     begun: Vec<u8>,
-    /// Whether this is the screen of programs that fill it.
+    /// Whether this is the alternate screen.
     pub is_alternate: bool,
     pub has_cursor: bool,
-    /// Whether it was told of colours.
+    /// Whether colors were used.
     pub has_color: bool,
 }
 
-/// What was written without the sequences that move the cursor and colour, and without what is not whole yet.
+/// Output without cursor and color sequences, and without an incomplete end.
 fn plain(written: &[u8]) -> String {
     let whole = written.utf8_chunks().next().map_or("", |chunk| chunk.valid());
     let text = whole.trim_end_matches('\x1b');
@@ -235,7 +235,7 @@ impl Picture {
         }
     }
 
-    /// What is seen, a line a line.
+    /// Visible lines.
     pub fn text(&self) -> String {
         let lines = self.cells.chunks(self.columns).map(|line| line.iter().collect::<String>());
         lines.map(|line| line.trim_end().to_owned() + "\n").collect()

@@ -1,5 +1,5 @@
-//! `armctl top` on a terminal, against simulated controllers on the loopback: what it shows, what keys do, that the
-//! terminal is as before on every way out, and that nothing leaves but reads; the last of services, too.
+//! `armctl top` on a terminal, against simulated controllers: display, keys, restored terminal at every exit, and only
+//! reads. Services are also tested for only reads.
 #![cfg(unix)]
 
 mod proxy;
@@ -16,7 +16,7 @@ use tempfile::TempDir;
 use crate::support::terminal::Terminal;
 use recorded::Recorded;
 
-/// A user with an inventory of these targets, robot1 and so on.
+/// A user with an inventory of these targets: robot1, robot2 …
 struct Desk {
     folder: TempDir,
 }
@@ -51,7 +51,7 @@ fn simulated() -> Desk {
 }
 
 #[test]
-fn robots_are_listed_and_opened_and_q_ends_it() {
+fn lists_and_opens_robots_and_q_quits() {
     let desk = simulated();
     let mut top = desk.top(&["--watch", "100ms"]);
     top.shows("3 robots · 3 answer");
@@ -77,7 +77,7 @@ fn robots_are_listed_and_opened_and_q_ends_it() {
 }
 
 #[test]
-fn a_single_robot_has_the_screen_for_itself() {
+fn single_robot_uses_the_full_screen() {
     let desk = simulated();
     let mut top = desk.top(&["-r", "robot1"]);
     top.shows("SIGNALS");
@@ -86,7 +86,7 @@ fn a_single_robot_has_the_screen_for_itself() {
 }
 
 #[test]
-fn the_terminal_is_as_before_on_every_way_out() {
+fn every_exit_restores_the_terminal() {
     let desk = simulated();
     // A key, or a signal.
     let ends = [
@@ -111,7 +111,7 @@ fn the_terminal_is_as_before_on_every_way_out() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn ctrl_z_suspends_it_and_it_goes_on() {
+fn ctrl_z_suspends_and_continues() {
     let desk = simulated();
     let mut top = desk.top(&[]);
     top.shows("3 answer");
@@ -127,10 +127,10 @@ fn ctrl_z_suspends_it_and_it_goes_on() {
     assert!(top.is_as_before());
 }
 
-/// As in a container: the leader of the session is outside, and its number unknown.
+/// As in a container: the session leader is outside, and its process id is unknown.
 #[cfg(target_os = "linux")]
 #[test]
-fn ctrl_z_suspends_it_in_a_pid_namespace() {
+fn ctrl_z_suspends_in_a_pid_namespace() {
     let apart = |words: &[&str]| Command::new("unshare").args(["-Urpf", "--mount-proc"]).args(words).output();
     if !apart(&["true"]).is_ok_and(|output| output.status.success()) {
         eprintln!("skipped: no PID namespaces here");
@@ -138,13 +138,13 @@ fn ctrl_z_suspends_it_in_a_pid_namespace() {
     }
     let own = std::env::current_exe().expect("a test has a path");
     let own = own.to_str().expect("in UTF-8");
-    let test = apart(&[own, "--exact", "top::ctrl_z_suspends_it_and_it_goes_on"]).expect("unshare runs");
+    let test = apart(&[own, "--exact", "top::ctrl_z_suspends_and_continues"]).expect("unshare runs");
     let said = String::from_utf8_lossy(&test.stdout);
     assert!(test.status.success() && said.contains("1 passed"), "{said}");
 }
 
 #[test]
-fn without_colour_and_beyond_ascii_nothing_is_told_that_the_terminal_has_not() {
+fn limits_output_to_terminal_capabilities() {
     let desk = simulated();
     for (variable, value, words) in [("NO_COLOR", "1", &[][..]), ("LANG", "C", &["--color", "never"])] {
         let mut command = desk.command(&[&["top"], words].concat());
@@ -159,7 +159,7 @@ fn without_colour_and_beyond_ascii_nothing_is_told_that_the_terminal_has_not() {
 }
 
 #[test]
-fn only_reads_leave_whatever_is_pressed() {
+fn sends_only_reads_for_every_key() {
     let controllers = Recorded::start();
     let desk = Desk::new(&controllers.targets);
     let mut top = desk.top(&["--watch", "50ms"]);
@@ -169,7 +169,7 @@ fn only_reads_leave_whatever_is_pressed() {
         top.until(robot, |picture| {
             picture.text().contains("SIGNALS") && picture.text().starts_with(&format!(" {robot}"))
         });
-        // Every character that is a key or none, but those that end it or choose another robot.
+        // All characters, except for the keys that end the program or select another robot.
         top.press("\x1b[A\x1b[B\x1b[5~\x1b[6~\x1b[H\x1b[F");
         top.press(&(' '..='~').filter(|key| !"qQ/np?h".contains(*key)).collect::<String>());
         top.press(" \x7f");
@@ -185,7 +185,7 @@ fn only_reads_leave_whatever_is_pressed() {
 }
 
 #[test]
-fn services_send_nothing_but_reads() {
+fn services_send_only_reads() {
     for words in [["serve", "metrics", "--listen", "127.0.0.1:0"], ["publish", "mqtt://127.0.0.1:1", "--every", "1s"]] {
         let controllers = Recorded::start();
         let desk = Desk::new(&controllers.targets);
@@ -202,9 +202,9 @@ fn services_send_nothing_but_reads() {
 }
 
 #[test]
-fn a_terminal_that_is_gone_ends_it_where_hanging_up_is_ignored() {
+fn lost_terminal_ends_the_monitor_if_hangups_are_ignored() {
     let desk = simulated();
-    // Closed in every child, which would keep the terminal there.
+    // Closed in every child, because it would keep the terminal open.
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).expect("a pseudo-terminal");
     grantpt(&master).and_then(|()| unlockpt(&master)).expect("it can be opened");
     let name = ptsname(&master, Vec::new()).expect("it has a name").into_string().expect("in UTF-8");
@@ -219,7 +219,7 @@ fn a_terminal_that_is_gone_ends_it_where_hanging_up_is_ignored() {
     let mut child = program.process_group(0).spawn().expect("it starts");
     drop(program);
     let mut written: Vec<u8> = Vec::new();
-    // The alternate screen: it waits for keys now.
+    // After the switch to the alternate screen, it reads keys.
     while !written.windows(8).any(|part| part == b"\x1b[?1049h") {
         let mut buffer = [0; 4096];
         let len = master.read(&mut buffer).expect("it draws");
@@ -231,7 +231,7 @@ fn a_terminal_that_is_gone_ends_it_where_hanging_up_is_ignored() {
         child.try_wait().expect("it is our child")
     });
     child.kill().unwrap_or_default();
-    // Whether a picture or a key was wanted at that moment: it ends, and says so by its code.
+    // It ends with an error code, during a drawing or a wait for a key.
     let code = ended.expect("it goes on without a terminal").code();
     assert!(matches!(code, Some(1 | 130)), "{code:?}");
 }

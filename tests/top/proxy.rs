@@ -1,11 +1,11 @@
-//! What stands between a client and a controller, and keeps all that the client sends.
+//! A relay between a client and a controller that records everything from the client.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream, UdpSocket};
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-/// All that clients sent, in pieces as they came.
+/// All data from clients, in pieces as received.
 #[derive(Clone, Default)]
 pub struct Sent(Arc<Mutex<Vec<Vec<u8>>>>);
 
@@ -19,7 +19,7 @@ impl Sent {
     }
 }
 
-/// Passes datagrams on to `controller`, and its answers back. It ends with the process.
+/// Relays datagrams to `controller`, and its answers back. It ends with the process.
 pub fn udp(controller: SocketAddr) -> (SocketAddr, Sent) {
     let (front, sent) = (UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port"), Sent::default());
     let back = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port");
@@ -33,7 +33,7 @@ pub fn udp(controller: SocketAddr) -> (SocketAddr, Sent) {
         while let Ok(len) = answers.recv(&mut buffer) {
             let to: Option<SocketAddr> = *last.lock().expect("no panic");
             if let Some(to) = to {
-                // A client that is gone hears nothing.
+                // The client may have closed its socket.
                 let _gone = front.send_to(&buffer[..len], to);
             }
         }
@@ -50,7 +50,7 @@ pub fn udp(controller: SocketAddr) -> (SocketAddr, Sent) {
     (address, sent)
 }
 
-/// The same for connections.
+/// Relays TCP connections.
 pub fn tcp(controller: SocketAddr) -> (SocketAddr, Sent) {
     let (listener, sent) = (TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port"), Sent::default());
     let address = listener.local_addr().expect("an address");
@@ -76,6 +76,6 @@ fn pass(mut from: TcpStream, mut to: TcpStream, note: impl Fn(&[u8])) {
             break;
         }
     }
-    // The other side may be gone already.
+    // The other side may have closed already.
     let _closed = to.shutdown(Shutdown::Both);
 }

@@ -1,9 +1,9 @@
-//! Controllers of all families behind ends that keep what is sent to them, and what may be in that.
+//! Controllers of all families behind recording relays, and the check of the recorded data.
 
 use super::proxy::{self, Sent};
 use crate::support::simulator::Simulator;
 
-/// One of each family, served on the loopback.
+/// One controller of each family, on the loopback.
 pub struct Recorded {
     /// Family and target of each.
     pub targets: [String; 3],
@@ -26,7 +26,7 @@ impl Recorded {
         Self { targets, sent: [to_yerc, to_toyo, to_yrcx], _simulators: simulators }
     }
 
-    /// How many pieces the one was sent that was sent the fewest.
+    /// Number of pieces of the controller with the fewest.
     pub fn fewest(&self) -> usize {
         self.sent.iter().map(|sent| sent.pieces().len()).min().unwrap_or_default()
     }
@@ -39,8 +39,8 @@ impl Recorded {
     }
 }
 
-/// Status, alarm, axes, positions, errors of position, torque, I/O: by their numbers and the services that read (FS and DX
-/// 3.3).
+/// Read commands: status, alarm, axes, positions, position errors, torque, I/O, by their numbers and services (FS and
+/// DX 3.3).
 fn reads_of_yerc(sent: &Sent) {
     let frames = sent.pieces();
     assert!(frames.len() > 20);
@@ -51,7 +51,7 @@ fn reads_of_yerc(sent: &Sent) {
     }
 }
 
-/// Words that read (TO 2-2, 2-4, 2-8).
+/// Read commands (TO 2-2, 2-4, 2-8).
 fn reads_of_toyo(sent: &Sent) {
     let text = String::from_utf8(sent.pieces().concat()).expect("the protocol is text");
     let words: Vec<&str> = text.split("\r\n").filter_map(|block| block.strip_prefix('@')?.get(..4)).collect();
@@ -61,8 +61,8 @@ fn reads_of_toyo(sent: &Sent) {
     }
 }
 
-/// Encapsulation commands and CIP services that leave nothing behind: no connection is opened that the controller would
-/// miss (volume 2, 2-3; volume 1, appendix A).
+/// Encapsulation commands and CIP services without an effect: no connection whose loss the controller would report
+/// (volume 2, 2-3; volume 1, appendix A).
 fn reads_of_yrcx(sent: &Sent) {
     const REGISTER: u16 = 0x65;
     const UNREGISTER: u16 = 0x66;
@@ -75,7 +75,7 @@ fn reads_of_yrcx(sent: &Sent) {
         bytes = rest;
         match command {
             REGISTER | UNREGISTER => {}
-            // Behind the header: interface, timeout, two items; the second one is the request.
+            // After the header: interface, timeout, two items; the second one is the request.
             SEND => {
                 assert_eq!(frame[40], 0x0E, "only Get_Attribute_Single");
                 asked += 1;

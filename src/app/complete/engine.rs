@@ -16,7 +16,7 @@ use crate::cli::Cli;
 use crate::command::{Candidate, ValueKind};
 
 /// Tag of candidates that need more text.
-const BEGUN: &str = "begun";
+const INCOMPLETE_TAG: &str = "begun";
 
 /// Allows `#[arg(add = ValueKind::Robot)]`.
 impl ArgExt for ValueKind {}
@@ -33,7 +33,7 @@ pub(super) fn complete(
     let matches = root.try_get_matches_from_mut(&before).ok()?;
     let path = path(&matches);
     let context = Arc::new(Context::new(&matches, (is_among, connects), patience));
-    let mut narrowed = narrow(&root, &path, &context)?;
+    let mut reduced = narrow(&root, &path, &context)?;
     if !is_among {
         // Freeing some thousand parts takes time, and the process is about to exit.
         std::mem::forget(root);
@@ -44,10 +44,10 @@ pub(super) fn complete(
             *word = "0".into();
         }
     }
-    let own = own_flags(&narrowed, &path);
+    let own = own_flags(&reduced, &path);
     before.push(current.to_owned());
     let index = before.len() - 1;
-    let found = clap_complete::engine::complete(&mut narrowed, before, index, None).ok()?;
+    let found = clap_complete::engine::complete(&mut reduced, before, index, None).ok()?;
     let mut found: Vec<Candidate> = found.iter().filter_map(candidate).collect();
     if current.is_empty() {
         // For an empty word, the forty global flags are no help.
@@ -62,8 +62,8 @@ fn candidate(found: &CompletionCandidate) -> Option<Candidate> {
     let help = found.get_help().map(|help| help.to_string().lines().next().unwrap_or_default().to_owned());
     let value = found.get_value().to_str()?.to_owned();
     // Folders, and flags with a value after `=`.
-    let is_begun = found.get_tag().is_some_and(|tag| tag.to_string() == BEGUN) || value.ends_with(['/', '=']);
-    Some(Candidate { value, help, is_begun })
+    let is_begun = found.get_tag().is_some_and(|tag| tag.to_string() == INCOMPLETE_TAG) || value.ends_with(['/', '=']);
+    Some(Candidate { value, help, is_incomplete: is_begun })
 }
 
 /// Subcommands in the line.
@@ -109,8 +109,8 @@ fn with_values(argument: &Arg, context: &Arc<Context>) -> Arg {
     let context = Arc::clone(context);
     argument.add(ArgValueCompleter::new(move |current: &OsStr| {
         let found = current.to_str().map_or_else(Vec::new, |current| values::of(kind, current, &context));
-        let found = found.into_iter().enumerate().map(|(order, Candidate { value, help, is_begun })| {
-            let tag = is_begun.then(|| BEGUN.into());
+        let found = found.into_iter().enumerate().map(|(order, Candidate { value, help, is_incomplete: is_begun })| {
+            let tag = is_begun.then(|| INCOMPLETE_TAG.into());
             CompletionCandidate::new(value).help(help.map(Into::into)).display_order(Some(order)).tag(tag)
         });
         found.collect()

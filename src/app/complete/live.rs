@@ -13,7 +13,7 @@ use serde_json::Value;
 use tokio::time::timeout;
 
 use crate::app::parser::Parser;
-use crate::app::prepared::{Invocation, Task};
+use crate::app::prepare::{Invocation, Task};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::kind::{Ask, Question};
 use crate::command::{Access, AnyContext, Candidate, Entry};
@@ -22,7 +22,7 @@ use crate::settings::target::Family;
 use crate::settings::{Robot, Sessions, Setting, Sources};
 
 /// Longest wait.
-pub(super) const PATIENCE: Duration = Duration::from_millis(300);
+pub(super) const ASK_TIMEOUT: Duration = Duration::from_millis(300);
 
 /// Values that the robot of the line reports in time.
 pub(super) fn values(
@@ -112,7 +112,7 @@ impl Ask for Asker {
         self.report(words).boxed_local()
     }
 
-    fn tell(&self, candidate: Candidate) {
+    fn add_candidate(&self, candidate: Candidate) {
         // The receiver can be gone already.
         let _ = self.found.send(candidate);
     }

@@ -30,7 +30,7 @@ use crate::command::Candidate;
 /// Candidates for `words[index]`, best first. `is_among`: other lines run in this process, as at the prompt, where
 /// simulators live on.
 pub fn complete(words: &[OsString], index: usize, is_among: bool) -> Vec<Candidate> {
-    complete_within(words, index, is_among, live::PATIENCE, false)
+    complete_within(words, index, is_among, live::ASK_TIMEOUT, false)
 }
 
 /// The same with a time limit. With `connects`, a robot is asked even without a session.

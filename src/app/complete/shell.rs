@@ -13,12 +13,12 @@ use crate::command::Candidate;
 use crate::command::about::completions::Shell;
 
 /// Variable that requests a completion.
-const ASKED: &str = "ARMCTL_COMPLETE";
+const SHELL_VARIABLE: &str = "ARMCTL_COMPLETE";
 
 /// Completion answer; `None` if this process was not started for one.
 pub fn answer(args: &[OsString]) -> Option<String> {
-    let asked = std::env::var(ASKED).ok()?;
-    let mut asked = asked.split_whitespace();
+    let shell_name = std::env::var(SHELL_VARIABLE).ok()?;
+    let mut asked = shell_name.split_whitespace();
     let shell = Shell::from_str(asked.next()?, false).ok()?;
     let [_, dashes, words @ ..] = args else { return None };
     if dashes != "--" {
@@ -35,12 +35,12 @@ pub fn answer(args: &[OsString]) -> Option<String> {
         (Shell::Powershell, [before @ .., last]) => {
             let last = last.to_str().and_then(|last| last.strip_prefix('+')).unwrap_or_default();
             let words: Vec<OsString> = before.iter().cloned().chain([last.into()]).collect();
-            lines(&complete(&words, before.len(), false), described)
+            lines(&complete(&words, before.len(), false), with_description)
         }
-        (Shell::Fish, words) => lines(&complete(words, words.len() - 1, false), described),
-        (Shell::Zsh, words) => {
-            lines(&complete(words, words.len() - 1, false), |found| format!("{}{}", sign(found), described(found)))
-        }
+        (Shell::Fish, words) => lines(&complete(words, words.len() - 1, false), with_description),
+        (Shell::Zsh, words) => lines(&complete(words, words.len() - 1, false), |found| {
+            format!("{}{}", separator(found), with_description(found))
+        }),
         (Shell::Elvish, words) => lines(&complete(words, words.len() - 1, false), |found| found.value.clone()),
     })
 }
@@ -52,7 +52,7 @@ fn lines(found: &[Candidate], line: impl Fn(&Candidate) -> String) -> String {
     found.iter().map(|found| line(found) + "\n").collect()
 }
 
-fn described(found: &Candidate) -> String {
+fn with_description(found: &Candidate) -> String {
     match &found.help {
         Some(help) => format!("{}\t{help}", found.value),
         None => found.value.clone(),
@@ -60,8 +60,8 @@ fn described(found: &Candidate) -> String {
 }
 
 /// Whether a blank follows the candidate.
-fn sign(found: &Candidate) -> char {
-    if found.is_begun { '-' } else { '+' }
+fn separator(found: &Candidate) -> char {
+    if found.is_incomplete { '-' } else { '+' }
 }
 
 /// Candidates at the end of `line`, in the form that bash puts in place of `piece`.
@@ -73,14 +73,14 @@ fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
     let found = complete(&words, index, false);
     // The part of the word that bash has split off.
     let piece = if quote.is_some() { piece.trim_start_matches(['"', '\'']) } else { piece };
-    let kept = Split::of(piece).words.pop().map_or(0, |piece| piece.len());
-    let before = current.len().saturating_sub(kept);
+    let unchanged = Split::of(piece).words.pop().map_or(0, |piece| piece.len());
+    let before = current.len().saturating_sub(unchanged);
     let longest = found.iter().map(|found| found.value.chars().count()).max().unwrap_or(0);
     let width = width.filter(|_| found.len() > 1);
     lines(&found, |found| {
         let value = found.value.get(before..).unwrap_or(&found.value);
         let value = if quote.is_some() { value.to_owned() } else { escaped(value) };
-        let sign = sign(found);
+        let sign = separator(found);
         match (&found.help, width) {
             (Some(help), Some(width)) => {
                 let room = width.saturating_sub(longest + 6);

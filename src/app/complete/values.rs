@@ -9,7 +9,7 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Args as _, Command, FromArgMatches as _};
 
 use super::live;
-use crate::app::prepared::{Need, sources};
+use crate::app::prepare::{Need, sources};
 use crate::cli::Globals;
 use crate::command::about::{help, schema};
 use crate::command::backup::manifest;
@@ -37,7 +37,7 @@ impl Context {
     /// From the parsed part of a line. A mistake in a flag of the command does not affect the global flags.
     pub fn new(matches: &ArgMatches, (is_among, connects): (bool, bool), patience: Duration) -> Self {
         let command = Globals::augment_args(Command::new("armctl"));
-        let given = command.get_arguments().flat_map(|argument| {
+        let value_of_argument = command.get_arguments().flat_map(|argument| {
             let id = argument.get_id().as_str();
             let long = argument.get_long().unwrap_or_default();
             let is_given = matches.value_source(id) == Some(ValueSource::CommandLine);
@@ -52,7 +52,7 @@ impl Context {
                 word
             })
         });
-        let words: Vec<_> = std::iter::once("armctl".into()).chain(given).collect();
+        let words: Vec<_> = std::iter::once("armctl".into()).chain(value_of_argument).collect();
         let parsed = command.try_get_matches_from(words);
         let globals = parsed.and_then(|matches| Globals::from_arg_matches(&matches)).ok();
         Self { globals, is_among, connects, patience }
@@ -63,7 +63,7 @@ impl Context {
         self.connects
     }
 
-    fn sources(&self) -> Option<Sources> {
+    fn parse_sources(&self) -> Option<Sources> {
         sources(self.globals.clone()?, Need::Inventory, self.is_among).ok()
     }
 
@@ -76,12 +76,12 @@ impl Context {
 
 /// Values of a kind that start with the typed text.
 pub(super) fn of(kind: ValueKind, typed: &str, context: &Context) -> Vec<Candidate> {
-    fitting(typed, all(kind, context))
+    matching_candidates(typed, all(kind, context))
 }
 
 /// Candidates with the typed prefix. If there are none, upper and lower case are ignored, because many names are in
 /// capitals.
-fn fitting(typed: &str, all: Vec<Candidate>) -> Vec<Candidate> {
+fn matching_candidates(typed: &str, all: Vec<Candidate>) -> Vec<Candidate> {
     let begins = |candidate: &&Candidate| candidate.value.starts_with(typed);
     let exact: Vec<Candidate> = all.iter().filter(begins).cloned().collect();
     if !exact.is_empty() {
@@ -107,13 +107,16 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
         ValueKind::Backup => backups(),
         ValueKind::Listed(candidates) => candidates(),
         ValueKind::Named(family, Named { kinds, endings, listed }) => {
-            let robots = context.sources().and_then(|sources| sources.robots(Some(family)).ok()).unwrap_or_default();
+            let robots =
+                context.parse_sources().and_then(|sources| sources.robots(Some(family)).ok()).unwrap_or_default();
             let named = endings.iter().flat_map(|ending| names::candidates(&robots, kinds, ending));
             named.chain(listed()).collect()
         }
         ValueKind::Asked(family, ask) => {
             let (patience, connects) = (context.patience, context.connects);
-            context.sources().map_or_else(Vec::new, |sources| live::values(family, ask, &sources, (patience, connects)))
+            context
+                .parse_sources()
+                .map_or_else(Vec::new, |sources| live::values(family, ask, &sources, (patience, connects)))
         }
     }
 }
@@ -138,7 +141,7 @@ fn tags(context: &Context) -> Vec<Candidate> {
 fn urls() -> Vec<Candidate> {
     let simulator = ("sim:".to_owned(), "the built-in simulator");
     let urls = FAMILIES.iter().flat_map(|face| face.urls());
-    std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).begun()).collect()
+    std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).incomplete()).collect()
 }
 
 /// Folders with a backup in the current folder.

@@ -12,7 +12,7 @@ use rustyline::{Context, Helper};
 
 use super::meaning::Meaning;
 use crate::app::complete::complete;
-use crate::app::{screen, words};
+use crate::app::{line_words, screen};
 use crate::cli::Globals;
 
 /// Helper of the line editor.
@@ -39,7 +39,7 @@ impl Assistant {
     fn candidates(&self, line: &str) -> (usize, Vec<Pair>) {
         let start = word_start(line);
         let (before, typed) = line.split_at(start);
-        let Ok(before) = words::split(before) else { return (start, Vec::new()) };
+        let Ok(before) = line_words::split(before) else { return (start, Vec::new()) };
         let typed = typed.trim_start_matches(['\'', '"']).replace('\\', "");
         let mut found: Vec<Pair> = Vec::new();
         let mut is_whole = false;
@@ -49,7 +49,7 @@ impl Assistant {
             for candidate in complete(&words, words.len() - 1, true) {
                 let Some(replacement) = quoted(&candidate.value) else { continue };
                 if found.iter().all(|other| other.replacement != replacement) {
-                    is_whole = !candidate.is_begun;
+                    is_whole = !candidate.is_incomplete;
                     found.push(Pair { display: candidate.value, replacement });
                 }
             }

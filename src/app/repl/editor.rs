@@ -13,7 +13,7 @@ use tokio::sync::mpsc;
 
 use super::assistant::Assistant;
 use super::prompt::Prompt;
-use crate::command::frame::local::state_folder;
+use crate::command::frame::local_names::state_folder;
 use crate::failure::Failure;
 use crate::output::{Screen, escape};
 

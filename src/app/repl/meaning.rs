@@ -37,7 +37,7 @@ impl Meaning {
         }
         let family = self.family();
         // Flags can precede the command. An unknown word goes to the family, which reports the error.
-        let owner = words.iter().map(|word| self.parser.owner(word, family)).find(|owner| *owner != Owner::Nobody);
+        let owner = words.iter().map(|word| self.parser.owner(word, family)).find(|owner| *owner != Owner::None);
         let prefix = self.prefix.iter().filter(|_| owner != Some(Owner::All));
         std::iter::once("armctl").chain(prefix.chain(words).map(String::as_str)).map(OsString::from).collect()
     }
@@ -47,7 +47,7 @@ impl Meaning {
     pub fn beginnings(&mut self, words: &[String]) -> Vec<Vec<OsString>> {
         let family = self.family();
         let mut beginnings = vec![self.args(words)];
-        if family.is_some() && words.iter().all(|word| self.parser.owner(word, family) == Owner::Nobody) {
+        if family.is_some() && words.iter().all(|word| self.parser.owner(word, family) == Owner::None) {
             beginnings
                 .push(std::iter::once("armctl").chain(words.iter().map(String::as_str)).map(OsString::from).collect());
         }

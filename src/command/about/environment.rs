@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_variable_of_a_flag_is_there() {
+    fn lists_every_variable_of_a_flag() {
         let help = crate::command::about::help::text(&["options".to_owned()], false, || {
             <crate::cli::Cli as clap::CommandFactory>::command()
         });

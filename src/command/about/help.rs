@@ -58,19 +58,19 @@ impl Help {
 
 /// Every topic with its summary.
 pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
-    let made = [
+    let generated = [
         (OPTIONS, "options of every command"),
         (EXIT_CODES, "meaning of the exit codes"),
         (ENVIRONMENT, "environment variables"),
     ];
-    let made = made.into_iter().map(|(name, about)| (name.to_owned(), about));
+    let made = generated.into_iter().map(|(name, about)| (name.to_owned(), about));
     let texts = TOPICS.iter().map(|(name, about, _)| ((*name).to_owned(), *about));
-    let more = more().into_iter().map(|(name, about, _)| (name.to_owned(), about));
+    let more = sections().into_iter().map(|(name, about, _)| (name.to_owned(), about));
     made.chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about))).chain(more)
 }
 
 /// Additional topics of the families.
-fn more() -> Vec<(&'static str, &'static str, String)> {
+fn sections() -> Vec<(&'static str, &'static str, String)> {
     FAMILIES.iter().flat_map(|face| face.topics()).collect()
 }
 
@@ -100,7 +100,7 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
         if let Some((.., text)) = setups().iter().find(|(name, ..)| name == word) {
             return Ok((*text).to_owned());
         }
-        if let Some((.., text)) = more().into_iter().find(|(name, ..)| name == word) {
+        if let Some((.., text)) = sections().into_iter().find(|(name, ..)| name == word) {
             return Ok(text);
         }
     }
@@ -112,10 +112,10 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
     }
     let mut command = &root;
     for word in words {
-        let known: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
+        let subcommands: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
         let Some(sub) = command.find_subcommand(word) else {
             let failure = Failure::usage(format!("unknown topic or command '{word}'"));
-            let known: Vec<String> = known.into_iter().chain(topics().map(|(name, _)| name)).collect();
+            let known: Vec<String> = subcommands.into_iter().chain(topics().map(|(name, _)| name)).collect();
             return Err(match nearest(word, known.iter().map(String::as_str)) {
                 Some(near) => failure.hint(format!("did you mean '{near}'?")),
                 None => failure.hint("list topics and commands: `armctl help`"),
@@ -153,11 +153,11 @@ const COLUMNS: usize = 80;
 
 /// Moves the comment of a long line above the line.
 fn comments_above(toml: &str) -> String {
-    let fitted = |line: &str| match line.rsplit_once("  # ") {
+    let wrap_columns = |line: &str| match line.rsplit_once("  # ") {
         Some((code, comment)) if line.chars().count() > COLUMNS => format!("# {comment}\n{}\n", code.trim_end()),
         _ => format!("{line}\n"),
     };
-    toml.lines().map(fitted).collect()
+    toml.lines().map(wrap_columns).collect()
 }
 
 fn exit_codes() -> String {

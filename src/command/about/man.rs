@@ -8,7 +8,7 @@ use clap::{Args, Command};
 
 use super::{environment, page};
 use crate::command::frame::run::Run;
-use crate::command::leaves;
+use crate::command::leaf_commands;
 use crate::failure::{Failure, Kind};
 
 /// Write the man pages into a folder, or print the man page of `armctl`.
@@ -51,7 +51,7 @@ fn pages_below<'a>(root: &'a Command, path: &mut Vec<&'a str>, pages: &mut Vec<(
     let Some(command) = path.iter().try_fold(root, |command, word| command.find_subcommand(word)) else {
         return Ok(());
     };
-    pages.push((format!("{}.1", name_of(path)), written(root, command, path)?));
+    pages.push((format!("{}.1", name_of(path)), render_page(root, command, path)?));
     for verb in verbs(command) {
         path.push(verb.get_name());
         pages_below(root, path, pages)?;
@@ -69,8 +69,8 @@ fn verbs(command: &Command) -> impl Iterator<Item = &Command> {
     command.get_subcommands().filter(|verb| !verb.is_hide_set())
 }
 
-fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u8>> {
-    let everywhere = page::everywhere(root);
+fn render_page(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u8>> {
+    let everywhere = page::global_options(root);
     let mut own = command.clone().name(name_of(path)).mut_args(|argument| {
         let is_own = path.is_empty() || !argument.is_global_set() || !everywhere.contains(argument.get_id().as_str());
         // Man pages include options that the short help omits.
@@ -83,10 +83,10 @@ fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u
     let man = clap_mangen::Man::new(own).date("").source("armctl").manual("armctl manual");
     man.render_title(&mut text)?;
     man.render_name_section(&mut text)?;
-    writeln!(text, ".SH SYNOPSIS\n.B {}", escaped(usage.trim_start_matches("Usage: ")))?;
+    writeln!(text, ".SH SYNOPSIS\n.B {}", escape(usage.trim_start_matches("Usage: ")))?;
     man.render_description_section(&mut text)?;
     for paragraph in notes.lines().filter(|line| !line.is_empty()) {
-        writeln!(text, ".PP\n{}", escaped(paragraph))?;
+        writeln!(text, ".PP\n{}", escape(paragraph))?;
     }
     man.render_options_section(&mut text)?;
     if command.has_subcommands() {
@@ -99,18 +99,19 @@ fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u
              \\fBarmctl\\fR(1)."
         )?;
     }
-    let examples: Vec<&str> = if command.has_subcommands() { Vec::new() } else { leaves::examples(path).collect() };
+    let examples: Vec<&str> =
+        if command.has_subcommands() { Vec::new() } else { leaf_commands::examples(path).collect() };
     if !examples.is_empty() {
         writeln!(text, ".SH EXAMPLES\n.nf")?;
         for example in examples {
-            writeln!(text, "armctl {}", escaped(example))?;
+            writeln!(text, "armctl {}", escape(example))?;
         }
         writeln!(text, ".fi")?;
     }
     writeln!(text, ".SH \"EXIT STATUS\"")?;
     if path.is_empty() {
         for (_, exit, meaning) in Kind::TABLE {
-            writeln!(text, ".TP\n{exit}\n{}", escaped(meaning))?;
+            writeln!(text, ".TP\n{exit}\n{}", escape(meaning))?;
         }
     } else {
         writeln!(text, "0 for success, 2 for a wrong command line. See \\fBarmctl\\fR(1) for the others.")?;
@@ -118,12 +119,12 @@ fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u
     if path.is_empty() {
         writeln!(text, ".SH ENVIRONMENT")?;
         for (name, what) in environment::VARIABLES {
-            writeln!(text, ".TP\n{name}\n{}", escaped(what))?;
+            writeln!(text, ".TP\n{name}\n{}", escape(what))?;
         }
-        writeln!(text, ".PP\n{}", escaped(environment::ORDER))?;
+        writeln!(text, ".PP\n{}", escape(environment::ORDER))?;
     }
     let see =
-        see_also(root, command, path).iter().map(|name| format!("\\fB{}\\fR(1)", escaped(name))).collect::<Vec<_>>();
+        see_also(root, command, path).iter().map(|name| format!("\\fB{}\\fR(1)", escape(name))).collect::<Vec<_>>();
     writeln!(text, ".SH \"SEE ALSO\"\n{}", see.join(",\n"))?;
     Ok(text)
 }
@@ -133,13 +134,13 @@ fn see_also(root: &Command, command: &Command, path: &[&str]) -> Vec<String> {
     let below = verbs(command).map(|verb| name_of(&[path, &[verb.get_name()]].concat()));
     let Some((last, above)) = path.split_last() else { return below.collect() };
     let noun = above.iter().try_fold(root, |command, word| command.find_subcommand(word));
-    let beside = noun.filter(|_| above.len() > 1).into_iter().flat_map(verbs).map(Command::get_name);
-    let beside = beside.filter(|name| name != last).map(|name| name_of(&[above, &[name]].concat()));
+    let related = noun.filter(|_| above.len() > 1).into_iter().flat_map(verbs).map(Command::get_name);
+    let beside = related.filter(|name| name != last).map(|name| name_of(&[above, &[name]].concat()));
     std::iter::once(name_of(above)).chain(beside).chain(below).collect()
 }
 
 /// Text with roff control characters escaped.
-fn escaped(text: &str) -> String {
+fn escape(text: &str) -> String {
     let text = text.replace('\\', "\\e").replace('-', "\\-").replace('\'', "\\(aq");
     if text.starts_with('.') { format!("\\&{text}") } else { text }
 }

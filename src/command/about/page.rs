@@ -6,12 +6,12 @@ use std::fmt::Write as _;
 use clap::builder::StyledStr;
 use clap::{Arg, Command};
 
-use crate::command::face::words::Headings;
+use crate::command::face::family_command::Headings;
 use crate::command::frame::setting::Pair;
-use crate::command::leaves;
+use crate::command::leaf_commands;
 
 /// Line that replaces the options of every command.
-const EVERYWHERE: &str = "Options of every command (-r, -t, --sim, --json …): `armctl help options`.";
+const GLOBAL_NOTE: &str = "Options of every command (-r, -t, --sim, --json …): `armctl help options`.";
 
 /// Help of the command at `path`. The short form has only the command's own options, so that it fits a small terminal
 /// if possible.
@@ -26,7 +26,7 @@ pub fn page(root: &Command, path: &[&str], is_long: bool) -> StyledStr {
     }
     let mut command = command.clone();
     if !path.is_empty() {
-        command = furnished(command, root, &names, is_long);
+        command = with_template(command, root, &names, is_long);
     }
     if is_long { command.render_long_help() } else { command.render_help() }
 }
@@ -43,7 +43,7 @@ pub fn options(root: &Command) -> StyledStr {
 }
 
 /// Names of the options of every command.
-pub fn everywhere(root: &Command) -> BTreeSet<&str> {
+pub fn global_options(root: &Command) -> BTreeSet<&str> {
     root.get_arguments()
         .filter(|argument| argument.is_global_set())
         .map(|argument| argument.get_id().as_str())
@@ -51,7 +51,7 @@ pub fn everywhere(root: &Command) -> BTreeSet<&str> {
 }
 
 /// Usage in two lines if it is too long for one: the command's own part is on the second line.
-fn in_two_lines(usage: &StyledStr) -> Option<StyledStr> {
+fn needs_two_lines(usage: &StyledStr) -> Option<StyledStr> {
     const WIDTH: usize = 80;
     let is_long = usage.to_string().chars().count() > WIDTH;
     let styled = usage.ansi().to_string();
@@ -61,9 +61,9 @@ fn in_two_lines(usage: &StyledStr) -> Option<StyledStr> {
 }
 
 /// Adds examples and headings; the short form omits common options and notes.
-fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool) -> Command {
+fn with_template(mut command: Command, root: &Command, path: &[&str], is_long: bool) -> Command {
     let style = *command.get_styles().get_header();
-    if let Some(usage) = in_two_lines(&command.render_usage()) {
+    if let Some(usage) = needs_two_lines(&command.render_usage()) {
         command = command.override_usage(usage);
     }
     let mut after = String::new();
@@ -75,7 +75,7 @@ fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool)
         let _ = writeln!(after, "You can write a name and its value as one word: NAME=VALUE.\n");
     }
     let examples: Vec<&str> =
-        if command.has_subcommands() { Vec::new() } else { leaves::examples(path).take(3).collect() };
+        if command.has_subcommands() { Vec::new() } else { leaf_commands::examples(path).take(3).collect() };
     if !examples.is_empty() {
         let _ = writeln!(after, "{style}Examples:{style:#}");
         for example in examples {
@@ -84,20 +84,20 @@ fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool)
         after.push('\n');
     }
     if !is_long {
-        let everywhere = everywhere(root);
+        let everywhere = global_options(root);
         let shared = |argument: &Arg| argument.is_global_set() && everywhere.contains(argument.get_id().as_str());
         command = command.mut_args(|argument| if shared(&argument) { argument.hide(true) } else { argument });
-        after.push_str(EVERYWHERE);
+        after.push_str(GLOBAL_NOTE);
     }
     if let Some(Headings(headings)) = command.get::<Headings>().copied() {
-        let template = grouped(&mut command, &headings());
+        let template = with_groups(&mut command, &headings());
         command = command.mut_subcommands(|word| word.hide(true)).help_template(template);
     }
     command.after_help(after.trim_end().to_owned())
 }
 
 /// Template with the subcommands below their headings; one without a heading follows the previous one.
-fn grouped(command: &mut Command, headings: &[(Option<&'static str>, String)]) -> String {
+fn with_groups(command: &mut Command, headings: &[(Option<&'static str>, String)]) -> String {
     let (style, literal) = (*command.get_styles().get_header(), *command.get_styles().get_literal());
     let widest = command.get_subcommands().map(|word| word.get_name().len()).max().unwrap_or_default();
     let mut text = format!("{{about-with-newline}}\n{}", command.render_usage().ansi());
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn help_fits_a_small_terminal_beside_the_options_of_the_command() {
+    fn help_fits_a_small_terminal() {
         let whole = whole();
         let mut wrong = Vec::new();
         each(&whole, &mut Vec::new(), &mut |command, path| {
@@ -164,7 +164,7 @@ mod tests {
                 wrong.push(format!("{name}: {lines} lines, {own} of them its own options"));
             }
             if !text.contains("\nExamples:\n  armctl ")
-                || !text.trim_end().ends_with(EVERYWHERE)
+                || !text.trim_end().ends_with(GLOBAL_NOTE)
                 || text.contains("--dry-run  ")
             {
                 wrong.push(format!("{name}:\n{text}"));
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_of_a_family_stand_below_headings() {
+    fn lists_commands_below_headings() {
         let whole = whole();
         for family in ["yerc", "yrcx", "toyo"] {
             for is_long in [false, true] {
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn the_options_of_every_command_have_their_text() {
+    fn describes_every_option() {
         let whole = whole();
         let text = options(&whole).to_string();
         for argument in whole.get_arguments().filter(|argument| argument.is_global_set()) {

@@ -7,12 +7,12 @@ use serde_json::{Map, Value, json};
 
 use crate::command::ValueKind;
 use crate::command::backup::check::Checked;
-use crate::command::backup::words::{Backup, Diff, Restore};
+use crate::command::backup::family_backup::{Backup, Diff, Restore};
 use crate::command::families::FAMILIES;
 use crate::command::fleet::status::{Fleet, Overview};
+use crate::command::fleet::{common, names, robots, session, tools, wait};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
-use crate::command::fleet::{names, robots, session, shared, tools, wait};
 use crate::command::frame::background::Opened;
 use crate::command::frame::dry_run::DryRun;
 use crate::command::frame::run::Run;
@@ -55,7 +55,7 @@ impl SchemaOf {
 pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
     all.extend(Overview::schemas());
-    all.extend(shared::schemas());
+    all.extend(common::schemas());
     all.push(wait::schema());
     all.extend(names::schemas());
     all.extend(Backup::<Fleet>::schemas());
@@ -122,7 +122,7 @@ pub fn files() -> BTreeMap<String, Value> {
                 schema.as_object_mut().and_then(|schema| schema.remove("$defs"));
             }
         }
-        refer(schema, &|name| found.contains_key(name));
+        replace_reference(schema, &|name| found.contains_key(name));
     }
     let definitions: Map<String, Value> =
         found.into_iter().map(|(name, mut same)| (name, same.swap_remove(0))).collect();
@@ -152,7 +152,7 @@ fn references(schema: &Value) -> Vec<String> {
 const LOCAL: &str = "#/$defs/";
 
 /// Refers to the file of shared definitions, for those that are in it.
-fn refer(schema: &mut Value, is_shared: &impl Fn(&str) -> bool) {
+fn replace_reference(schema: &mut Value, is_shared: &impl Fn(&str) -> bool) {
     match schema {
         Value::Object(fields) => {
             if let Some(Value::String(path)) = fields.get_mut("$ref")
@@ -160,9 +160,9 @@ fn refer(schema: &mut Value, is_shared: &impl Fn(&str) -> bool) {
             {
                 path.insert_str(0, SHARED);
             }
-            fields.values_mut().for_each(|value| refer(value, is_shared));
+            fields.values_mut().for_each(|value| replace_reference(value, is_shared));
         }
-        Value::Array(items) => items.iter_mut().for_each(|value| refer(value, is_shared)),
+        Value::Array(items) => items.iter_mut().for_each(|value| replace_reference(value, is_shared)),
         _ => {}
     }
 }

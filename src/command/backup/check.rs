@@ -38,7 +38,7 @@ struct Backup {
 
 impl Checked {
     /// The backup in a folder, or those in its subfolders, one per robot.
-    pub fn of(folder: &Path) -> Result<Self, Failure> {
+    pub fn check_folder(folder: &Path) -> Result<Self, Failure> {
         let several = if folder.join(MANIFEST).exists() { Vec::new() } else { manifest::folders_in(folder) };
         // Without a backup, the read of the folder's manifest reports the error.
         let folders = if several.is_empty() { vec![folder.to_owned()] } else { several };
@@ -49,7 +49,7 @@ impl Checked {
 
 impl Backup {
     fn of(folder: &Path) -> Result<Self, Failure> {
-        let list = manifest::existing::<Value>(folder)?;
+        let list = manifest::open_existing::<Value>(folder)?;
         let copies: Vec<_> = list.files.iter().filter_map(|entry| entry.copy.as_ref()).collect();
         Ok(Self {
             folder: folder.display().to_string(),

@@ -7,12 +7,12 @@ use anyhow::Context as _;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::dated::{DATE_LINE, aligned};
+use super::job_date::{DATE_LINE, align_files};
 use super::tolerance::Tolerance;
 use crate::command::Report;
 use crate::command::backup::manifest::{Entry, Manifest, Saved};
-use crate::command::backup::text_diff::{Change, Hunk, MOST_TEXT, TextDifference, unified};
-use crate::command::backup::{Only, gravity};
+use crate::command::backup::text_diff::{Change, Hunk, MAX_TEXT, TextDifference, unified};
+use crate::command::backup::{Only, severity};
 use crate::command::frame::items::ItemError;
 use crate::command::robot::file::{FILES, FileItem};
 use crate::controller::text::Encoding;
@@ -24,7 +24,7 @@ use crate::output::view::{Cell, Section, Table, Tone, View};
 
 /// One side of a comparison.
 #[derive(Debug)]
-pub struct Side {
+pub struct BackupSide {
     /// Folder.
     pub folder: PathBuf,
     /// Manifest.
@@ -35,13 +35,13 @@ pub struct Side {
 
 /// What counts as a difference.
 #[derive(Debug, Clone, Copy)]
-pub struct Manner {
+pub struct CompareOptions {
     tolerance: Tolerance,
     /// Whether every byte counts, including the dates of jobs.
     exact: bool,
 }
 
-impl Manner {
+impl CompareOptions {
     /// Every byte counts.
     pub const EXACT: Self = Self { tolerance: Tolerance::NONE, exact: true };
 
@@ -119,7 +119,7 @@ const CONTROLLER: &str = "controller";
 
 impl Differences {
     /// Compares two sides.
-    pub fn of(old: &Side, new: &Side, only: &Only, manner: Manner) -> Result<Self, Failure> {
+    pub fn of(old: &BackupSide, new: &BackupSide, only: &Only, manner: CompareOptions) -> Result<Self, Failure> {
         let (a, b) = (&old.manifest, &new.manifest);
         if a.family != b.family {
             return Err(Failure::usage(format!(
@@ -132,14 +132,14 @@ impl Differences {
         only.check(&both.chain([CONTROLLER]).collect::<Vec<_>>())?;
         let mut files: Vec<Difference> = Vec::new();
         if only.has(CONTROLLER) {
-            files.extend(of_controllers(a, b)?);
+            files.extend(compare_controllers(a, b)?);
         }
         let partner = |entry: &Entry, of: &Manifest| of.files.iter().find(|other| key(other) == key(entry)).cloned();
         for entry in a.files.iter().filter(|entry| only.has(&entry.name)) {
-            files.push(of_files(old, new, Some(entry), partner(entry, b).as_ref(), manner));
+            files.push(compare_files(old, new, Some(entry), partner(entry, b).as_ref(), manner));
         }
         for entry in b.files.iter().filter(|entry| only.has(&entry.name) && partner(entry, a).is_none()) {
-            files.push(of_files(old, new, None, Some(entry), manner));
+            files.push(compare_files(old, new, None, Some(entry), manner));
         }
         let equal = files.iter().all(|file| file.more.state.is_equal());
         Ok(Self { old: Of::new(old), new: Of::new(new), equal, tolerance: manner.tolerance, files })
@@ -174,8 +174,8 @@ impl std::fmt::Display for Of {
 }
 
 impl Of {
-    fn new(side: &Side) -> Self {
-        let Side { folder, manifest, is_controller } = side;
+    fn new(side: &BackupSide) -> Self {
+        let BackupSide { folder, manifest, is_controller } = side;
         let folder = (!is_controller).then(|| folder.display().to_string());
         Self { folder, robot: manifest.robot.clone(), taken_at: manifest.taken_at.to_string() }
     }
@@ -196,7 +196,7 @@ fn key(entry: &Entry) -> String {
 }
 
 /// Difference of the controller data, if any.
-fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<Difference>, Failure> {
+fn compare_controllers(old: &Manifest, new: &Manifest) -> Result<Option<Difference>, Failure> {
     if old.controller == new.controller {
         return Ok(None);
     }
@@ -210,20 +210,26 @@ fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<Difference>, 
 }
 
 /// Compares a file that one or both sides have.
-fn of_files(old: &Side, new: &Side, entry: Option<&Entry>, partner: Option<&Entry>, manner: Manner) -> Difference {
+fn compare_files(
+    old: &BackupSide,
+    new: &BackupSide,
+    entry: Option<&Entry>,
+    partner: Option<&Entry>,
+    manner: CompareOptions,
+) -> Difference {
     let name = entry.or(partner).map(|entry| entry.name.clone()).unwrap_or_default();
     // The file of the old side, or of the only one.
     let (side, saved) = if entry.is_some() { (old, entry) } else { (new, partner) };
     let described = |file: Difference| match saved.and_then(|entry| entry.copy.as_ref()) {
-        Some(copy) if side.is_controller => Difference { path: None, ..file.of_copy(&side.folder, copy) },
-        Some(copy) => file.of_copy(&side.folder, copy),
+        Some(copy) if side.is_controller => Difference { path: None, ..file.from_copy(&side.folder, copy) },
+        Some(copy) => file.from_copy(&side.folder, copy),
         None => file,
     };
     let state = match (entry, partner) {
-        (Some(_), None) if covers(&new.manifest, &old.manifest, &name) => State::OnlyOld,
-        (None, Some(_)) if covers(&old.manifest, &new.manifest, &name) => State::OnlyNew,
+        (Some(_), None) if is_in_scope(&new.manifest, &old.manifest, &name) => State::OnlyOld,
+        (None, Some(_)) if is_in_scope(&old.manifest, &new.manifest, &name) => State::OnlyNew,
         (Some(entry), Some(partner)) => {
-            return match both(old, new, entry, partner, manner) {
+            return match pair_files(old, new, entry, partner, manner) {
                 Ok(more) => described(FileItem::new(name, more, Ok(()))),
                 Err(failure) => described(FileItem::new(name, Compared::new(State::Unknown), Err(failure))),
             };
@@ -242,20 +248,26 @@ fn of_files(old: &Side, new: &Side, entry: Option<&Entry>, partner: Option<&Entr
 
 /// Whether a file that is missing in a backup was missing on the controller, because the backup would have included
 /// it.
-fn covers(backup: &Manifest, other: &Manifest, name: &str) -> bool {
+fn is_in_scope(backup: &Manifest, other: &Manifest, name: &str) -> bool {
     let is_common = |word: &String| Only::of_scope(std::slice::from_ref(word)) != Only::default();
     backup.complete
         && Only::of_scope(&backup.scope).has(name)
         && backup.scope.iter().all(|word| is_common(word) || other.scope.contains(word))
 }
 
-fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) -> Result<Compared, Failure> {
+fn pair_files(
+    old: &BackupSide,
+    new: &BackupSide,
+    entry: &Entry,
+    partner: &Entry,
+    manner: CompareOptions,
+) -> Result<Compared, Failure> {
     let (ours, theirs) = (copy(old, entry)?, copy(new, partner)?);
     let file = |more: Compared| Compared { file: ours.file.clone(), ..more };
     if ours.sha256.eq_ignore_ascii_case(&theirs.sha256) {
         return Ok(file(Compared::new(State::Same)));
     }
-    let most = MOST_TEXT as u64;
+    let most = MAX_TEXT as u64;
     if ours.bytes > most || theirs.bytes > most {
         return Ok(file(Compared::new(State::Changed)));
     }
@@ -263,7 +275,7 @@ fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) 
     let mut ignored = Vec::new();
     if !manner.exact && entry.holds == JOB {
         let dates_differ;
-        ([before, after], dates_differ) = aligned(before, after);
+        ([before, after], dates_differ) = align_files(before, after);
         if dates_differ {
             ignored.push(DATE_LINE);
         }
@@ -280,7 +292,7 @@ fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) 
 }
 
 /// Copy of an entry, unless it is missing or was changed since the backup.
-fn copy<'e>(side: &Side, entry: &'e Entry) -> Result<&'e Saved, Failure> {
+fn copy<'e>(side: &BackupSide, entry: &'e Entry) -> Result<&'e Saved, Failure> {
     let copy = entry.copy.as_ref().ok_or_else(|| {
         let why = entry.error.as_ref().map_or("no reason recorded", |reason| &reason.message);
         Failure::new(Kind::ConditionNotMet, format!("{} does not contain it: {why}", Of::new(side)))
@@ -295,7 +307,7 @@ fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>, Failure> {
     let place = || path.display().to_string();
     let file = files::open(&path).with_context(place)?;
     let mut bytes = Vec::new();
-    file.take(MOST_TEXT as u64 + 1).read_to_end(&mut bytes).with_context(place)?;
+    file.take(MAX_TEXT as u64 + 1).read_to_end(&mut bytes).with_context(place)?;
     Ok(bytes)
 }
 
@@ -387,7 +399,7 @@ impl Report for Differences {
             return None;
         }
         let failures = self.files.iter().filter_map(|file| file.error.as_ref()).map(ItemError::failure);
-        Some(match failures.max_by_key(|failure| gravity(failure.kind)) {
+        Some(match failures.max_by_key(|failure| severity(failure.kind)) {
             Some(gravest) => Failure { message: self.summary(), code: None, ..gravest },
             None => Failure::new(Kind::ConditionNotMet, self.summary()),
         })

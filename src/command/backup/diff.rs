@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use clap::Args;
 
-use super::compare::{Differences, Manner, Side};
+use super::compare::{BackupSide, CompareOptions, Differences};
 use super::manifest;
 use super::tolerance::{Limit, Tolerance};
-use super::{BackedUp, Making, Only};
+use super::{BackedUp, Only, SaveOptions};
 use crate::command::frame::dry_run::unknown;
 use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
@@ -59,7 +59,7 @@ impl DiffOptions {
     /// Compares two controllers that were read into folders.
     pub fn two_controllers(&self, folders: [PathBuf; 2]) -> Result<Differences, Failure> {
         let read = |folder: PathBuf| {
-            Ok::<_, Failure>(Side { manifest: manifest::existing(&folder)?, folder, is_controller: true })
+            Ok::<_, Failure>(BackupSide { manifest: manifest::open_existing(&folder)?, folder, is_controller: true })
         };
         let [old, new] = folders;
         self.compare(&read(old)?, &read(new)?)
@@ -75,34 +75,36 @@ impl DiffOptions {
         &self,
         old: PathBuf,
         robot: &Robot,
-        read: impl AsyncFnOnce(Making) -> Result<BackedUp, Failure>,
+        read: impl AsyncFnOnce(SaveOptions) -> Result<BackedUp, Failure>,
     ) -> Result<Differences, Failure> {
         let old = side(old)?;
         manifest::check_origin(&old.manifest, robot, true)?;
         let temporary = tempfile::tempdir().context("the temporary folder")?;
         let folder = temporary.path().join("controller");
-        let making = Making { folder: folder.clone(), scope: Some(self.scope(&old)), resume: false, force: false };
+        let options =
+            SaveOptions { folder: folder.clone(), scope: Some(self.scope(&old)), resume: false, force: false };
         // An aborted read is not useful, but a refusal of the controller is a difference.
-        let unread = match read(making).await {
+        let unread_files = match read(options).await {
             Ok(made) => made.unread(),
             Err(failure) if failure.kind == Kind::Interrupted => Some(Failure::new(failure.kind, "interrupted")),
             Err(failure) => Some(failure),
         };
-        if let Some(failure) = unread {
+        if let Some(failure) = unread_files {
             return Err(Failure { message: format!("not compared: {}", failure.message), ..failure });
         }
         // A dry run saves nothing.
         let Some(manifest) = manifest::read(&folder)? else { return Err(unknown()) };
-        self.compare(&old, &Side { manifest, folder, is_controller: true })
+        self.compare(&old, &BackupSide { manifest, folder, is_controller: true })
     }
 
-    fn compare(&self, old: &Side, new: &Side) -> Result<Differences, Failure> {
-        let manner = if self.exact { Manner::EXACT } else { Manner::usual(Tolerance::of(&self.tolerance)) };
-        Differences::of(old, new, &Only(self.only.clone()), manner)
+    fn compare(&self, old: &BackupSide, new: &BackupSide) -> Result<Differences, Failure> {
+        let options =
+            if self.exact { CompareOptions::EXACT } else { CompareOptions::usual(Tolerance::of(&self.tolerance)) };
+        Differences::of(old, new, &Only(self.only.clone()), options)
     }
 
     /// Scope of the controller read: that of the backup, or the selection within it.
-    fn scope(&self, old: &Side) -> Vec<String> {
+    fn scope(&self, old: &BackupSide) -> Vec<String> {
         let scope = &old.manifest.scope;
         let only = Only(self.only.clone());
         if only == Only::default() {
@@ -110,16 +112,16 @@ impl DiffOptions {
         }
         let before = Only::of_scope(scope);
         let others = scope.iter().filter(|word| Only::of_scope(std::slice::from_ref(word)) == Only::default()).cloned();
-        let narrowed: Vec<String> = if before == Only::default() {
+        let scope: Vec<String> = if before == Only::default() {
             only.scope().collect()
         } else {
             let names = old.manifest.files.iter().map(|entry| entry.name.clone()).filter(|name| only.has(name));
             Only(names.collect()).scope().collect()
         };
-        others.chain(narrowed).collect()
+        others.chain(scope).collect()
     }
 }
 
-fn side(folder: PathBuf) -> Result<Side, Failure> {
-    Ok(Side { manifest: manifest::existing(&folder)?, folder, is_controller: false })
+fn side(folder: PathBuf) -> Result<BackupSide, Failure> {
+    Ok(BackupSide { manifest: manifest::open_existing(&folder)?, folder, is_controller: false })
 }

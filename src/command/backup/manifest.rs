@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
-use crate::command::frame::local::{Target, is_plain_file_name};
+use crate::command::frame::local_names::{Target, is_plain_file_name};
 use crate::controller::text::{hex, unhex};
 use crate::failure::{Failure, Kind};
 use crate::files;
@@ -199,15 +199,15 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         text => text.with_context(|| path.display().to_string())?,
     };
-    let wrong = |why: String| {
+    let invalid = |why: String| {
         Failure::local(format!("{}: {why}", path.display())).hint("the manifest is damaged; create a new backup")
     };
-    match serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))? {
+    match serde_json::from_str(&text).map_err(|error| invalid(error.to_string()))? {
         Head { format, .. } if format != FORMAT => {
-            return Err(wrong(format!("its format is '{format}', not '{FORMAT}'")));
+            return Err(invalid(format!("its format is '{format}', not '{FORMAT}'")));
         }
         Head { version, .. } if version > VERSION => {
-            return Err(wrong(format!("its version is {version}; this armctl supports up to {VERSION}")));
+            return Err(invalid(format!("its version is {version}; this armctl supports up to {VERSION}")));
         }
         Head { family: Some(family), .. } if C::FAMILY.is_some_and(|own| own.name() != family) => {
             let own = C::FAMILY.map_or("this", Family::name);
@@ -216,13 +216,13 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
         }
         Head { .. } => {}
     }
-    let list: Manifest<C> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    list.check().map_err(wrong)?;
+    let list: Manifest<C> = serde_json::from_str(&text).map_err(|error| invalid(error.to_string()))?;
+    list.check().map_err(invalid)?;
     Ok(Some(list))
 }
 
 /// Reads the manifest in `folder`, which must exist.
-pub fn existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
+pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
     read(folder)?.ok_or_else(|| {
         let failure = Failure::local(format!("{} holds no {MANIFEST}", folder.display()));
         match folders_in(folder).first() {
@@ -243,7 +243,7 @@ pub fn folders_in(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Reads the existing backup in a target folder, if any. Other files must not be mixed with a backup.
-pub fn look<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
+pub fn inspect_folder<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
     // Leftovers of a killed backup.
     files::sweep(folder);
     let mut entries = match fs::read_dir(folder) {
@@ -263,14 +263,14 @@ pub fn look<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
 
 /// Earlier backup in a folder that a new one continues, if any: with `resume`, one of the same target and scope;
 /// `scope` is the new selection, `None` if not given. With `force`, the new backup replaces it.
-pub fn earlier<C: About>(
+pub fn find_earlier_backup<C: About>(
     folder: &Path,
     robot: &Robot,
     scope: Option<&[String]>,
     resume: bool,
     force: bool,
 ) -> Result<Option<Manifest<C>>, Failure> {
-    let Some(earlier) = look::<Value>(folder)?.filter(|_| !force) else { return Ok(None) };
+    let Some(earlier) = inspect_folder::<Value>(folder)?.filter(|_| !force) else { return Ok(None) };
     let name = &earlier.robot;
     if !resume {
         let state = if earlier.complete { "a backup" } else { "an incomplete backup" };
@@ -424,10 +424,10 @@ mod tests {
     }
 
     #[test]
-    fn a_list_is_read_as_it_was_written() {
+    fn reads_a_manifest_as_written() {
         let folder = tempfile::tempdir().unwrap();
         assert!(read::<Value>(folder.path()).unwrap().is_none());
-        assert_eq!(existing::<Value>(folder.path()).unwrap_err().kind, Kind::Local);
+        assert_eq!(open_existing::<Value>(folder.path()).unwrap_err().kind, Kind::Local);
         let mut written = manifest();
         written.write(folder.path()).unwrap();
         assert_eq!(read::<Value>(folder.path()).unwrap().unwrap(), written);
@@ -437,8 +437,8 @@ mod tests {
     }
 
     #[test]
-    fn a_list_that_was_tampered_with_is_no_list() {
-        let spoil: [fn(&mut Manifest); 9] = [
+    fn rejects_a_changed_manifest() {
+        let corrupt: [fn(&mut Manifest); 9] = [
             |m| m.files[0].copy.as_mut().unwrap().file = "../A.JBI".into(),
             |m| m.files[0].copy.as_mut().unwrap().file = MANIFEST.into(),
             |m| m.files[0].name_hex = Some("4".into()),
@@ -449,19 +449,19 @@ mod tests {
             |m| m.version = 2,
             |m| m.format = "else".into(),
         ];
-        for spoil in spoil {
+        for spoil in corrupt {
             let folder = tempfile::tempdir().unwrap();
-            let mut spoilt = manifest();
-            spoil(&mut spoilt);
-            spoilt.write(folder.path()).unwrap();
+            let mut corrupted = manifest();
+            spoil(&mut corrupted);
+            corrupted.write(folder.path()).unwrap();
             assert_eq!(read::<Value>(folder.path()).unwrap_err().kind, Kind::Local);
         }
     }
 
     #[test]
-    fn only_an_empty_folder_or_a_backup_takes_a_backup() {
+    fn saves_only_into_an_empty_folder_or_a_backup() {
         let folder = tempfile::tempdir().unwrap();
-        let look = || look::<Value>(folder.path());
+        let look = || inspect_folder::<Value>(folder.path());
         assert!(look().unwrap().is_none());
         fs::write(folder.path().join("letter.txt"), "x").unwrap();
         assert_eq!(look().unwrap_err().kind, Kind::Local);
@@ -470,7 +470,7 @@ mod tests {
     }
 
     #[test]
-    fn a_changed_copy_is_found_out() {
+    fn finds_a_changed_copy() {
         let folder = tempfile::tempdir().unwrap();
         let copy = Saved {
             file: "A.JBI".into(),

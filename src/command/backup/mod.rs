@@ -1,15 +1,15 @@
 //! Backup and restore for all families: options, and results of files and parts.
 
+pub mod arguments;
 pub mod check;
 pub mod compare;
-pub mod dated;
 mod diff;
+pub mod family_backup;
+pub mod job_date;
 pub mod manifest;
-pub mod options;
-pub mod saving;
+pub mod save;
 pub mod text_diff;
 mod tolerance;
-pub mod words;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::output::csv::RowsOf;
 use crate::output::view::View;
-use crate::settings::inventory::fits;
+use crate::settings::inventory::matches_pattern;
 
 /// Selection of files or parts by name patterns; empty selects all.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub struct Only(pub Vec<String>);
 impl Only {
     /// Whether a name is selected.
     pub fn has(&self, name: &str) -> bool {
-        self.0.is_empty() || self.0.iter().any(|pattern| fits(pattern, name))
+        self.0.is_empty() || self.0.iter().any(|pattern| matches_pattern(pattern, name))
     }
 
     /// Whether an item with several names is selected.
@@ -55,7 +55,7 @@ impl Only {
 
     /// Rejects patterns without a match, such as mistyped ones.
     pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<(), Failure> {
-        let unknown = self.0.iter().find(|pattern| !names.iter().any(|name| fits(pattern, name.as_ref())));
+        let unknown = self.0.iter().find(|pattern| !names.iter().any(|name| matches_pattern(pattern, name.as_ref())));
         let Some(pattern) = unknown else { return Ok(()) };
         let near = nearest(pattern, names.iter().map(AsRef::as_ref));
         let near = near.map_or(String::new(), |near| format!("did you mean {near}? "));
@@ -69,7 +69,7 @@ const ONLY: &str = "only ";
 
 /// Options of a backup.
 #[derive(Debug, Clone, Default)]
-pub struct Making {
+pub struct SaveOptions {
     /// Target folder.
     pub folder: PathBuf,
     /// Selection in the notation of the manifest: patterns as in `only points*`, and family selections such as
@@ -83,7 +83,7 @@ pub struct Making {
 
 /// Options of a restore.
 #[derive(Debug, Clone, Default)]
-pub struct Restoring {
+pub struct RestoreSelection {
     /// Folder of the backup.
     pub folder: PathBuf,
     /// Selection.
@@ -95,12 +95,12 @@ pub struct Restoring {
 }
 
 /// Whether the next file or part can be tried after a failure.
-pub fn goes_on(failure: &Failure) -> bool {
+pub fn continues_after(failure: &Failure) -> bool {
     matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::Rejected)
 }
 
 /// Severity of a failure kind: first that an action may have been executed, then that the work ended early.
-pub fn gravity(kind: Kind) -> u8 {
+pub fn severity(kind: Kind) -> u8 {
     match kind {
         Kind::OutcomeUnknown => 4,
         Kind::NoAnswer | Kind::Local | Kind::Interrupted => 3,
@@ -126,7 +126,7 @@ pub const NOT_CHOSEN: &str = "not selected";
 pub const NOT_MACHINE: &str = "changes the machine itself; written only with --machine";
 
 /// Adds the way to continue to the hint of a failure.
-pub fn with_hint(failure: Failure, again: &str) -> Failure {
+pub fn add_hint(failure: Failure, again: &str) -> Failure {
     let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
     failure.hint(hint)
 }
@@ -156,7 +156,7 @@ impl BackedUp {
 
     /// Most severe failure of a file, unless the controller refused it.
     pub fn unread(&self) -> Option<Failure> {
-        self.files.gravest().filter(|failure| failure.kind != Kind::Refused)
+        self.files.most_severe().filter(|failure| failure.kind != Kind::Refused)
     }
 }
 
@@ -166,7 +166,7 @@ impl Report for BackedUp {
     }
 
     fn failure(&self) -> Option<Failure> {
-        Some(with_hint(self.files.failure()?, "use --resume to read the missing parts"))
+        Some(add_hint(self.files.failure()?, "use --resume to read the missing parts"))
     }
 
     fn rows(&self) -> RowsOf {
@@ -212,7 +212,7 @@ impl Report for Restored {
     fn failure(&self) -> Option<Failure> {
         match self.files.failure() {
             None => self.needs_power_cycle.then(|| Failure::new(Kind::ConditionNotMet, POWER_CYCLE)),
-            Some(failure) => Some(with_hint(failure, AGAIN)),
+            Some(failure) => Some(add_hint(failure, RETRY_HINT)),
         }
     }
 
@@ -222,25 +222,25 @@ impl Report for Restored {
 }
 
 /// Way to continue a restore.
-pub const AGAIN: &str = "run the same command again to continue; equal values are not written again";
+pub const RETRY_HINT: &str = "run the same command again to continue; equal values are not written again";
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_failure_says_how_to_go_on() {
+    fn failure_hints_at_the_next_step() {
         let mut part = FileItem::pending("a");
         part.fail(Failure::new(Kind::NoAnswer, "silence").hint("cable"));
         let hint = |report: &dyn Fn(Vec<FileItem>) -> Option<Failure>| report(vec![part.clone()]).unwrap().hint;
         let backed_up = |files| BackedUp::new("here".as_ref(), Vec::new(), false, files).failure();
         assert_eq!(hint(&backed_up).as_deref(), Some("cable\nuse --resume to read the missing parts"));
         let restored = |files| Restored::new("here".as_ref(), files).failure();
-        assert_eq!(hint(&restored).as_deref(), Some(format!("cable\n{AGAIN}").as_str()));
+        assert_eq!(hint(&restored).as_deref(), Some(format!("cable\n{RETRY_HINT}").as_str()));
     }
 
     #[test]
-    fn patterns_choose_by_name() {
+    fn patterns_select_by_name() {
         let only = Only(vec!["points*".into(), "A?.JBI".into()]);
         assert!(only.has("points-00000") && only.has("AB.JBI") && !only.has("ABC.JBI"));
         assert!(Only::default().has("anything"));

@@ -10,11 +10,11 @@ use crate::controller::text::Encoding;
 use crate::output::view::{Cell, Tone};
 
 /// Maximum file size for a line comparison; larger files are compared only by bytes.
-pub const MOST_TEXT: usize = 4 << 20;
+pub const MAX_TEXT: usize = 4 << 20;
 /// Number of context lines.
-const AROUND: usize = 3;
+const CONTEXT_LINES: usize = 3;
 /// Time limit for a minimal diff; after it, a longer but correct diff is accepted.
-const PATIENCE: Duration = Duration::from_secs(2);
+const DIFF_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A hunk of changes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
@@ -78,15 +78,16 @@ pub struct TextDifference {
 impl TextDifference {
     /// Compares two texts; `None` if one of them is not text.
     pub fn of(encoding: Encoding, old: &[u8], new: &[u8]) -> Option<Self> {
-        let is_text = |bytes: &[u8]| bytes.len() <= MOST_TEXT && !bytes.contains(&0);
+        let is_text = |bytes: &[u8]| bytes.len() <= MAX_TEXT && !bytes.contains(&0);
         if !is_text(old) || !is_text(new) {
             return None;
         }
         let (old, new) = (lines(old), lines(new));
-        let only_line_endings = old.len() == new.len() && old.iter().zip(&new).all(|(a, b)| ended(a).0 == ended(b).0);
-        let ops = capture_diff_slices_deadline(Algorithm::Myers, &old, &new, Instant::now().checked_add(PATIENCE));
+        let only_line_endings =
+            old.len() == new.len() && old.iter().zip(&new).all(|(a, b)| with_line_ending(a).0 == with_line_ending(b).0);
+        let ops = capture_diff_slices_deadline(Algorithm::Myers, &old, &new, Instant::now().checked_add(DIFF_TIMEOUT));
         let line = |change: &similar::Change<&[u8]>| {
-            let (text, ending) = ended(change.value());
+            let (text, ending) = with_line_ending(change.value());
             let change = match change.tag() {
                 ChangeTag::Equal => Change::Same,
                 ChangeTag::Delete => Change::Removed,
@@ -110,7 +111,7 @@ impl TextDifference {
                 lines,
             }
         };
-        Some(Self { hunks: group_diff_ops(ops, AROUND).into_iter().map(hunk).collect(), only_line_endings })
+        Some(Self { hunks: group_diff_ops(ops, CONTEXT_LINES).into_iter().map(hunk).collect(), only_line_endings })
     }
 }
 
@@ -145,7 +146,7 @@ fn lines(bytes: &[u8]) -> Vec<&[u8]> {
     bytes.split_inclusive(|byte| *byte == b'\n').collect()
 }
 
-fn ended(line: &[u8]) -> (&[u8], Ending) {
+fn with_line_ending(line: &[u8]) -> (&[u8], Ending) {
     match line.strip_suffix(b"\n") {
         None => (line, Ending::None),
         Some(text) => match text.strip_suffix(b"\r") {

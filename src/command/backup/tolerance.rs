@@ -22,7 +22,7 @@ pub struct Tolerance {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
     unit: Option<Unit>,
-    most: f64,
+    maximum: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Limit {
         let found = units.into_iter().find_map(|(word, unit)| Some((text.strip_suffix(word)?, unit)));
         let (number, unit) = found.map_or((text, None), |(number, unit)| (number, Some(unit)));
         match number.trim().parse::<f64>() {
-            Ok(most) if most.is_finite() && most >= 0.0 => Ok(Self { unit, most }),
+            Ok(most) if most.is_finite() && most >= 0.0 => Ok(Self { unit, maximum: most }),
             _ => Err(format!("'{text}' is not a valid tolerance, such as 0.05mm, 0.1deg or 5pulses")),
         }
     }
@@ -57,7 +57,7 @@ impl Tolerance {
     /// Default tolerance, replaced by the given limits.
     pub fn of(limits: &[Limit]) -> Self {
         let mut tolerance = DEFAULT;
-        for Limit { unit, most } in limits {
+        for Limit { unit, maximum: most } in limits {
             match unit {
                 None => (tolerance.mm, tolerance.deg) = (*most, *most),
                 Some(Unit::Mm) => tolerance.mm = *most,
@@ -146,14 +146,14 @@ fn aligned(
     key: impl Fn(&str) -> Option<&str>,
     is_near: impl Fn(&str, &str) -> bool,
 ) -> Vec<u8> {
-    let known: HashMap<Place, &[u8]> =
-        placed(old, &key).into_iter().filter_map(|(place, line)| Some((place?, line))).collect();
+    let known: HashMap<Position, &[u8]> =
+        with_positions(old, &key).into_iter().filter_map(|(place, line)| Some((place?, line))).collect();
     let is_near = |old: &[u8], new: &[u8]| match (std::str::from_utf8(old), std::str::from_utf8(new)) {
         (Ok(old), Ok(new)) => is_near(old.trim_end(), new.trim_end()),
         _ => false,
     };
     let mut text = Vec::with_capacity(new.len());
-    for (place, line) in placed(new, &key) {
+    for (place, line) in with_positions(new, &key) {
         let same = place.and_then(|place| known.get(&place)).filter(|old| is_near(old, line));
         text.extend_from_slice(same.copied().unwrap_or(line));
     }
@@ -161,10 +161,10 @@ fn aligned(
 }
 
 /// Location of a position: section heading and key.
-type Place = (String, String);
+type Position = (String, String);
 
 /// Lines of a text, with the location of each position.
-fn placed(text: &[u8], key: impl Fn(&str) -> Option<&str>) -> Vec<(Option<Place>, &[u8])> {
+fn with_positions(text: &[u8], key: impl Fn(&str) -> Option<&str>) -> Vec<(Option<Position>, &[u8])> {
     let mut headline = String::new();
     let mut lines = Vec::new();
     for line in text.split_inclusive(|byte| *byte == b'\n') {
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn points_of_a_table_are_near_or_not() {
+    fn compares_points_of_a_table() {
         let head = "point,unit,axis_1,axis_2,hand_system\n";
         let table = |rows: &str| format!("{head}{rows}");
         let points = |limits: &[&str], old: &str, new: &str| {
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn positions_of_a_job_are_pulses_or_coordinates() {
+    fn compares_positions_of_a_job() {
         let job = |first: &str, second: &str| {
             format!("/JOB\r\n///PULSE\r\nC00000={first}\r\n///RECTAN\r\nC00001={second}\r\n//INST\r\nMOVJ C00000\r\n")
         };
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_no_text_stay() {
+    fn ignores_bytes_that_are_not_text() {
         let copy = Some(Saved { file: "A.JBI".into(), ..Saved::default() });
         let entry = Entry { holds: "jbi".into(), copy, ..Entry::default() };
         let odd = b"\x83\x5c=1\nC00000=1,2\n\xff";

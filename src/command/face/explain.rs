@@ -6,12 +6,12 @@ use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::declared::Declaration;
-use super::shared::usual;
+use super::registration::Declaration;
+use super::shared_commands::default_arguments;
 use super::tool::ToolTask;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::run::{Run, RunError};
-use crate::command::robot::alarm::{Alarm, AlarmEntry, Alarms, Besides, Row};
+use crate::command::robot::alarm::{Alarm, AlarmEntry, Alarms, ExtraColumns, Row};
 use crate::command::{Access, Command, ConnectMode, Context, Entry, Report};
 use crate::failure::Failure;
 use crate::output::csv::RowsOf;
@@ -65,14 +65,14 @@ impl<T> Known<T> {
         let of = |part: fn(&Explanation) -> Option<&String>| site.as_ref().and_then(part);
         let causes = listed(of(|site| site.cause.as_ref()), causes);
         let remedies = listed(of(|site| site.remedy.as_ref()), remedies);
-        let told = |lines: &[String]| Some(lines.join("; ")).filter(|line| !line.is_empty());
+        let lines = |lines: &[String]| Some(lines.join("; ")).filter(|line| !line.is_empty());
         let known = known || site.is_some();
-        let alarm = Alarm { cause: told(&causes), remedy: told(&remedies), ..alarm.with(site) };
+        let alarm = Alarm { cause: lines(&causes), remedy: lines(&remedies), ..alarm.with(site) };
         Self { known, alarm, causes, remedies, own }
     }
 }
 
-impl<T: Besides + Serialize + JsonSchema> Report for Codes<T> {
+impl<T: ExtraColumns + Serialize + JsonSchema> Report for Codes<T> {
     const ROWS: RowsOf = RowsOf::List("codes");
 
     fn view(&self) -> View {
@@ -88,12 +88,12 @@ impl<T: Besides + Serialize + JsonSchema> Report for Codes<T> {
 }
 
 /// Report of present or past alarms.
-pub trait Recorded {
+pub trait RecordedAlarm {
     /// Each alarm with its data; `what` is the name of the list.
     fn recorded(&self, what: &str) -> Vec<Occurrence>;
 }
 
-impl<T: Besides, S> Recorded for Alarms<T, S> {
+impl<T: ExtraColumns, S> RecordedAlarm for Alarms<T, S> {
     fn recorded(&self, what: &str) -> Vec<Occurrence> {
         let of = |(row, entry): (&Row<T>, &AlarmEntry<T>)| {
             let place = match (what, row.list) {
@@ -104,7 +104,7 @@ impl<T: Besides, S> Recorded for Alarms<T, S> {
             let data = Some(data.join(", ")).filter(|data| !data.is_empty());
             Occurrence { place, data, alarm: entry.alarm.clone() }
         };
-        self.known().map(of).collect()
+        self.known_alarms().map(of).collect()
     }
 }
 
@@ -203,9 +203,9 @@ async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<O
         Err(why) => return (Vec::new(), vec![why]),
     };
     let mut recall = Recall { alarm, found: Vec::new(), errors: Vec::new() };
-    recall.of::<F::Alarms>(run, robot, &mut link, PRESENT, "its alarms").await;
+    recall.codes_of::<F::Alarms>(run, robot, &mut link, PRESENT, "its alarms").await;
     if recall.errors.is_empty() {
-        recall.of::<F::AlarmHistory>(run, robot, &mut link, "history", "its history").await;
+        recall.codes_of::<F::AlarmHistory>(run, robot, &mut link, "history", "its history").await;
     }
     if let Err(failure) = F::close(link, &run.screen.silenced()).await {
         run.screen.detail(1, &failure.message);
@@ -222,7 +222,7 @@ async fn connect<F: Declaration>(run: &Run, robot: &Robot) -> Result<F::Link, St
     }
     let access = Access::reading(ConnectMode::Control);
     let access = match &run.line {
-        Some(line) => line.connecting(robot, access, &run.screen).await.map_err(not_asked)?,
+        Some(line) => line.connect(robot, access, &run.screen).await.map_err(not_asked)?,
         None => access,
     };
     F::connect(robot, access, &run.screen.silenced()).await.map_err(not_asked)
@@ -242,7 +242,7 @@ struct Recall<'a> {
 
 impl Recall<'_> {
     /// Reads a list with its command.
-    async fn of<C: Command<Report: Recorded> + Args>(
+    async fn codes_of<C: Command<Report: RecordedAlarm> + Args>(
         &mut self,
         run: &Run,
         robot: &Robot,
@@ -253,7 +253,7 @@ impl Recall<'_> {
         let screen = run.screen.silenced();
         let authority = Authority::reading(&screen, robot);
         let context = Context { robot, link, screen: &screen, several: false, authority };
-        match usual::<C>().run(context).await {
+        match default_arguments::<C>().run(context).await {
             Ok(report) => {
                 let is_it = |found: &Occurrence| found.alarm.code.as_deref().is_some_and(|code| same(code, self.alarm));
                 self.found.extend(report.recorded(list).into_iter().filter(is_it));

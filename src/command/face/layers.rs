@@ -81,7 +81,7 @@ impl Layers {
     }
 
     /// Adds a failed layer.
-    pub fn wrong(&mut self, layer: &'static str, found: impl Into<String>, advice: impl Into<String>) {
+    pub fn fail_with(&mut self, layer: &'static str, found: impl Into<String>, advice: impl Into<String>) {
         self.add(layer, State::Failed, found.into(), Some(advice.into()));
     }
 
@@ -97,7 +97,7 @@ impl Layers {
     }
 
     /// Adds state that an earlier client left; no layer if there is none.
-    pub fn left_over(&mut self, left: &[LeftOver]) {
+    pub fn leftover_drafts(&mut self, left: &[LeftOver]) {
         let joined = |part: fn(&LeftOver) -> &str| left.iter().map(part).collect::<Vec<_>>().join("; ");
         if !left.is_empty() {
             self.warn("left over", joined(|left| &left.what), joined(|left| &left.undo));
@@ -105,7 +105,7 @@ impl Layers {
     }
 
     /// Whether no layer has failed so far.
-    pub fn is_well(&self) -> bool {
+    pub fn is_passed(&self) -> bool {
         self.found.iter().all(|layer| layer.state != State::Failed)
     }
 
@@ -148,8 +148,8 @@ pub fn drafts() -> Option<Layer> {
 pub fn table(layers: &[Layer]) -> Table {
     let mut table = Table::new(&["layer", "state", "found"], "no layers");
     for Layer { layer, state, found, advice } in layers {
-        let told = advice.as_ref().map_or_else(|| found.clone(), |advice| format!("{found}; {advice}"));
-        table.row([Cell::from(*layer).whole(), Cell::from(state.name()).tone(state.tone()), told.into()]);
+        let described = advice.as_ref().map_or_else(|| found.clone(), |advice| format!("{found}; {advice}"));
+        table.row([Cell::from(*layer).whole(), Cell::from(state.name()).tone(state.tone()), described.into()]);
     }
     table
 }
@@ -167,7 +167,7 @@ mod tests {
     use crate::output::view::View;
 
     #[test]
-    fn what_comes_after_a_failure_is_skipped() {
+    fn skips_layers_after_a_failure() {
         let mut layers = Layers::new("cell1 (udp://h)".to_owned(), ["name", "answer", "mode"]);
         layers.ok("name", "h is 10.0.0.2");
         layers.fail("answer", &Failure::new(Kind::NoAnswer, "cell1 (udp://h): no answer").hint("check the cable"));

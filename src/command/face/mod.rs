@@ -1,27 +1,27 @@
 //! Family interface for the rest of the program. Each family implements it in `face.rs`;
 //! [`families`](super::families) lists them.
 
-pub mod declared;
 pub mod explain;
+pub mod family_command;
 pub mod layers;
 pub mod overview;
-pub mod panel;
+pub mod registration;
 pub mod sample;
-pub mod shared;
+pub mod shared_commands;
+pub mod teach_panel;
 pub mod tool;
-pub mod words;
 
 use clap::ArgMatches;
 use futures_util::future::LocalBoxFuture;
 
+use self::family_command::FamilyLine;
 use self::layers::Layer;
 use self::overview::OverviewReport;
-use self::panel::Panel;
 use self::sample::{Detail, Sample, Traffic};
-use self::shared::SharedVerb;
+use self::shared_commands::SharedVerb;
+use self::teach_panel::Panel;
 use self::tool::{Tool, ToolKind};
-use self::words::Typed;
-use super::backup::{BackedUp, Making, Restored, Restoring};
+use super::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use super::frame::{Access, AnyCommand, AnyContext, Connection, Driver, Outcome, SchemaEntry};
 use super::robot::alarm::Alarm;
 use crate::controller::Risk;
@@ -57,7 +57,7 @@ pub trait Face: Sync {
     /// Its command with the named subcommands only.
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
     /// Parses the arguments after its name.
-    fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error>;
+    fn read(&self, matches: &mut ArgMatches) -> Result<FamilyLine, clap::Error>;
     /// Schemas of all its reports.
     fn schemas(&self) -> Vec<SchemaEntry>;
 
@@ -108,12 +108,16 @@ pub trait Face: Sync {
     /// Risk of reading all of a controller.
     fn backup_risk(&self, robot: &Robot) -> Risk;
     /// Makes a backup.
-    fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
+    fn back_up<'a>(
+        &self,
+        context: AnyContext<'a>,
+        making: SaveOptions,
+    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
     /// Restores a backup.
     fn restore<'a>(
         &self,
         context: AnyContext<'a>,
-        restoring: &'a Restoring,
+        restoring: &'a RestoreSelection,
     ) -> LocalBoxFuture<'a, Result<Restored, Failure>>;
 }
 

@@ -44,7 +44,7 @@ impl LeftOver {
 
 impl OverviewReport {
     /// Short description of the problem; `None` if there is none.
-    pub fn trouble(&self) -> Option<String> {
+    pub fn fault_text(&self) -> Option<String> {
         let fault = &self.state.fault;
         (fault.faulted == Some(true)).then(|| fault.describe().unwrap_or_else(|| "alarm".to_owned()))
     }
@@ -65,7 +65,7 @@ impl Report for OverviewReport {
             (_, Some(true)) => Cell::from("running").tone(Tone::Good),
             _ => "stopped".into(),
         };
-        let alarm = self.trouble().map_or_else(|| "none".into(), |told| Cell::from(told).tone(Tone::Bad));
+        let alarm = self.fault_text().map_or_else(|| "none".into(), |described| Cell::from(described).tone(Tone::Bad));
         // One decimal, so that an 80-column screen has space for the alarm; JSON has all digits.
         let position = state.position.as_ref().map(|at| format!("{:.1} {:.1} {:.1}", at.x_mm, at.y_mm, at.z_mm));
         table.row([

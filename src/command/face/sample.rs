@@ -51,7 +51,7 @@ impl Traffic {
 }
 
 /// Text of the non-zero counts; none if all are zero.
-pub fn counted(counts: &[(u64, &str)]) -> Option<String> {
+pub fn counter(counts: &[(u64, &str)]) -> Option<String> {
     let counted = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
     Some(counted.collect::<Vec<_>>().join(", ")).filter(|counted| !counted.is_empty())
 }
@@ -67,7 +67,7 @@ pub struct Sample {
     /// Present alarms and errors, the latest first, as far as they can be read.
     pub alarms: Vec<Alarm>,
     /// Data of [`Detail::Full`], and part of it for [`Detail::Axes`].
-    pub whole: Option<Whole>,
+    pub full: Option<Whole>,
 }
 
 /// Data for a full screen.
@@ -103,7 +103,7 @@ impl Indicator {
     }
 
     /// Indicator that should be on, and has this tone while it is off.
-    pub fn should(name: &'static str, is_on: bool, off: Tone) -> Self {
+    pub fn expected(name: &'static str, is_on: bool, off: Tone) -> Self {
         Self { name, is_on, tone: if is_on { Tone::Good } else { off } }
     }
 }
@@ -159,9 +159,9 @@ impl SignalByte {
 
 /// Returns the result of a request and its duration.
 pub async fn clocked<T>(asked: impl Future<Output = T>) -> (T, Option<Duration>) {
-    let began = Instant::now();
+    let start = Instant::now();
     let answer = asked.await;
-    (answer, Some(began.elapsed()))
+    (answer, Some(start.elapsed()))
 }
 
 #[cfg(test)]
@@ -169,15 +169,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lamp_has_its_tone_where_it_means_something() {
+    fn indicator_tones_depend_on_the_expected_state() {
         assert_eq!(Indicator::new("alarm", true, Tone::Bad).tone, Tone::Bad);
         assert_eq!(Indicator::new("alarm", false, Tone::Bad).tone, Tone::Plain);
-        assert_eq!(Indicator::should("CPU OK", true, Tone::Bad).tone, Tone::Good);
-        assert_eq!(Indicator::should("CPU OK", false, Tone::Bad).tone, Tone::Bad);
+        assert_eq!(Indicator::expected("CPU OK", true, Tone::Bad).tone, Tone::Good);
+        assert_eq!(Indicator::expected("CPU OK", false, Tone::Bad).tone, Tone::Bad);
     }
 
     #[test]
-    fn eight_signals_stand_as_the_manual_has_them() {
+    fn orders_eight_signals_as_in_the_manual() {
         let first = |eight: SignalByte| eight.signals.iter().position(|on| *on);
         assert_eq!(first(SignalByte::rising("#10".to_owned(), 1)), Some(0));
         assert_eq!(first(SignalByte::falling("PN01".to_owned(), 1)), Some(7));

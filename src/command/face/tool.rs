@@ -4,8 +4,8 @@ use clap::{ArgMatches, Args, Command, FromArgMatches as _};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::declared::Declaration;
 use super::explain::{Explain, Explained, Explaining};
+use super::registration::Declaration;
 use crate::command::SchemaEntry;
 use crate::command::decode::{self, Decode};
 use crate::command::frame::run::{Run, RunError};

@@ -6,12 +6,12 @@ use anyhow::Context as _;
 use clap::Args;
 
 use crate::command::backup::check::Checked;
-use crate::command::backup::words::{self, Backups};
-use crate::command::backup::{BackedUp, Making, Restored, Restoring};
+use crate::command::backup::family_backup::{self, Backups};
+use crate::command::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use crate::command::face::Face;
 use crate::command::families;
 use crate::command::fleet::status::{Fleet, Link};
-use crate::command::frame::local::own_folder;
+use crate::command::frame::local_names::private_folder;
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{AnyContext, Command, Context};
 use crate::controller::Risk;
@@ -19,15 +19,15 @@ use crate::failure::Failure;
 use crate::settings::Robot;
 
 /// Arguments of `armctl restore`.
-pub type Restore = words::Restore<Fleet>;
+pub type Restore = family_backup::Restore<Fleet>;
 /// Arguments of `armctl diff`.
-pub type Diff = words::Diff<Fleet>;
+pub type Diff = family_backup::Diff<Fleet>;
 
 /// `armctl backup`: makes a backup, or checks an existing one.
 #[derive(Debug, Args)]
 pub struct Backup {
     #[command(flatten)]
-    making: words::Backup<Fleet>,
+    making: family_backup::Backup<Fleet>,
     /// Check a backup without a connection: compare its files with their hashes
     #[arg(long, conflicts_with_all = ["resume", "force", "only"])]
     verify: bool,
@@ -40,14 +40,14 @@ impl Backup {
     }
 
     /// Arguments for making a backup.
-    pub fn making(&self) -> &words::Backup<Fleet> {
+    pub fn options(&self) -> &family_backup::Backup<Fleet> {
         &self.making
     }
 
     /// Runs the command.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         if self.verify {
-            return run.local("backup.check", &Checked::of(self.making.folder())?);
+            return run.local("backup.check", &Checked::check_folder(self.making.folder())?);
         }
         run.robots(&self.making).await
     }
@@ -65,7 +65,7 @@ pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
     if run.gate.dry_run {
         return run.robots(&reading).await;
     }
-    let robots = run.ready(&reading).await?;
+    let robots = run.authorize_robots(&reading).await?;
     let [old, new] = &robots[..] else {
         let failure = Failure::usage(format!("diff compares two robots, but {} are selected", robots.len()));
         return Err(failure.hint("select two: `armctl diff ROBOT ROBOT`").into());
@@ -75,10 +75,10 @@ pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
             format!("{} is a {} controller, but {} is a {} controller", old.name, old.family, new.name, new.family);
         return Err(Failure::usage(message).hint("compare robots of one family").into());
     }
-    for (robot, outcome) in robots.iter().zip(run.gather(&reading, &robots).await) {
+    for (robot, outcome) in robots.iter().zip(run.collect(&reading, &robots).await) {
         if let Err(failure) = outcome {
             let message = format!("nothing was compared: {}", failure.message);
-            return Err(RunError::at(robot, &reading, Failure { message, ..failure }));
+            return Err(RunError::for_robot(robot, &reading, Failure { message, ..failure }));
         }
     }
     run.local("diff", &diff.options().two_controllers([reading.place(old), reading.place(new)])?)
@@ -92,7 +92,7 @@ struct Reading {
 
 impl Reading {
     fn place(&self, robot: &Robot) -> PathBuf {
-        own_folder(&self.folder, &robot.name, true)
+        private_folder(&self.folder, &robot.name, true)
     }
 }
 
@@ -108,10 +108,10 @@ impl Command for Reading {
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<BackedUp, Failure> {
         let folder = self.place(context.robot);
-        let making = Making { folder, scope: Some(self.scope.clone()), resume: false, force: false };
-        let made = Fleet::back_up(context, making).await?;
+        let options = SaveOptions { folder, scope: Some(self.scope.clone()), resume: false, force: false };
+        let result = Fleet::back_up(context, options).await?;
         // Data that a controller refuses is a difference, not a failure.
-        made.unread().map_or(Ok(made), Err)
+        result.unread().map_or(Ok(result), Err)
     }
 }
 
@@ -123,19 +123,19 @@ impl Backups for Fleet {
         families::of(robot.family).backup_risk(robot)
     }
 
-    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
-        let (face, context) = opened(context)?;
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
+        let (face, context) = open_folder(context)?;
         face.back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
-        let (face, context) = opened(context)?;
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+        let (face, context) = open_folder(context)?;
         face.restore(context, restoring).await
     }
 }
 
 /// Splits a context of any family into its face and connection.
-fn opened(context: Context<'_, Fleet>) -> Result<(&'static dyn Face, AnyContext<'_>), Failure> {
+fn open_folder(context: Context<'_, Fleet>) -> Result<(&'static dyn Face, AnyContext<'_>), Failure> {
     let Context { link, screen, robot, authority, .. } = context;
     match link {
         Link::Open(face, connection) => {

@@ -1,6 +1,7 @@
 //! Commands for robots of any family.
 
 pub mod backup;
+pub mod common;
 #[cfg(feature = "plant")]
 pub mod metrics;
 pub mod names;
@@ -15,7 +16,6 @@ pub mod serve;
 pub mod service;
 pub mod session;
 pub mod setup;
-pub mod shared;
 pub mod status;
 pub mod teach;
 pub mod tools;

@@ -2,7 +2,7 @@
 
 use clap::{Args, Subcommand};
 
-use super::robots::entry::{self, known};
+use super::robots::entry::{self, check_known};
 use crate::command::SchemaEntry;
 use crate::command::frame::names::{Listing, list};
 use crate::command::frame::run::{Run, RunError};
@@ -48,7 +48,7 @@ impl Names {
         match self {
             Self::List(List { filter }) => run.local("names.list", &list(&robot, filter.as_deref())?),
             Self::Set(Set { name, address }) => {
-                known(&run.sources.inventory, &robot.name)?;
+                check_known(&run.sources.inventory, &robot.name)?;
                 if name.is_empty() || name.contains('=') {
                     let failure = Failure::usage(format!("'{name}' is not a valid name"));
                     return Err(failure.hint("use letters, digits and _, such as clamp").into());

@@ -12,14 +12,14 @@ use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use self::entry::known;
+use self::entry::check_known;
 use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::view::{Table, View};
-use crate::settings::inventory::{Entry, fits};
-use crate::settings::model::ToldModels;
+use crate::settings::inventory::{Entry, matches_pattern};
+use crate::settings::model::ModelCache;
 use crate::settings::{Origin, Robot, Setting, duration};
 
 /// Commands for the inventory.
@@ -95,8 +95,8 @@ impl Robots {
 
 impl Show {
     fn run(&self, run: &Run) -> Result<(), RunError> {
-        let entry = known(&run.sources.inventory, &self.name)?;
-        let robot = run.sources.resolved(entry, None)?;
+        let entry = check_known(&run.sources.inventory, &self.name)?;
+        let robot = run.sources.resolve(entry, None)?;
         let mut settings = vec![row("target", &robot.target, ToString::to_string)];
         if robot.family.has_model() {
             settings.push(row("model", &robot.model, ToString::to_string));
@@ -126,9 +126,10 @@ fn told_model(robot: &Robot) -> Option<Value> {
     if robot.model.value.named().is_some() {
         return None;
     }
-    let told = ToldModels::of_user()?.find(&robot.target.value.address())?;
-    let origin = format!("controller, {} ago", duration::display(Duration::from_secs(told.age().as_secs() / 60 * 60)));
-    Some(Value { name: "told_model", value: format!("{} ({})", told.model(), told.software()), origin })
+    let reported = ModelCache::of_user()?.find(&robot.target.value.address())?;
+    let origin =
+        format!("controller, {} ago", duration::display(Duration::from_secs(reported.age().as_secs() / 60 * 60)));
+    Some(Value { name: "told_model", value: format!("{} ({})", reported.model(), reported.software()), origin })
 }
 
 /// A setting as a table row.
@@ -169,7 +170,7 @@ impl List {
         let is_chosen = |robot: &&Entry| {
             let is_named = selection.from_environment
                 || selection.robots.is_empty()
-                || selection.robots.iter().any(|pattern| fits(pattern, &robot.name));
+                || selection.robots.iter().any(|pattern| matches_pattern(pattern, &robot.name));
             is_named && selection.tags.iter().all(|tag| robot.tags.contains(tag))
         };
         let robots: Vec<&Entry> = inventory.robots.iter().filter(is_chosen).collect();
@@ -192,12 +193,12 @@ impl List {
 
 impl Report for List {
     fn view(&self) -> View {
-        let none = if self.has_others {
+        let no_robots = if self.has_others {
             "no robot in the inventory has this name or tag"
         } else {
             "no robots yet; add one with `armctl setup`, or with `armctl robots add cell1 udp://192.168.1.31`"
         };
-        let mut table = Table::new(&["name", "family", "target", "default", "read-only", "tags"], none);
+        let mut table = Table::new(&["name", "family", "target", "default", "read-only", "tags"], no_robots);
         let mark = |on: bool| if on { "yes" } else { "" };
         for robot in &self.robots {
             table.row([

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tokio::time::sleep;
 
 use super::poll::{Event, RobotId};
-use crate::command::frame::repeats::{Line, Repeats};
+use crate::command::frame::repeat_limiter::{Line, RepeatLimiter};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::log::Level;
@@ -22,47 +22,47 @@ use crate::transport::journal::{Journal, PLACE};
 use crate::transport::supervisor::Supervisor;
 
 /// Time limit for a service to stop.
-pub const END: Duration = Duration::from_millis(800);
+pub const END_TIMEOUT: Duration = Duration::from_millis(800);
 
 /// A running service with its log and service manager.
 #[derive(Debug)]
 pub struct Service {
     log: Log,
     supervisor: Supervisor,
-    news: RefCell<News>,
+    state: RefCell<ServiceState>,
 }
 
 impl Service {
     /// Finds the service manager of the environment, and raises the limit of open files.
     pub fn begin(screen: Screen) -> Result<Self, Failure> {
         make_room();
-        let supervisor = Supervisor::find().map_err(|error| unreached(&error))?;
-        Ok(Self { log: Log::new(screen), supervisor, news: RefCell::default() })
+        let supervisor = Supervisor::find().map_err(|error| unreachable(&error))?;
+        Ok(Self { log: Log::new(screen), supervisor, state: RefCell::default() })
     }
 
     /// Logs a poller event.
     pub fn note(&self, event: &Event) {
-        self.news.borrow_mut().note(&self.log, event);
+        self.state.borrow_mut().note(&self.log, event);
     }
 
     /// Logs a message with journal fields.
-    pub fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
+    pub fn log_line(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
         self.log.say(level, text, fields);
     }
 
     /// Status line of the robots: `3 robots, 2 answer`.
     pub fn robots(&self) -> String {
-        self.news.borrow().status()
+        self.state.borrow().status()
     }
 
     /// Reports to the service manager that polling has started.
-    pub fn ready(&self, robots: usize) -> Result<(), Failure> {
+    pub fn notify_ready(&self, robots: usize) -> Result<(), Failure> {
         let plural = if robots == 1 { "" } else { "s" };
-        self.supervisor.ready(&format!("{robots} robot{plural}")).map_err(|error| unreached(&error))
+        self.supervisor.ready(&format!("{robots} robot{plural}")).map_err(|error| unreachable(&error))
     }
 
     /// Sends watchdog messages with the status to the service manager. Does not end.
-    pub async fn pulses(&self, status: impl Fn() -> String) {
+    pub async fn watchdog_interval(&self, status: impl Fn() -> String) {
         /// Interval of the status without a watchdog.
         const STATUS: Duration = Duration::from_secs(30);
 
@@ -73,21 +73,21 @@ impl Service {
             self.log.summarize(false);
             let now = self.supervisor.alive(&status());
             if let (Err(error), true) = (&now, told) {
-                self.say(Level::Error, &format!("cannot reach the service manager: {error}"), &[]);
+                self.log_line(Level::Error, &format!("cannot reach the service manager: {error}"), &[]);
             }
             told = now.is_ok();
         }
     }
 
     /// Reports to the service manager that the service stops.
-    pub fn stopping(&self) {
+    pub fn notify_stopping(&self) {
         self.log.summarize(true);
         // An error cannot be reported any more.
         let _told = self.supervisor.stopping();
     }
 }
 
-fn unreached(error: &io::Error) -> Failure {
+fn unreachable(error: &io::Error) -> Failure {
     Failure::io("NOTIFY_SOCKET", error)
 }
 
@@ -95,7 +95,7 @@ fn unreached(error: &io::Error) -> Failure {
 #[derive(Debug)]
 struct Log {
     screen: Screen,
-    repeats: RefCell<Repeats>,
+    limiter: RefCell<RepeatLimiter>,
     #[cfg(unix)]
     journal: Option<Journal>,
 }
@@ -105,7 +105,7 @@ impl Log {
     fn new(screen: Screen) -> Self {
         // If the journal cannot be opened, use stderr.
         let journal = log::is_journal_socket().then(|| Journal::at(Path::new(PLACE)).ok()).flatten();
-        Self { screen, repeats: RefCell::default(), journal }
+        Self { screen, limiter: RefCell::default(), journal }
     }
 
     #[cfg(not(unix))]
@@ -115,14 +115,14 @@ impl Log {
 
     fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
         if self.screen.wants(level) {
-            let lines = self.repeats.borrow_mut().lines(Line::new(level, text, fields), Instant::now());
+            let lines = self.limiter.borrow_mut().lines(Line::new(level, text, fields), Instant::now());
             self.print_all(lines);
         }
     }
 
     /// Prints the number of repeated lines.
     fn summarize(&self, is_end: bool) {
-        let due = self.repeats.borrow_mut().due(Instant::now(), is_end);
+        let due = self.limiter.borrow_mut().due(Instant::now(), is_end);
         self.print_all(due);
     }
 
@@ -158,36 +158,36 @@ impl Log {
 
 /// Logs changes only once, however often they are seen.
 #[derive(Debug, Default)]
-struct News {
+struct ServiceState {
     /// Whether each robot answers; `None` if unknown.
-    answers: BTreeMap<RobotId, Option<bool>>,
+    answering: BTreeMap<RobotId, Option<bool>>,
     /// Last read errors of the inventory and of the alarm texts.
-    unread: [Option<String>; 2],
+    inventory_error: [Option<String>; 2],
     /// Whether the start is over, so that robots now appear because of a change.
     has_begun: bool,
 }
 
-impl News {
+impl ServiceState {
     fn note(&mut self, log: &Log, event: &Event) {
         match event {
             Event::Appeared(robot) => {
-                self.answers.insert(RobotId::of(robot), None);
+                self.answering.insert(RobotId::for_robot(robot), None);
                 if self.has_begun {
                     say(log, Level::Notice, robot, "is polled from now on");
                 }
             }
             Event::Gone(robot) => {
-                self.answers.remove(&RobotId::of(robot));
+                self.answering.remove(&RobotId::for_robot(robot));
                 say(log, Level::Notice, robot, "is no longer polled");
             }
-            Event::Looked(look) => {
-                if self.answers.insert(RobotId::of(&look.robot), Some(true)) == Some(Some(false)) {
+            Event::Polled(look) => {
+                if self.answering.insert(RobotId::for_robot(&look.robot), Some(true)) == Some(Some(false)) {
                     say(log, Level::Notice, &look.robot, "answers again");
                 }
                 self.unread(log, 1, look.unexplained.as_ref());
             }
             Event::Failed { robot, failure, .. } => {
-                if self.answers.insert(RobotId::of(robot), Some(false)) != Some(Some(false)) {
+                if self.answering.insert(RobotId::for_robot(robot), Some(false)) != Some(Some(false)) {
                     failed(log, robot, failure);
                 }
             }
@@ -202,8 +202,8 @@ impl News {
     }
 
     fn status(&self) -> String {
-        let answer = self.answers.values().filter(|answers| **answers == Some(true)).count();
-        let robots = self.answers.len();
+        let answer = self.answering.values().filter(|answers| **answers == Some(true)).count();
+        let robots = self.answering.len();
         let (plural, verb) = (if robots == 1 { "" } else { "s" }, if answer == 1 { "answers" } else { "answer" });
         format!("{robots} robot{plural}, {answer} {verb}")
     }
@@ -213,14 +213,14 @@ impl News {
         let Some(failure) = why else {
             // A poll without a fault does not need alarm texts, so it does not clear their error.
             if which == 0 {
-                self.unread[which] = None;
+                self.inventory_error[which] = None;
             }
             return;
         };
-        if self.unread[which].as_ref() != Some(&failure.message) {
+        if self.inventory_error[which].as_ref() != Some(&failure.message) {
             let effect = if which == 0 { "armctl keeps the earlier robots" } else { "armctl does not use its texts" };
             log.say(Level::Warning, &format!("{}; {effect}", failure.message), &[("kind", &kind(failure))]);
-            self.unread[which] = Some(failure.message.clone());
+            self.inventory_error[which] = Some(failure.message.clone());
         }
     }
 }

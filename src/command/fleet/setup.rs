@@ -7,14 +7,14 @@ use super::robots::entry::{NewRobot, check_new};
 use super::robots::file;
 use crate::command::face::layers;
 use crate::command::families::{self, FAMILIES};
-use crate::command::frame::asking::answered;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
+use crate::command::frame::prompt::ask;
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Access, ConnectMode};
 use crate::failure::{Failure, Kind};
 use crate::output::render;
 use crate::output::view::View;
-use crate::settings::target::{Family, Given, Target};
+use crate::settings::target::{Family, Target, TargetArgument};
 
 /// Asks for address, name and access rights, checks the connection, and writes robots.toml.
 #[derive(Debug, Args)]
@@ -28,7 +28,7 @@ pub struct Setup {}
 const MOST_NAMES: u32 = 999;
 
 /// Target and family of the new robot.
-struct Found {
+struct FoundTarget {
     family: Family,
     target: Target,
 }
@@ -47,10 +47,10 @@ impl Setup {
         run.screen.ask_note(
             "Set up a robot. Enter selects the value in brackets. armctl writes nothing before the last answer.",
         );
-        let Found { family, target } = reached(run).await.map_err(unanswered)?;
-        let robot = described(run, family, target).await.map_err(unanswered)?;
+        let FoundTarget { family, target } = ask_target(run).await.map_err(no_terminal)?;
+        let robot = describe(run, family, target).await.map_err(no_terminal)?;
         run.screen.ask_note(&format!("\n[[robot]]\n{}", robot.table()));
-        if !yes(run, format!("Write this to {path}?"), true).await.map_err(unanswered)? {
+        if !yes(run, format!("Write this to {path}?"), true).await.map_err(no_terminal)? {
             return Err(Failure::new(Kind::Rejected, "not confirmed; nothing was written").into());
         }
         robot.add(run, "setup")?;
@@ -60,7 +60,7 @@ impl Setup {
 }
 
 /// Failure for a missing answer to a question.
-fn unanswered(failure: Failure) -> Failure {
+fn no_terminal(failure: Failure) -> Failure {
     match failure.kind {
         Kind::Rejected => Failure::new(Kind::Rejected, "no answer; nothing was written")
             .hint("`armctl robots add NAME URL --read-only` does the same without questions"),
@@ -71,29 +71,29 @@ fn unanswered(failure: Failure) -> Failure {
 
 async fn line(run: &Run, question: impl Into<String>, usual: Option<&str>) -> Result<String, Failure> {
     let (screen, question, usual) = (run.screen, question.into(), usual.map(ToOwned::to_owned));
-    answered(screen, move || screen.ask_line(&question, usual.as_deref())).await
+    ask(screen, move || screen.ask_line(&question, usual.as_deref())).await
 }
 
 async fn choice(run: &Run, question: &'static str, options: Vec<String>) -> Result<usize, Failure> {
     let screen = run.screen;
-    answered(screen, move || screen.ask_choice(question, &options)).await
+    ask(screen, move || screen.ask_choice(question, &options)).await
 }
 
 async fn yes(run: &Run, question: impl Into<String>, usual: bool) -> Result<bool, Failure> {
     let (screen, question) = (run.screen, question.into());
-    answered(screen, move || screen.ask_yes(&question, usual)).await
+    ask(screen, move || screen.ask_yes(&question, usual)).await
 }
 
 /// Asks for an address until its check succeeds or the user accepts it.
-async fn reached(run: &Run) -> Result<Found, Failure> {
+async fn ask_target(run: &Run) -> Result<FoundTarget, Failure> {
     loop {
         let found = address(run).await?;
         loop {
             if check(run, &found).await? {
                 return Ok(found);
             }
-            let ways = ["check again", "another address", "continue anyway"];
-            match choice(run, "The check failed. What now?", ways.map(String::from).into()).await? {
+            let choices = ["check again", "another address", "continue anyway"];
+            match choice(run, "The check failed. What now?", choices.map(String::from).into()).await? {
                 0 => {}
                 1 => break,
                 _ => return Ok(found),
@@ -102,7 +102,7 @@ async fn reached(run: &Run) -> Result<Found, Failure> {
     }
 }
 
-async fn address(run: &Run) -> Result<Found, Failure> {
+async fn address(run: &Run) -> Result<FoundTarget, Failure> {
     let ways = [
         "type an address or serial port",
         "search: controllers in this network, serial ports",
@@ -110,9 +110,9 @@ async fn address(run: &Run) -> Result<Found, Failure> {
     ];
     loop {
         let found = match choice(run, "Where is the robot?", ways.map(String::from).into()).await? {
-            0 => typed(run).await,
-            1 => match look(run).await? {
-                Some((given, family)) => complete(run, &given, family).await,
+            0 => ask_address(run).await,
+            1 => match search(run).await? {
+                Some((given, family)) => ask_missing_parts(run, &given, family).await,
                 None => continue,
             },
             _ => simulator(run).await,
@@ -124,14 +124,14 @@ async fn address(run: &Run) -> Result<Found, Failure> {
     }
 }
 
-async fn typed(run: &Run) -> Result<Found, Failure> {
-    let given = line(run, "Address, such as 192.168.1.31, COM3, /dev/ttyUSB0 or a URL", None).await?;
-    complete(run, &given.parse()?, None).await
+async fn ask_address(run: &Run) -> Result<FoundTarget, Failure> {
+    let input = line(run, "Address, such as 192.168.1.31, COM3, /dev/ttyUSB0 or a URL", None).await?;
+    ask_missing_parts(run, &input.parse()?, None).await
 }
 
 /// Searches for controllers, and lets the user choose one; `None` if it is not listed.
-async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
-    let found = interruptible(Discover::usual()?.find(run)).await??;
+async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, Failure> {
+    let found = interruptible(Discover::default_arguments()?.find(run)).await??;
     let mut places = found.places();
     let shown = places.iter().map(|(target, _, device)| format!("{target}  {device}"));
     let options: Vec<String> = shown.chain(["none of these".to_owned()]).collect();
@@ -143,26 +143,26 @@ async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
     Ok(Some((target.parse()?, family.and_then(|family| family.parse().ok()))))
 }
 
-async fn simulator(run: &Run) -> Result<Found, Failure> {
+async fn simulator(run: &Run) -> Result<FoundTarget, Failure> {
     let family = family(run).await?;
     let question = format!("Address of a simulator that runs (`armctl sim {family}`), or sim: for the built-in one");
     let given = line(run, question, Some(families::of(family).simulator())).await?;
-    complete(run, &given.parse()?, Some(family)).await
+    ask_missing_parts(run, &given.parse()?, Some(family)).await
 }
 
 /// Asks for what the address does not contain.
-async fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Found, Failure> {
-    let told = match given {
-        Given::Url(target) => target.family(),
-        Given::Bare(_) => None,
+async fn ask_missing_parts(run: &Run, given: &TargetArgument, known: Option<Family>) -> Result<FoundTarget, Failure> {
+    let hint = match given {
+        TargetArgument::Url(target) => target.family(),
+        TargetArgument::Bare(_) => None,
     };
-    let family = match known.or(told) {
+    let family = match known.or(hint) {
         Some(family) => family,
         None => family(run).await?,
     };
-    let target = given.of(Some(family))?;
+    let target = given.resolve(Some(family))?;
     target.check(family).map_err(Failure::usage)?;
-    Ok(Found { family, target })
+    Ok(FoundTarget { family, target })
 }
 
 async fn family(run: &Run) -> Result<Family, Failure> {
@@ -172,7 +172,7 @@ async fn family(run: &Run) -> Result<Family, Failure> {
 }
 
 /// Checks each layer and shows it. Returns whether all succeeded.
-async fn check(run: &Run, found: &Found) -> Result<bool, Failure> {
+async fn check(run: &Run, found: &FoundTarget) -> Result<bool, Failure> {
     let robot = run.sources.at(&found.target, found.family)?;
     let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
     run.begin_trace()?;
@@ -183,12 +183,13 @@ async fn check(run: &Run, found: &Found) -> Result<bool, Failure> {
 }
 
 /// Asks for name and access.
-async fn described(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
+async fn describe(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
     let (screen, inventory) = (&run.screen, &run.sources.inventory);
-    let free = (1..=MOST_NAMES).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
+    let unused_name =
+        (1..=MOST_NAMES).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
     screen.ask_note("");
     let name = loop {
-        let name = line(run, "Name", free.as_deref()).await?;
+        let name = line(run, "Name", unused_name.as_deref()).await?;
         match check_new(inventory, &name) {
             Ok(()) => break name,
             Err(failure) => screen.failure(&failure),

@@ -8,7 +8,7 @@ use crate::command::families;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Plan;
 use crate::command::frame::script_line::Line;
-use crate::command::frame::share::{is_to_share, shared};
+use crate::command::frame::share::{can_share, open_shared_session};
 use crate::command::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -39,7 +39,7 @@ pub struct Absent {
 
 impl Link {
     /// Tries again to connect to a robot that did not answer the last command.
-    pub async fn reach(&mut self, screen: &Screen) -> Result<(), Failure> {
+    pub async fn open_link(&mut self, screen: &Screen) -> Result<(), Failure> {
         let Self::Absent(absent) = self else { return Ok(()) };
         if !std::mem::replace(&mut absent.is_asked, true) {
             return Ok(());
@@ -49,13 +49,13 @@ impl Link {
             Self::Absent(again) => absent.failure = again.failure,
             Self::Open(face, connection) => {
                 let driver = face.driver();
-                if !is_to_share(driver, &robot) {
+                if !can_share(driver, &robot) {
                     *self = Self::Open(face, connection);
                     return Ok(());
                 }
                 // Other commands share its link, as they do from the start of a watch.
                 connection.close(screen).await?;
-                let robot = shared(driver, &robot).await?;
+                let robot = open_shared_session(driver, &robot).await?;
                 *self = Fleet::connect(&robot, access, screen).await?;
             }
         }
@@ -125,7 +125,7 @@ impl Command for Overview {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
-        let found = match context.link.reach(context.screen).await {
+        let found = match context.link.open_link(context.screen).await {
             Ok(()) => match context.link {
                 Link::Open(face, connection) => face.overview(&mut **connection).await,
                 Link::Absent(absent) => Err(absent.failure.clone()),
@@ -146,8 +146,8 @@ impl Command for Overview {
     /// Summary line: `32 robots, 30 answer, 1 alarm`.
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         let count = |field: &str| {
-            let is_so = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
-            envelopes.iter().filter(is_so).count()
+            let is_true = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
+            envelopes.iter().filter(is_true).count()
         };
         let (robots, answer, alarms) = (envelopes.len(), count("reachable"), count("faulted"));
         let plural = |number: usize| if number == 1 { "" } else { "s" };
@@ -161,7 +161,7 @@ impl Command for Overview {
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
     let overview = Overview {};
     let access = Access::reading(overview.connect_mode());
-    let access = line.connecting(robot, access, screen).await?;
+    let access = line.connect(robot, access, screen).await?;
     let mut connection = Fleet::connect(robot, access, screen).await?;
     let authority = Authority::reading(screen, robot);
     let context = Context { robot, link: &mut connection, screen, several: false, authority };

@@ -15,15 +15,15 @@ use crate::output::view::{Cell, Table, View};
 use crate::settings::target::Family;
 
 /// Arguments of `armctl decode FAMILY`.
-pub type Decode = OfFamily<Decoding>;
+pub type Decode = FamilyTool<Decoding>;
 /// Arguments of `armctl explain FAMILY`.
-pub type Explain = OfFamily<Explaining>;
+pub type Explain = FamilyTool<Explaining>;
 
 /// Which simulator to serve.
 #[derive(Debug, Args)]
 pub struct Sim {
     #[command(subcommand)]
-    family: Option<OfFamily<Simulating>>,
+    family: Option<FamilyTool<Simulating>>,
 }
 
 impl Sim {
@@ -115,13 +115,13 @@ impl Word for Simulating {
 }
 
 /// Family and arguments after such a word.
-pub struct OfFamily<W> {
+pub struct FamilyTool<W> {
     family: Family,
     task: Box<dyn ToolTask>,
     word: PhantomData<W>,
 }
 
-impl<W: Word> OfFamily<W> {
+impl<W: Word> FamilyTool<W> {
     fn tool(family: Family) -> Tool {
         families::of(family).tool(W::KIND)
     }
@@ -132,13 +132,13 @@ impl<W: Word> OfFamily<W> {
     }
 }
 
-impl<W> fmt::Debug for OfFamily<W> {
+impl<W> fmt::Debug for FamilyTool<W> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.family.name())
     }
 }
 
-impl<W: Word> Subcommand for OfFamily<W> {
+impl<W: Word> Subcommand for FamilyTool<W> {
     fn augment_subcommands(command: Command) -> Command {
         let words = FAMILIES.map(|face| (face.tool(W::KIND).augment)(Command::new(face.family().name())));
         command.subcommands(words)
@@ -153,13 +153,13 @@ impl<W: Word> Subcommand for OfFamily<W> {
     }
 }
 
-impl<W: Word> FromArgMatches for OfFamily<W> {
+impl<W: Word> FromArgMatches for FamilyTool<W> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         Self::from_arg_matches_mut(&mut matches.clone())
     }
 
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
-        let (family, mut matches) = families::named(matches)?;
+        let (family, mut matches) = families::by_name(matches)?;
         Ok(Self { family, task: (Self::tool(family).read)(&mut matches)?, word: PhantomData })
     }
 

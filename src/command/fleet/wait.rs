@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::shared::line::{Reading, SharedLine};
+use super::common::line::{Reading, SharedLine};
 use super::status::Overview;
 use crate::command::face::overview::OverviewReport;
 use crate::command::frame::condition::{Comparison, Condition};
@@ -13,7 +13,7 @@ use crate::command::{AnyCommand, SchemaEntry};
 use crate::failure::Failure;
 use crate::settings::duration;
 
-const EVERY: Duration = Duration::from_millis(200);
+const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);
 /// Nouns whose values have names, in the order in which a name is looked for.
 const NOUNS: [&str; 7] = ["io", "var", "counter", "timer", "register", "port", "param"];
 
@@ -49,10 +49,10 @@ impl Wait {
     /// If the condition is not valid.
     pub fn repeat(&self, given: &Repeat) -> Result<Repeat, Failure> {
         let until = match self.item()? {
-            Some(comparison) => Condition::of_item(&self.condition, &comparison)?,
+            Some(comparison) => Condition::item_of_noun(&self.condition, &comparison)?,
             None => Condition::new(&self.condition)?,
         };
-        let every = given.every.or(Some(EVERY));
+        let every = given.every.or(Some(DEFAULT_INTERVAL));
         let until = Some(until);
         Ok(Repeat { every, count: given.count, until, within: self.within, is_quiet: true, ..Repeat::default() })
     }

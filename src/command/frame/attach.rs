@@ -19,7 +19,7 @@ use crate::transport::session::wire::{Info, Peer, Purpose};
 
 /// Session of the robot, if one is open and `--no-session` is not set.
 pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
-    let attached = attach_if_there(robot, access, screen).await?;
+    let attached = find_session(robot, access, screen).await?;
     if attached.is_none() && robot.sessions == Sessions::Only {
         let failure = Failure::new(Kind::NoAnswer, format!("{}: no session is open", robot.label()));
         return Err(failure.hint("open a session with `armctl session open`"));
@@ -48,7 +48,7 @@ pub async fn lock_soon(robot: &Robot, access: &Access, screen: &Screen) -> Resul
         let Some(place) = (if is_alone { None } else { SessionFolder::create().ok() }) else {
             return Ok(LockResult::Own(None));
         };
-        let location = place.location(&key_of(robot));
+        let location = place.location(&session_key(robot));
         match location.lock_soon(&info(robot, access)).await {
             Ok(location::LockResult::Locked(claim)) => return Ok(LockResult::Own(Some(claim))),
             Ok(location::LockResult::Session) => {}
@@ -76,20 +76,20 @@ pub fn in_use(robot: &Robot, location: &SessionPath) -> Failure {
     .hint("wait until it ends, or use `armctl session open` first so that commands share the connection")
 }
 
-async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
     if robot.sessions == Sessions::None || access.dry_run {
         return Ok(None);
     }
-    let goes_around = access.is_stop && matches!(robot.target.value.place, target::Place::Udp(_));
-    let within = if goes_around { STOP_WAITS } else { Duration::MAX };
+    let bypasses_session = access.is_stop && matches!(robot.target.value.place, target::Place::Udp(_));
+    let limit = if bypasses_session { STOP_TIMEOUT } else { Duration::MAX };
     let purpose = match access {
         Access { is_stop: true, .. } => Purpose::Stop,
         Access { leaves_motion: true, .. } => Purpose::LeavesMotion,
         _ => Purpose::Any,
     };
-    let (key, typed) = (key_of(robot), command_line(access));
+    let (key, typed) = (session_key(robot), command_line(access));
     let attaching = client::attach(&key, &typed, purpose);
-    let attached = match timeout(within, attaching).await.unwrap_or(Err(AttachError::Silent)) {
+    let attached = match timeout(limit, attaching).await.unwrap_or(Err(AttachError::Silent)) {
         Ok(AttachResult::Session(attached)) => attached,
         Ok(AttachResult::Nothing) => return Ok(None),
         Ok(AttachResult::Dead) => {
@@ -106,7 +106,7 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
             return Ok(None);
         }
         // A controller on UDP accepts a stop from any client.
-        Err(AttachError::Silent) if goes_around => {
+        Err(AttachError::Silent) if bypasses_session => {
             screen.note(&format!(
                 "{}: {} does not respond, so the stop is sent directly",
                 robot.label(),
@@ -114,13 +114,13 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
             ));
             return Ok(None);
         }
-        Err(AttachError::Silent) => return Err(frozen(robot)),
-        Err(error) => return Err(refused(&robot.label(), &error)),
+        Err(AttachError::Silent) => return Err(unresponsive_session(robot)),
+        Err(error) => return Err(attach_failure(&robot.label(), &error)),
     };
     let welcome = &attached.welcome;
     if screen.verbosity > 0 {
         // Computing the local time takes longer than the rest of a status command, so it is done only for `-v`.
-        let since = since(welcome.for_ms);
+        let since = format_since(welcome.for_ms);
         let through = format!("through the session of process {}, open since {since}", welcome.pid);
         screen.detail(1, &format!("{}: {through}", robot.label()));
     }
@@ -139,11 +139,11 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
 }
 
 /// Time that a stop waits for a session. A running session answers within milliseconds.
-const STOP_WAITS: Duration = Duration::from_millis(300);
+const STOP_TIMEOUT: Duration = Duration::from_millis(300);
 
 /// Process that holds the link of a robot.
 fn owner(robot: &Robot) -> Option<Info> {
-    SessionFolder::find().ok().flatten()?.location(&key_of(robot)).owner()
+    SessionFolder::find().ok().flatten()?.location(&session_key(robot)).owner()
 }
 
 fn holder(robot: &Robot) -> String {
@@ -151,7 +151,7 @@ fn holder(robot: &Robot) -> String {
 }
 
 /// Failure for a session that holds the only link and does not respond.
-fn frozen(robot: &Robot) -> Failure {
+fn unresponsive_session(robot: &Robot) -> Failure {
     let failure = Failure::new(Kind::NoAnswer, format!("{}: {} does not respond", robot.label(), holder(robot)));
     let Some(Info { pid, .. }) = owner(robot) else { return failure };
     failure.hint(format!(
@@ -163,23 +163,24 @@ fn frozen(robot: &Robot) -> Failure {
 /// Whether a session holds the robot's link and commands can use it.
 pub fn is_held(robot: &Robot) -> bool {
     robot.sessions != Sessions::None
-        && SessionFolder::find().is_ok_and(|place| place.is_some_and(|place| place.location(&key_of(robot)).is_open()))
+        && SessionFolder::find()
+            .is_ok_and(|place| place.is_some_and(|place| place.location(&session_key(robot)).is_open()))
 }
 
 /// Whether a session of another process holds the robot's link and commands can use it.
-pub fn is_held_by_another(robot: &Robot) -> bool {
+pub fn is_held_by_other_process(robot: &Robot) -> bool {
     is_held(robot) && owner(robot).is_some_and(|owner| owner.pid != process())
 }
 
 /// Session key of the robot: its address, or the alias address that its session was opened with.
-pub fn key_of(robot: &Robot) -> String {
+pub fn session_key(robot: &Robot) -> String {
     let own = own_key(robot);
     let Ok(Some(place)) = SessionFolder::find() else { return own };
     if robot.target.value.is_simulated() || place.location(&own).socket().exists() {
         return own;
     }
     let mut others = sessions(&place, robot.family).into_iter();
-    others.find(|(_, address)| robot.is_at(address)).map_or(own, |(location, _)| location.key())
+    others.find(|(_, address)| robot.has_address(address)).map_or(own, |(location, _)| location.key())
 }
 
 /// Sessions of a family, each with the address that it was opened with.
@@ -198,10 +199,10 @@ fn sessions(place: &SessionFolder, family: Family) -> Vec<(SessionPath, Address)
 /// If the robot does not answer, so that its identity is unknown.
 pub fn identify(sources: &Sources, driver: &dyn Driver, robot: &mut Robot, changes: bool) -> Result<(), Failure> {
     let own = robot.target.value.address();
-    let is_bound = changes && sources.read_only(robot.family).any(|(address, _)| own.may_meet(&address));
+    let is_bound = changes && sources.read_only(robot.family).any(|(address, _)| own.may_match(&address));
     if is_bound || may_be_held(robot, &own) {
         robot.aliases = driver.addresses(robot)?;
-        sources.bind(robot);
+        sources.apply_read_only(robot);
     }
     Ok(())
 }
@@ -211,7 +212,7 @@ fn may_be_held(robot: &Robot, own: &Address) -> bool {
     let place = if robot.sessions == Sessions::None { None } else { SessionFolder::find().ok().flatten() };
     place.is_some_and(|place| {
         !place.location(&own_key(robot)).socket().exists()
-            && sessions(&place, robot.family).iter().any(|(_, address)| own.may_meet(address))
+            && sessions(&place, robot.family).iter().any(|(_, address)| own.may_match(address))
     })
 }
 
@@ -239,7 +240,7 @@ fn command_line(access: &Access) -> String {
 }
 
 /// Failure: the session folder cannot be used.
-pub fn no_place(error: &LocationError) -> Failure {
+pub fn folder_failure(error: &LocationError) -> Failure {
     let failure = Failure::new(Kind::Local, format!("sessions: {error}"));
     match error {
         LocationError::Unsafe { path, .. } => {
@@ -250,7 +251,7 @@ pub fn no_place(error: &LocationError) -> Failure {
 }
 
 /// Failure for a session that exists but cannot be used.
-pub fn refused(label: &str, error: &AttachError) -> Failure {
+pub fn attach_failure(label: &str, error: &AttachError) -> Failure {
     let hint = "list sessions with `armctl session list`, or bypass the session with --no-session";
     let kind = match error {
         AttachError::Location(_) | AttachError::Io(_) => Kind::Local,
@@ -286,11 +287,11 @@ pub fn session_busy(label: &str, busy: &SessionBusy) -> Failure {
 
 /// Client and start time.
 pub fn peer(peer: &Peer) -> String {
-    format!("process {} (`{}`), since {}", peer.pid, peer.command, since(peer.for_ms))
+    format!("process {} (`{}`), since {}", peer.pid, peer.command, format_since(peer.for_ms))
 }
 
 /// Local time that was `for_ms` ago.
-pub fn since(for_ms: u64) -> String {
+pub fn format_since(for_ms: u64) -> String {
     let then = Timestamp::now().checked_sub(Duration::from_millis(for_ms)).unwrap_or(Timestamp::MIN);
     then.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string()
 }

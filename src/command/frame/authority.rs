@@ -10,7 +10,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 
 /// Authorizes a command for `robot`, with a question if the risk requires it, before anything is sent.
-pub async fn pass(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
+pub async fn confirm_intent(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
     if !gate.must_ask(screen, robot, intent)? {
         return Ok(());
     }
@@ -29,14 +29,14 @@ pub struct Authority<'a> {
     screen: &'a Screen,
     robot: &'a Robot,
     /// Maximum risk that the command declared.
-    most: Risk,
+    granted: Risk,
     grant: Grant,
 }
 
 impl<'a> Authority<'a> {
     /// Authority for a command with this maximum risk.
-    pub fn new(gate: Gate, screen: &'a Screen, robot: &'a Robot, most: Risk, grant: Grant) -> Self {
-        Self { gate, screen, robot, most, grant }
+    pub fn new(gate: Gate, screen: &'a Screen, robot: &'a Robot, granted: Risk, grant: Grant) -> Self {
+        Self { gate, screen, robot, granted, grant }
     }
 
     /// Authority for a read-only command.
@@ -47,17 +47,17 @@ impl<'a> Authority<'a> {
     /// Authority for a part of the work on another screen.
     #[must_use]
     pub fn clone_for<'b>(&self, screen: &'b Screen, robot: &'b Robot) -> Authority<'b> {
-        Authority { gate: self.gate, screen, robot, most: self.most, grant: self.grant.clone() }
+        Authority { gate: self.gate, screen, robot, granted: self.granted, grant: self.grant.clone() }
     }
 
     /// Whether a person is asked before a change. In that time, other clients may change data.
     pub fn asks(&self) -> bool {
-        self.gate.needs_yes(self.robot, self.most) && self.grant.get() < self.most
+        self.gate.needs_yes(self.robot, self.granted) && self.grant.get() < self.granted
     }
 
     /// Confirms `change`. Nothing has been changed so far. A change that overwrites no user data needs no question.
     pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
-        let risk = self.most;
+        let risk = self.granted;
         if !change.is_empty() && self.asks() {
             let text = change.in_a_line();
             if !self.screen.can_ask() {
@@ -79,7 +79,7 @@ enum Question {
 }
 
 /// Serializes questions.
-static TURN: Mutex<()> = Mutex::new(());
+static QUESTION_LOCK: Mutex<()> = Mutex::new(());
 
 /// Asks in a separate thread, so that Ctrl-C is handled. `otherwise` describes the state after a no.
 async fn ask(
@@ -96,7 +96,7 @@ async fn ask(
     let who = format!("{} ({}, {})", robot.name, robot.family, robot.target.value.url());
     let asked = tokio::task::spawn_blocking(move || {
         // Questions for several robots are asked one after the other.
-        let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let _turn = QUESTION_LOCK.lock().unwrap_or_else(PoisonError::into_inner);
         screen.ask_title("REAL CONTROLLER:", &who);
         for line in &lines {
             screen.ask_note(line);

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use tokio::task::spawn_blocking;
 
-use super::attach::{key_of, no_place};
+use super::attach::{folder_failure, session_key};
 use super::interrupt::interruptible;
 use super::report::Report;
 use crate::failure::Failure;
@@ -64,7 +64,7 @@ impl Report for Opened {
 }
 
 /// Opens a background session for a robot whose inventory entry has `hold = true`.
-pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
+pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
     let mut words: Vec<OsString> = Vec::new();
     if let Some(path) = inventory {
         words.extend(["--config".into(), path.into()]);
@@ -82,8 +82,8 @@ pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) 
 
 /// Starts this program in the background with these arguments, and waits until its link is up.
 pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
-    let place = SessionFolder::create().map_err(|error| no_place(&error))?;
-    let log = place.location(&key_of(robot)).log();
+    let folder = SessionFolder::create().map_err(|error| folder_failure(&error))?;
+    let log = folder.location(&session_key(robot)).log();
     let mut child = detach(words, &log).context("this program, in the background")?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {

@@ -60,8 +60,8 @@ impl Condition {
     ///
     /// # Errors
     /// If the filter is not valid.
-    pub fn of_item(text: &str, comparison: &Comparison<'_>) -> Result<Self, Failure> {
-        let compared = comparison.compared();
+    pub fn item_of_noun(text: &str, comparison: &Comparison<'_>) -> Result<Self, Failure> {
+        let compared = comparison.comparison_filter();
         let filter = each(&format!("(.data.items | length) > 0 and all(.data.items[]; .ok and (.value | {compared}))"));
         Self::with(text, &filter, Vec::new(), None)
     }
@@ -85,12 +85,12 @@ impl Condition {
     ///
     /// # Errors
     /// The error of the filter.
-    pub fn holds(&self, envelopes: &Value) -> Result<bool, Failure> {
+    pub fn is_met(&self, envelopes: &Value) -> Result<bool, Failure> {
         self.filter.is_true(envelopes)
     }
 
     /// Message if the condition can never be true, because a report does not have the key.
-    pub fn never(&self, envelopes: &Value) -> Option<String> {
+    pub fn check_keys(&self, envelopes: &Value) -> Option<String> {
         let first = envelopes.as_array().and_then(|all| all.first()).unwrap_or(envelopes);
         let data = first["data"].as_object()?;
         if let Some(name) = &self.name {
@@ -141,7 +141,7 @@ impl<'a> Comparison<'a> {
     }
 
     /// Filter over a value. A signal can also be compared with 0 and 1.
-    fn compared(&self) -> String {
+    fn comparison_filter(&self) -> String {
         let Self { sign, value, .. } = self;
         let bit = "if . == true then 1 elif . == false then 0 else . end";
         if value.is_number() { format!("({bit}) {sign} {value}") } else { format!(". {sign} {value}") }
@@ -149,12 +149,12 @@ impl<'a> Comparison<'a> {
 
     /// Filter over an envelope: a key of the report, or else an item with this name.
     fn filter(&self) -> String {
-        let (name, compared) = (json!(self.name), self.compared());
-        let told = format!(
+        let (name, compared) = (json!(self.name), self.comparison_filter());
+        let described = format!(
             "(.data | if type == \"object\" and has({name}) then [.[{name}]] else \
              [.. | objects | select([.[] | strings] | index({name})) | if has(\"value\") then .value elif has(\"on\") then .on else empty end] end)"
         );
-        format!("{told} as $told | ($told | length) > 0 and all($told[]; {compared})")
+        format!("{described} as $told | ($told | length) > 0 and all($told[]; {compared})")
     }
 }
 
@@ -220,11 +220,11 @@ mod tests {
     use super::*;
 
     fn holds(condition: &str, envelope: &Value) -> bool {
-        Condition::new(condition).unwrap().holds(envelope).unwrap()
+        Condition::new(condition).unwrap().is_met(envelope).unwrap()
     }
 
     #[test]
-    fn words_are_states_of_every_family() {
+    fn parses_states_of_every_family() {
         let of = |running: Option<bool>, held: bool| json!({ "data": { "running": running, "held": held, "servo_on": true } });
         assert!(holds("idle", &of(Some(false), false)) && !holds("idle", &of(Some(false), true)));
         assert!(!holds("idle", &of(None, false)), "an unknown state is not true");
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_keys_signals_and_variables() {
+    fn parses_names_of_keys_signals_and_variables() {
         let status = json!({ "data": { "servo_on": true, "fault_code": "4315", "speed": 5 } });
         assert!(holds("servo_on=on", &status) && holds("servo_on=true", &status) && !holds("servo_on=off", &status));
         assert!(holds("fault_code=\"4315\"", &status) && holds("speed>=5", &status) && holds("speed != 4", &status));
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn filters_stay_what_they_are() {
+    fn leaves_filters_unchanged() {
         let status = json!({ "data": { "servo_on": true, "alarms": [] } });
         assert!(holds(".data.servo_on", &status) && holds(".data.alarms == []", &status));
         assert!(holds(".data.servo_on and (.data.alarms | length) <= 0", &status));
@@ -257,9 +257,9 @@ mod tests {
     }
 
     #[test]
-    fn a_key_that_is_not_there_is_told() {
+    fn reports_an_unknown_key() {
         let status = json!({ "data": { "running": false, "position": null } });
-        let never = |condition: &str| Condition::new(condition).unwrap().never(&status);
+        let never = |condition: &str| Condition::new(condition).unwrap().check_keys(&status);
         let told = never(".data.executing == false").unwrap();
         assert!(told.contains(".data.executing") && told.contains("running"), "{told}");
         assert_eq!(never(".data.running == false"), None);
@@ -279,15 +279,15 @@ mod tests {
         assert!(told.contains("`armctl wait 'servo_on=true'`"), "{told}");
         assert_eq!(never("running=true"), None);
         let items = json!({ "data": { "items": [{ "name": "#27010", "label": "clamp", "value": false }] } });
-        assert_eq!(Condition::new("clamp=on").unwrap().never(&items), None, "an item");
+        assert_eq!(Condition::new("clamp=on").unwrap().check_keys(&items), None, "an item");
     }
 
     #[test]
-    fn an_item_is_compared_whatever_its_spelling() {
+    fn compares_items_in_every_spelling() {
         let report =
             |ok: bool, value: Value| json!({ "data": { "items": [{ "name": "CN05", "ok": ok, "value": value }] } });
         let holds = |text: &str, report: &Value| {
-            Condition::of_item(text, &Comparison::parse(text).unwrap()).unwrap().holds(report).unwrap()
+            Condition::item_of_noun(text, &Comparison::parse(text).unwrap()).unwrap().is_met(report).unwrap()
         };
         assert!(holds("cn5=0", &report(true, json!(0))) && !holds("cn5=0", &report(true, json!(1))));
         assert!(holds("IN1.3=off", &report(true, json!(false))) && holds("IN1.3=0", &report(true, json!(false))));

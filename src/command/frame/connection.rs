@@ -30,7 +30,7 @@ pub struct Access {
     /// Command line, if it differs from that of the process.
     pub typed: Option<Arc<str>>,
     /// Family arguments before the command.
-    pub own: Own,
+    pub own: FamilyArguments,
     /// Whether a motion continues if this process ends.
     pub leaves_motion: bool,
     /// Whether it is for a stop, which must not wait.
@@ -40,17 +40,17 @@ pub struct Access {
 impl Access {
     /// Read-only access.
     pub fn reading(mode: ConnectMode) -> Self {
-        let (grant, own) = (Grant::up_to(Risk::Read), Own::default());
+        let (grant, own) = (Grant::up_to(Risk::Read), FamilyArguments::default());
         Self { grant, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false, is_stop: false }
     }
 }
 
 /// Family arguments before the command, common to all commands of the family. Only the family can interpret them.
 #[derive(Debug, Clone, Default)]
-pub struct Own(Option<Arc<dyn OwnArguments>>);
+pub struct FamilyArguments(Option<Arc<dyn AnyFamilyArguments>>);
 
 /// Family arguments before a command.
-pub trait OwnArguments: Any + fmt::Debug + Send + Sync {
+pub trait AnyFamilyArguments: Any + fmt::Debug + Send + Sync {
     /// Adds their effect to the intent of a command.
     fn complete(&self, intent: Intent) -> Intent;
 
@@ -58,14 +58,14 @@ pub trait OwnArguments: Any + fmt::Debug + Send + Sync {
     fn words(&self) -> Vec<String>;
 }
 
-impl Own {
+impl FamilyArguments {
     /// Stores the arguments.
-    pub fn of(arguments: impl OwnArguments) -> Self {
+    pub fn of(arguments: impl AnyFamilyArguments) -> Self {
         Self(Some(Arc::new(arguments)))
     }
 
     /// Arguments in the family's type, if given.
-    pub fn get<T: OwnArguments>(&self) -> Option<&T> {
+    pub fn get<T: AnyFamilyArguments>(&self) -> Option<&T> {
         let own: &dyn Any = &**self.0.as_ref()?;
         own.downcast_ref()
     }
@@ -125,7 +125,7 @@ pub trait Family: Sized + 'static {
     async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
 
     /// Whether motion of this link is stopped even with `--on-interrupt leave`.
-    fn must_halt(_link: &Self::Link) -> bool {
+    fn needs_halt(_link: &Self::Link) -> bool {
         false
     }
 
@@ -193,12 +193,12 @@ pub trait Driver: Sync {
 
 /// Driver of a family.
 pub fn driver<F: Family>() -> &'static dyn Driver {
-    &Drives::<F>(PhantomData)
+    &Driving::<F>(PhantomData)
 }
 
-struct Drives<F>(PhantomData<fn() -> F>);
+struct Driving<F>(PhantomData<fn() -> F>);
 
-impl<F: Family> Driver for Drives<F> {
+impl<F: Family> Driver for Driving<F> {
     fn family(&self) -> Option<target::Family> {
         F::FAMILY
     }
@@ -237,15 +237,15 @@ pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, 
 }
 
 /// Borrowed link of a family as a [`Connection`], for a command that runs on it.
-pub struct Lent<'a, F: Family>(pub &'a mut F::Link);
+pub struct Borrowed<'a, F: Family>(pub &'a mut F::Link);
 
-impl<F: Family> Connection for Lent<'_, F> {
+impl<F: Family> Connection for Borrowed<'_, F> {
     fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
         F::halt(self.0).boxed_local()
     }
 
     fn must_halt(&self) -> bool {
-        F::must_halt(self.0)
+        F::needs_halt(self.0)
     }
 
     fn planned(&mut self) -> Plan {
@@ -271,7 +271,7 @@ impl<F: Family> Connection for Connected<F> {
     }
 
     fn must_halt(&self) -> bool {
-        F::must_halt(&self.0)
+        F::needs_halt(&self.0)
     }
 
     fn planned(&mut self) -> Plan {

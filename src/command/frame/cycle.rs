@@ -29,7 +29,7 @@ impl Repeat {
     }
 
     /// Text after the action in a confirmation: ` 20 times`.
-    pub fn in_words(self) -> String {
+    pub fn describe(self) -> String {
         self.repeat.map(|count| format!(" {count} times, one after the other")).unwrap_or_default()
     }
 }
@@ -48,12 +48,12 @@ impl Runs {
     }
 
     /// Records the duration of a completed run.
-    pub fn ended(&mut self, elapsed_ms: u64) {
+    pub fn add(&mut self, elapsed_ms: u64) {
         self.times_ms.push(elapsed_ms);
     }
 
     /// Whether all runs have ended.
-    pub fn are_over(&self) -> bool {
+    pub fn is_complete(&self) -> bool {
         self.times_ms.len() >= usize::try_from(self.repeat.count()).unwrap_or(usize::MAX)
     }
 
@@ -68,11 +68,12 @@ impl Runs {
     }
 
     /// Failure that ends the runs, with the number of completed runs.
-    pub fn early(&self, failure: Failure) -> Failure {
+    pub fn add_to_failure(&self, failure: Failure) -> Failure {
         let Some(run) = self.next() else { return failure };
-        let took = CycleTimes::new(&self.times_ms).map(|times| format!("; {}", times.in_a_line())).unwrap_or_default();
+        let duration =
+            CycleTimes::new(&self.times_ms).map(|times| format!("; {}", times.format_line())).unwrap_or_default();
         let (done, why) = (self.times_ms.len(), failure.message.trim_end_matches('.'));
-        Failure { message: format!("{run}: {why}; completed runs: {done}{took}"), ..failure }
+        Failure { message: format!("{run}: {why}; completed runs: {done}{duration}"), ..failure }
     }
 
     /// Statistics for a report.
@@ -142,7 +143,7 @@ impl CycleTimes {
         ]
     }
 
-    fn in_a_line(&self) -> String {
+    fn format_line(&self) -> String {
         let Self { min_ms, median_ms, p95_ms, max_ms, .. } = self;
         format!("duration: minimum {min_ms} ms, median {median_ms}, 95 % within {p95_ms}, maximum {max_ms}")
     }
@@ -154,7 +155,7 @@ mod tests {
     use crate::failure::Kind;
 
     #[test]
-    fn shares_are_times_that_were_measured() {
+    fn percentiles_are_measured_times() {
         let times = CycleTimes::new(&(1..=20).rev().collect::<Vec<_>>()).unwrap();
         assert_eq!((times.n, times.min_ms, times.median_ms, times.p95_ms, times.max_ms), (20, 1, 10, 19, 20));
         let one = CycleTimes::new(&[7]).unwrap();
@@ -163,11 +164,11 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_tells_the_runs_before_it() {
+    fn failure_reports_the_completed_cycles() {
         let mut runs = Runs::new(Repeat { repeat: Some(20), stats: true });
-        runs.ended(5);
-        runs.ended(7);
-        let failure = runs.early(Failure::new(Kind::ConditionNotMet, "an alarm came up."));
+        runs.add(5);
+        runs.add(7);
+        let failure = runs.add_to_failure(Failure::new(Kind::ConditionNotMet, "an alarm came up."));
         assert!(
             failure.message.starts_with("run 3 of 20: an alarm came up; completed runs: 2; duration: minimum 5 ms"),
             "{failure}"

@@ -158,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plan_says_what_depends_on_answers_and_what_follows() {
+    fn plan_lists_dependent_frames_and_what_follows() {
         let mut plan = Plan::default();
         plan.note(json!({"text": "@STAS SNO=2"}), Reason::about("whether the host is ON"));
         plan.note(json!({"text": "@SPRM ?"}), Reason::about("write").depending_on("what the block holds"));

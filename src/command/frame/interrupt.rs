@@ -19,7 +19,7 @@ use crate::failure::{Failure, Kind};
 use crate::output::{busy, leave};
 
 /// Reason of the termination request, once received. It stays set, so that nothing new starts, until [`again`].
-type Asked = watch::Sender<Option<&'static str>>;
+type TerminationRequest = watch::Sender<Option<&'static str>>;
 
 const KEYS: &str = "Ctrl-C";
 #[cfg_attr(not(unix), cfg(test))]
@@ -31,16 +31,16 @@ const QUIT: &str = "Ctrl-\\ (SIGQUIT)";
 const SUSPEND: &str = "Ctrl-Z (SIGTSTP)";
 
 /// Two requests closer than this count as one: `timeout`, for example, sends each twice.
-const TWICE: Duration = Duration::from_millis(100);
+const ECHO_WINDOW: Duration = Duration::from_millis(100);
 /// Time for busy work to react to a request.
-const PATIENCE: Duration = Duration::from_millis(500);
+const BUSY_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// One listener per process, so that a signal between two waits is not lost.
-static ASKED: OnceLock<Result<Asked, String>> = OnceLock::new();
+static REQUEST: OnceLock<Result<TerminationRequest, String>> = OnceLock::new();
 
 /// Runs `work` until it ends or a termination request arrives. Of nested calls, the inner one handles it first.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
-    let asked = asked()?.subscribe();
+    let asked = requests()?.subscribe();
     let before = *asked.borrow();
     if let Some(how) = before {
         return Err(Failure::new(Kind::Interrupted, how));
@@ -48,12 +48,12 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
     // `unconstrained`, because work that exhausts the task budget (a peer that answers at once) must not delay this
     // wait.
     let how = unconstrained(wait(asked, |_| true));
-    heard_first(work, how).await.map_err(|how| Failure::new(Kind::Interrupted, how))
+    run_until_request(work, how).await.map_err(|how| Failure::new(Kind::Interrupted, how))
 }
 
 /// Result of `work`, or the request that ended it. The work may wait for the same request, so it is polled once more
 /// after the request has arrived from its thread.
-async fn heard_first<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
+async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
     let mut work = pin!(work);
     tokio::select! {
         biased;
@@ -65,47 +65,47 @@ async fn heard_first<T, R>(work: impl Future<Output = T>, request: impl Future<O
 /// From here on, a termination request waits for the next [`interruptible`] instead of killing the process.
 pub fn catch_interrupts() {
     // If signals cannot be caught, the next call reports it.
-    let _ = asked();
+    let _ = requests();
 }
 
 /// Clears a Ctrl-C that ended one of several lines, so that the next line can start. Returns any other termination
 /// request.
-pub fn again() -> Option<&'static str> {
-    let asked = asked().ok()?;
+pub fn clear_interrupt() -> Option<&'static str> {
+    let asked = requests().ok()?;
     asked.send_if_modified(|how| how.take_if(|how| *how == KEYS).is_some());
     *asked.borrow()
 }
 
 /// Waits for a termination request other than Ctrl-C.
-pub async fn asked_to_end() -> &'static str {
-    match asked() {
+pub async fn termination_request() -> &'static str {
+    match requests() {
         Ok(asked) => wait(asked.subscribe(), |how| how != KEYS).await,
         Err(_) => std::future::pending().await,
     }
 }
 
-fn asked() -> Result<&'static Asked, Failure> {
-    let asked = ASKED.get_or_init(|| start().map_err(|error| crate::failure::plain(&error)));
+fn requests() -> Result<&'static TerminationRequest, Failure> {
+    let asked = REQUEST.get_or_init(|| start().map_err(|error| crate::failure::plain(&error)));
     asked.as_ref().map_err(|why| Failure::local(format!("cannot receive signals: {why}")))
 }
 
 /// Starts the thread. It listens when this function returns, because work may send a request at its first poll.
-fn start() -> std::io::Result<Asked> {
-    let ask = Asked::default();
+fn start() -> std::io::Result<TerminationRequest> {
+    let requests = TerminationRequest::default();
     let (ready, is_ready) = mpsc::channel();
-    let passed_on = ask.clone();
+    let sender = requests.clone();
     thread::Builder::new().name("signals".to_owned()).spawn(
         move || match tokio::runtime::Builder::new_current_thread().enable_all().build() {
             Ok(runtime) => runtime.block_on(async move {
                 let signals = Signals::new();
                 let _ = ready.send(Ok(()));
-                listen(signals, passed_on).await;
+                forward_signals(signals, sender).await;
             }),
             Err(error) => _ = ready.send(Err(error)),
         },
     )?;
     is_ready.recv().unwrap_or_else(|_| Err(std::io::Error::other("the thread for them has ended")))?;
-    Ok(ask)
+    Ok(requests)
 }
 
 /// Waits for a matching termination request.
@@ -118,18 +118,18 @@ async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(
 }
 
 /// Passes on every termination request.
-async fn listen(mut signals: Signals, ask: Asked) {
+async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
     let mut presses = Presses::default();
     // The work that was running at the last check, while a request is pending.
     let mut seen = None;
     loop {
-        let is_waiting = ask.borrow().is_some();
+        let is_waiting = requests.borrow().is_some();
         let how = tokio::select! {
             how = signals.next() => how,
-            () = tokio::time::sleep(PATIENCE), if is_waiting => {
+            () = tokio::time::sleep(BUSY_TIMEOUT), if is_waiting => {
                 let now = busy::under_way();
                 if now.is_some() && now == seen {
-                    let how = *ask.borrow();
+                    let how = *requests.borrow();
                     leave::at_once(how.unwrap_or(KEYS));
                 }
                 seen = now;
@@ -141,12 +141,12 @@ async fn listen(mut signals: Signals, ask: Asked) {
             leave::suspend();
             continue;
         }
-        if presses.are_enough(how, ask.borrow().is_some(), Instant::now()) {
+        if presses.press(how, requests.borrow().is_some(), Instant::now()) {
             leave::at_once(&format!("{how} again: ended at once; a motion or command may continue"));
         }
         seen = busy::under_way();
         // The first request stays set, unless it was cleared for the next line.
-        ask.send_if_modified(|asked| {
+        requests.send_if_modified(|asked| {
             let is_first = asked.is_none_or(|asked| asked == KEYS);
             if is_first {
                 *asked = Some(how);
@@ -166,14 +166,14 @@ struct Presses {
 impl Presses {
     /// Whether one more request ends the process; `is_waiting` says whether the previous one is pending. Requests
     /// from a closing terminal do not count, because they come automatically and more than once.
-    fn are_enough(&mut self, how: &str, is_waiting: bool, now: Instant) -> bool {
+    fn press(&mut self, how: &str, is_waiting: bool, now: Instant) -> bool {
         if !is_waiting {
             *self = Self::default();
         }
         if how == HANGUP {
             return false;
         }
-        if self.last.is_none_or(|last| now.duration_since(last) >= TWICE) {
+        if self.last.is_none_or(|last| now.duration_since(last) >= ECHO_WINDOW) {
             self.count += 1;
             self.last = Some(now);
         }
@@ -187,9 +187,9 @@ static MOTIONS: AtomicUsize = AtomicUsize::new(0);
 /// A motion that this process supervises. During a motion, Ctrl-Z does not suspend the process; it ends the work,
 /// like Ctrl-C.
 #[derive(Debug)]
-pub struct UnderWay;
+pub struct MotionInProgress;
 
-impl UnderWay {
+impl MotionInProgress {
     /// Starts supervision, until it is dropped.
     pub fn begin() -> Self {
         catch_interrupts();
@@ -198,14 +198,14 @@ impl UnderWay {
     }
 }
 
-impl Drop for UnderWay {
+impl Drop for MotionInProgress {
     fn drop(&mut self) {
         MOTIONS.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
 #[cfg(unix)]
-async fn heard(signal: &mut Option<tokio::signal::unix::Signal>) {
+async fn receive(signal: &mut Option<tokio::signal::unix::Signal>) {
     match signal {
         Some(signal) => _ = signal.recv().await,
         None => std::future::pending().await,
@@ -241,11 +241,11 @@ impl Signals {
 
     async fn next(&mut self) -> &'static str {
         tokio::select! {
-            () = heard(&mut self.keys) => KEYS,
-            () = heard(&mut self.terminate) => TERMINATE,
-            () = heard(&mut self.hangup) => HANGUP,
-            () = heard(&mut self.quit) => QUIT,
-            () = heard(&mut self.suspend) => SUSPEND,
+            () = receive(&mut self.keys) => KEYS,
+            () = receive(&mut self.terminate) => TERMINATE,
+            () = receive(&mut self.hangup) => HANGUP,
+            () = receive(&mut self.quit) => QUIT,
+            () = receive(&mut self.suspend) => SUSPEND,
         }
     }
 }
@@ -284,46 +284,46 @@ mod tests {
     use super::*;
 
     #[tokio::test]
-    async fn of_two_that_wait_for_a_request_the_inner_one_hears_it() {
+    async fn inner_wait_handles_the_request() {
         let (ask, asked) = watch::channel(None);
-        let inner = heard_first(pending::<()>(), wait(asked.clone(), |_| true));
+        let inner = run_until_request(pending::<()>(), wait(asked.clone(), |_| true));
         // The request arrives after the poll of the work.
         let outer = poll_fn(|_| {
             ask.send_replace(Some(KEYS));
             Poll::Ready("outer")
         });
-        assert_eq!(heard_first(inner, outer).await, Ok(Err(KEYS)));
+        assert_eq!(run_until_request(inner, outer).await, Ok(Err(KEYS)));
     }
 
     #[tokio::test]
-    async fn work_that_does_not_hear_a_request_is_ended_by_it() {
-        assert_eq!(heard_first(pending::<()>(), async { KEYS }).await, Err(KEYS));
-        assert_eq!(heard_first(async { 1 }, async { KEYS }).await, Ok(1));
+    async fn request_ends_work_that_does_not_handle_it() {
+        assert_eq!(run_until_request(pending::<()>(), async { KEYS }).await, Err(KEYS));
+        assert_eq!(run_until_request(async { 1 }, async { KEYS }).await, Ok(1));
     }
 
     #[test]
-    fn the_second_request_is_enough_but_not_an_echo_of_the_first() {
+    fn second_request_ends_the_process_but_an_echo_does_not() {
         let start = Instant::now();
         let at = |millis| start + Duration::from_millis(millis);
         let mut presses = Presses::default();
-        assert!(!presses.are_enough(KEYS, false, at(0)));
-        assert!(!presses.are_enough(KEYS, true, at(50)), "sent twice");
-        assert!(!presses.are_enough(KEYS, true, at(99)), "a key that is held down");
-        assert!(presses.are_enough(TERMINATE, true, at(120)));
+        assert!(!presses.press(KEYS, false, at(0)));
+        assert!(!presses.press(KEYS, true, at(50)), "sent twice");
+        assert!(!presses.press(KEYS, true, at(99)), "a key that is held down");
+        assert!(presses.press(TERMINATE, true, at(120)));
         // The line has ended, and another line is running.
-        assert!(!presses.are_enough(KEYS, false, at(400)));
-        assert!(presses.are_enough(KEYS, true, at(600)));
+        assert!(!presses.press(KEYS, false, at(400)));
+        assert!(presses.press(KEYS, true, at(600)));
     }
 
     #[cfg(unix)]
     #[test]
-    fn a_terminal_that_goes_away_may_say_so_more_than_once() {
+    fn repeated_hangups_do_not_end_the_process() {
         let start = Instant::now();
         let at = |millis| start + Duration::from_millis(millis);
         let mut presses = Presses::default();
-        assert!(!presses.are_enough(HANGUP, false, at(0)));
-        assert!(!presses.are_enough(HANGUP, true, at(200)));
-        assert!(!presses.are_enough(TERMINATE, true, at(400)));
-        assert!(presses.are_enough(TERMINATE, true, at(600)));
+        assert!(!presses.press(HANGUP, false, at(0)));
+        assert!(!presses.press(HANGUP, true, at(200)));
+        assert!(!presses.press(TERMINATE, true, at(400)));
+        assert!(presses.press(TERMINATE, true, at(600)));
     }
 }

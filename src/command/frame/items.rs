@@ -5,7 +5,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::backup::gravity;
+use crate::command::backup::severity;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Tone};
 
@@ -26,17 +26,17 @@ impl ItemError {
 
     /// Failure of a command with only this item.
     pub fn failure(&self) -> Failure {
-        about(&self.asked, self.failure.clone())
+        describe_request(&self.asked, self.failure.clone())
     }
 
     /// Short text for a column.
     pub fn cell(&self) -> Cell {
-        Cell::from(brief(&self.failure)).tone(Tone::Bad)
+        Cell::from(shorten(&self.failure)).tone(Tone::Bad)
     }
 }
 
 /// Failure that starts with the name of the item.
-pub fn about(name: &str, failure: Failure) -> Failure {
+pub fn describe_request(name: &str, failure: Failure) -> Failure {
     // Failures of a local file with the same name already include it.
     if failure.message.strip_prefix(name).is_some_and(|rest| rest.starts_with([':', ' '])) {
         return failure;
@@ -45,7 +45,7 @@ pub fn about(name: &str, failure: Failure) -> Failure {
 }
 
 /// Short text for a column: the first sentence and the code.
-pub fn brief(failure: &Failure) -> String {
+pub fn shorten(failure: &Failure) -> String {
     let sentence = failure.message.split(". ").next().unwrap_or_default();
     match &failure.code {
         Some(code) => format!("{sentence} [{code}]"),
@@ -98,7 +98,7 @@ impl<T> ItemOutcome<T> {
 
 impl<T> ItemOutcome<Option<T>> {
     /// Converts a result with optional data; none if there is no data.
-    pub fn filled(self) -> Option<ItemOutcome<T>> {
+    pub fn with_defaults(self) -> Option<ItemOutcome<T>> {
         let Self { ok, data, error } = self;
         let data = match data {
             Some(None) => return None,
@@ -117,24 +117,24 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
     }
     let kinds = || errors.iter().map(|error| error.failure.kind);
     let (kind, how_many) = if errors.len() < total {
-        // Whoever ended it is told so, whatever was done before.
+        // An interruption decides the exit code, because the user asked for it.
         let is_interrupted = kinds().any(|kind| kind == Kind::Interrupted);
         let kind = if is_interrupted { Kind::Interrupted } else { Kind::Mixed };
         (kind, format!("{} of {total} failed", errors.len()))
     } else {
         // The first of equal severity.
-        (kinds().rev().max_by_key(|kind| gravity(*kind))?, format!("all {total} failed"))
+        (kinds().rev().max_by_key(|kind| severity(*kind))?, format!("all {total} failed"))
     };
-    let told = errors.iter().find(|error| error.failure.kind == kind).copied().unwrap_or(first);
-    let has_same_code = errors.iter().all(|error| error.failure.code == told.failure.code);
-    let failure = told.failure();
+    let message_of_error = errors.iter().find(|error| error.failure.kind == kind).copied().unwrap_or(first);
+    let has_same_code = errors.iter().all(|error| error.failure.code == message_of_error.failure.code);
+    let failure = message_of_error.failure();
     let code = failure.code.filter(|_| has_same_code);
     Some(Failure { kind, code, message: format!("{how_many}: {}", failure.message), hint: failure.hint })
 }
 
 /// Failure of a command if all items failed for the same reason; there is no report then. If the reasons differ, the
 /// report lists them.
-pub fn nothing<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<(), Failure> {
+pub fn all_failed<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<(), Failure> {
     let errors: Vec<&ItemError> = errors.into_iter().collect();
     let reason = |error: &ItemError| (error.failure.kind, error.failure.code.clone());
     let is_one = errors.windows(2).all(|pair| reason(pair[0]) == reason(pair[1]));
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outcome_is_its_data_or_its_error() {
+    fn outcome_serializes_data_or_error() {
         #[derive(Serialize)]
         struct Value {
             value: u8,
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn some_is_nine_and_all_is_what_they_have_in_common() {
+    fn partial_failure_exits_9_and_total_failure_exits_with_the_common_code() {
         let of = |total, errors: &[ItemError]| verdict(total, errors).unwrap();
         assert_eq!(verdict(3, &[]), None);
         let some = of(3, &[refused("B300", "0xA001")]);
@@ -177,17 +177,17 @@ mod tests {
         let all = of(2, &[refused("B300", "0xA001"), refused("B301", "0x2010")]);
         assert_eq!((all.kind, all.code), (Kind::Refused, None));
         let silent = ItemError::new("B301", Failure::new(Kind::NoAnswer, "silence"));
-        let gravest = of(2, &[refused("B300", "0xA001"), silent]);
-        assert_eq!((gravest.kind, gravest.message.as_str()), (Kind::NoAnswer, "all 2 failed: B301: silence"));
+        let most_severe = of(2, &[refused("B300", "0xA001"), silent]);
+        assert_eq!((most_severe.kind, most_severe.message.as_str()), (Kind::NoAnswer, "all 2 failed: B301: silence"));
         assert_eq!(of(1, &[refused("B300", "0xA001")]).message, "B300: the controller refused. Because");
     }
 
     #[test]
-    fn nothing_for_one_reason_fails_as_a_command() {
+    fn one_common_reason_fails_as_a_command() {
         let one = refused("B300", "0xA001");
-        assert_eq!(nothing(1, [&one]).unwrap_err().message, "B300: the controller refused. Because");
-        assert_eq!(nothing(2, [&one, &one]).unwrap_err().kind, Kind::Refused);
-        assert!(nothing(2, [&one]).is_ok() && nothing(1, []).is_ok());
-        assert!(nothing(2, [&one, &refused("B301", "0x2010")]).is_ok(), "the report has both reasons");
+        assert_eq!(all_failed(1, [&one]).unwrap_err().message, "B300: the controller refused. Because");
+        assert_eq!(all_failed(2, [&one, &one]).unwrap_err().kind, Kind::Refused);
+        assert!(all_failed(2, [&one]).is_ok() && all_failed(1, []).is_ok());
+        assert!(all_failed(2, [&one, &refused("B301", "0x2010")]).is_ok(), "the report has both reasons");
     }
 }

@@ -59,20 +59,20 @@ pub struct Candidate {
     /// One-line description.
     pub help: Option<String>,
     /// Whether more must follow without a space, as after `udp://`.
-    pub is_begun: bool,
+    pub is_incomplete: bool,
 }
 
 impl Candidate {
     /// Whole word; the help may be empty.
     pub fn new(value: impl Into<String>, help: impl Into<String>) -> Self {
         let help = Some(help.into()).filter(|help| !help.is_empty());
-        Self { value: value.into(), help, is_begun: false }
+        Self { value: value.into(), help, is_incomplete: false }
     }
 
     /// Start of a word.
     #[must_use]
-    pub fn begun(self) -> Self {
-        Self { is_begun: true, ..self }
+    pub fn incomplete(self) -> Self {
+        Self { is_incomplete: true, ..self }
     }
 }
 
@@ -81,7 +81,7 @@ pub trait Ask {
     /// Data of a read command; none if the robot does not answer in time.
     fn data<'a>(&'a self, words: &'a [&'a str]) -> LocalBoxFuture<'a, Option<Value>>;
     /// Reports a candidate immediately; late candidates are ignored.
-    fn tell(&self, candidate: Candidate);
+    fn add_candidate(&self, candidate: Candidate);
 }
 
 /// Rows of a list in command data.

@@ -4,7 +4,6 @@
 //! are [`CommandSet`]s. A line in the family's `commands!` list adds them to the command line, help, man page,
 //! completion and schema.
 
-pub mod asking;
 pub mod attach;
 pub mod authority;
 pub mod background;
@@ -15,22 +14,22 @@ pub mod condition;
 pub mod connection;
 pub mod cycle;
 pub mod dry_run;
-pub mod edited;
-pub mod ending;
+pub mod editor_session;
 pub mod interrupt;
 pub mod items;
 pub mod kind;
-pub mod local;
+pub mod local_names;
 pub mod names;
-pub mod orders;
 pub mod plot;
-pub mod repeats;
+pub mod prompt;
+pub mod repeat_limiter;
 pub mod repl;
 pub mod report;
 pub mod run;
 pub mod script_line;
 pub mod session_manager;
 pub mod setting;
+pub mod settings_report;
 pub mod share;
 pub mod sheet;
 pub mod store;
@@ -39,11 +38,12 @@ pub mod teach;
 pub(crate) mod testing;
 pub mod text_files;
 pub mod trace;
+pub mod wait_arguments;
 pub mod watch;
 
 pub use command::{AnyCommand, AnyContext, Command, Context};
 pub(crate) use command_set::commands;
 pub use command_set::{CommandSet, Offline, OfflineCommand, Subcommands};
-pub use connection::{Access, ConnectMode, Connection, Driver, Entry, Family, Own, OwnArguments};
+pub use connection::{Access, AnyFamilyArguments, ConnectMode, Connection, Driver, Entry, Family, FamilyArguments};
 pub use kind::{Candidate, ValueKind};
 pub use report::{AnyReport, Outcome, Report, SchemaEntry, schema_of};

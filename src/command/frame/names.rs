@@ -35,11 +35,11 @@ enum Mode {
     /// Accept it as a possible name.
     Asking,
     /// Look it up in the names of these robots.
-    Known(Rc<Known>),
+    Known(Rc<NameLookup>),
 }
 
 #[derive(Debug)]
-struct Known {
+struct NameLookup {
     family: Family,
     robots: Vec<(String, RobotNames)>,
 }
@@ -47,7 +47,7 @@ struct Known {
 thread_local! {
     /// Parsing is one call in one thread, and value parsers receive no context.
     static MODE: RefCell<Mode> = const { RefCell::new(Mode::Off) };
-    static ASKED: RefCell<bool> = const { RefCell::new(false) };
+    static NAME_FOUND: RefCell<bool> = const { RefCell::new(false) };
 }
 
 /// Restores the previous mode, even if a parser panics.
@@ -60,67 +60,72 @@ impl Drop for Restore {
 }
 
 /// Parses with possible names, and returns whether there were any.
-pub fn asking<T>(parse: impl FnOnce() -> T) -> (T, bool) {
+pub fn detect_names<T>(parse: impl FnOnce() -> T) -> (T, bool) {
     let _restore = Restore(MODE.replace(Mode::Asking));
-    ASKED.replace(false);
+    NAME_FOUND.replace(false);
     let parsed = parse();
-    (parsed, ASKED.replace(false))
+    (parsed, NAME_FOUND.replace(false))
 }
 
 /// Parses with the names of the robots of the line.
-pub fn known<T>(family: Family, robots: &[Robot], parse: impl FnOnce() -> T) -> T {
+pub fn with_names<T>(family: Family, robots: &[Robot], parse: impl FnOnce() -> T) -> T {
     let robots = robots.iter().map(|robot| (robot.name.clone(), robot.names.clone())).collect();
-    let _restore = Restore(MODE.replace(Mode::Known(Rc::new(Known { family, robots }))));
+    let _restore = Restore(MODE.replace(Mode::Known(Rc::new(NameLookup { family, robots }))));
     parse()
 }
 
 /// Parses an argument: a value that `parse` accepts, or a name of these kinds. `any` is an arbitrary address that
 /// `parse` accepts.
-pub fn read<T>(kinds: &[Kind], any: &str, text: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, String> {
-    read_marked(kinds, any, text, parse).map(|(value, _)| value)
+pub fn parse_or_name<T>(
+    kinds: &[Kind],
+    any: &str,
+    text: &str,
+    parse: impl Fn(&str) -> Result<T, String>,
+) -> Result<T, String> {
+    parse_or_name_marked(kinds, any, text, parse).map(|(value, _)| value)
 }
 
 /// Parses an argument, and returns whether `any` replaces a name that is not resolved yet. In that case, nothing
 /// else about it can be checked.
-pub fn read_marked<T>(
+pub fn parse_or_name_marked<T>(
     kinds: &[Kind],
     any: &str,
     text: &str,
     parse: impl Fn(&str) -> Result<T, String>,
 ) -> Result<(T, bool), String> {
-    let wrong = match parse(text) {
+    let error = match parse(text) {
         Ok(value) => return Ok((value, false)),
         Err(wrong) => wrong,
     };
     match MODE.with_borrow(Clone::clone) {
-        Mode::Off => Err(wrong),
+        Mode::Off => Err(error),
         Mode::Asking => {
-            ASKED.replace(true);
-            parse(any).map(|value| (value, true)).map_err(|_| wrong)
+            NAME_FOUND.replace(true);
+            parse(any).map(|value| (value, true)).map_err(|_| error)
         }
-        Mode::Known(known) if grammar(known.family).is_shaped(text) => Err(wrong),
+        Mode::Known(known) if grammar(known.family).is_shaped(text) => Err(error),
         Mode::Known(known) => match known.address(kinds, text) {
             Ok(Some(address)) => {
                 parse(&address).map(|value| (value, false)).map_err(|why| format!("{text} is {address}: {why}"))
             }
-            Ok(None) => match known.near(kinds, text) {
-                Some(near) => Err(format!("{wrong}; did you mean '{near}'?")),
-                None if known.has_unread() => {
-                    Err(format!("{wrong}; read the names of the controller with `yerc names get`"))
+            Ok(None) => match known.suggest(kinds, text) {
+                Some(near) => Err(format!("{error}; did you mean '{near}'?")),
+                None if known.has_missing_names() => {
+                    Err(format!("{error}; read the names of the controller with `yerc names get`"))
                 }
-                None => Err(wrong),
+                None => Err(error),
             },
             Err(why) => Err(why),
         },
     }
 }
 
-impl Known {
+impl NameLookup {
     /// Address of a name, if it is the same for all robots; `None` if no robot has the name.
     fn address(&self, kinds: &[Kind], text: &str) -> Result<Option<String>, String> {
-        let mut meant: Vec<(&str, Option<String>)> = Vec::new();
+        let mut addresses: Vec<(&str, Option<String>)> = Vec::new();
         for (robot, names) in &self.robots {
-            meant.push((
+            addresses.push((
                 robot,
                 match names.all().names.find(kinds, text) {
                     Found::One(name) => Some(name.address.clone()),
@@ -129,18 +134,18 @@ impl Known {
                 },
             ));
         }
-        let Some((first, address)) = meant.iter().find(|(_, address)| address.is_some()) else { return Ok(None) };
-        match meant.iter().find(|(_, other)| other != address) {
+        let Some((first, address)) = addresses.iter().find(|(_, address)| address.is_some()) else { return Ok(None) };
+        match addresses.iter().find(|(_, other)| other != address) {
             None => Ok(address.clone()),
-            Some((other, Some(there))) => Err(format!(
-                "'{text}' is {} on {first} and {there} on {other}; select one robot, or type the address",
+            Some((other, Some(other_address))) => Err(format!(
+                "'{text}' is {} on {first} and {other_address} on {other}; select one robot, or type the address",
                 address.as_deref().unwrap_or_default()
             )),
             Some((other, None)) => Err(format!("'{text}' is a name of {first}, but not of {other}; select one robot")),
         }
     }
 
-    fn near(&self, kinds: &[Kind], text: &str) -> Option<String> {
+    fn suggest(&self, kinds: &[Kind], text: &str) -> Option<String> {
         let grammar = grammar(self.family);
         let names = self.robots.iter().flat_map(|(_, names)| names.all().names.iter());
         let names = names.filter(|name| kinds.contains(&name.kind)).map(|name| name.name.as_str());
@@ -149,8 +154,8 @@ impl Known {
     }
 
     /// Whether a controller may have names that are not stored.
-    fn has_unread(&self) -> bool {
-        self.robots.iter().any(|(_, names)| names.place().is_some() && names.all().kept.is_none())
+    fn has_missing_names(&self) -> bool {
+        self.robots.iter().any(|(_, names)| names.cache_file().is_some() && names.all().kept.is_none())
     }
 }
 
@@ -159,27 +164,27 @@ fn ambiguous(text: &str, several: &[&Name]) -> String {
     /// Maximum number of listed addresses; others are counted.
     const SHOWN: usize = 6;
 
-    let told = |name: &&Name| format!("{} ({} of {})", name.address, name.name, name.source);
-    let mut told: Vec<String> = several.iter().take(SHOWN).map(told).collect();
+    let describe = |name: &&Name| format!("{} ({} of {})", name.address, name.name, name.source);
+    let mut described: Vec<String> = several.iter().take(SHOWN).map(describe).collect();
     if several.len() > SHOWN {
-        told.push(format!("{} more", several.len() - SHOWN));
+        described.push(format!("{} more", several.len() - SHOWN));
     }
-    format!("'{text}' is the name of {}; type the address", told.join(" and of "))
+    format!("'{text}' is the name of {}; type the address", described.join(" and of "))
 }
 
 /// Last message about unreadable names.
-static TOLD: Mutex<String> = Mutex::new(String::new());
+static LAST_MESSAGE: Mutex<String> = Mutex::new(String::new());
 
 /// Names of a robot for a report. An error that prevents reading its stored names is printed once and does not
 /// suppress the report.
-pub fn of<'a>(robot: &'a Robot, screen: &Screen) -> &'a Names {
+pub fn of_robot<'a>(robot: &'a Robot, screen: &Screen) -> &'a Names {
     let all = robot.names.all();
     if let Some(damage) = &all.damage {
         let text = format!("{}; {}", damage.message, damage.hint.as_deref().unwrap_or_default());
-        let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
-        if *told != text {
+        let mut last_message = LAST_MESSAGE.lock().unwrap_or_else(PoisonError::into_inner);
+        if *last_message != text {
             screen.note(&text);
-            *told = text;
+            *last_message = text;
         }
     }
     &all.names
@@ -294,12 +299,12 @@ impl Report for Listing {
         let view = View::table(table.without_blank("cannot be typed"));
         let Some((read_at, age)) = self.read_at.zip(self.age_s) else { return view };
         let read_at = read_at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S");
-        view.and(Section::Text(format!("read from the controller on {read_at}, {} ago", in_words(age))))
+        view.and(Section::Text(format!("read from the controller on {read_at}, {} ago", describe_age(age))))
     }
 }
 
 /// Duration in its largest unit: `3 days`.
-fn in_words(seconds: i64) -> String {
+fn describe_age(seconds: i64) -> String {
     let units = [(86_400, "day"), (3_600, "hour"), (60, "minute"), (1, "second")];
     let (size, unit) = units.into_iter().find(|(size, _)| seconds >= *size).unwrap_or((1, "second"));
     let count = seconds.max(0) / size;
@@ -323,7 +328,7 @@ mod tests {
             .unwrap(),
             ..crate::settings::Sources::default()
         };
-        sources.resolved(&sources.inventory.robots[0], None).unwrap()
+        sources.resolve(&sources.inventory.robots[0], None).unwrap()
     }
 
     fn number(text: &str) -> Result<u32, String> {
@@ -331,16 +336,16 @@ mod tests {
     }
 
     fn read_signal(text: &str) -> Result<u32, String> {
-        read(&[Kind::Signal], "27010", text, number)
+        parse_or_name(&[Kind::Signal], "27010", text, number)
     }
 
     #[test]
-    fn a_name_is_read_twice_and_an_address_once() {
+    fn parses_a_name_twice_and_an_address_once() {
         assert_eq!(read_signal("clamp").unwrap_err(), "'clamp' is no number");
-        assert_eq!(asking(|| read_signal("27011")), (Ok(27011), false));
-        assert_eq!(asking(|| read_signal("clamp")), (Ok(27010), true));
+        assert_eq!(detect_names(|| read_signal("27011")), (Ok(27011), false));
+        assert_eq!(detect_names(|| read_signal("clamp")), (Ok(27010), true));
         let robots = [robot("a", &[("clamp", "27015"), ("lamp", "27016")])];
-        let known = |text: &str| known(Family::Yerc, &robots, || read_signal(text));
+        let known = |text: &str| with_names(Family::Yerc, &robots, || read_signal(text));
         assert_eq!((known("clamp"), known("CLAMP"), known("27011")), (Ok(27015), Ok(27015), Ok(27011)));
         assert_eq!(known("clanp").unwrap_err(), "'clanp' is no number; did you mean 'clamp'?");
         let unknown = known("door").unwrap_err();
@@ -350,25 +355,25 @@ mod tests {
     }
 
     #[test]
-    fn several_robots_must_mean_the_same() {
+    fn requires_the_same_address_on_several_robots() {
         let robots = [
             robot("a", &[("clamp", "27015"), ("lamp", "27016"), ("door", "27017")]),
             robot("b", &[("clamp", "27015"), ("lamp", "27026")]),
         ];
-        let known = |text: &str| known(Family::Yerc, &robots, || read_signal(text));
+        let known = |text: &str| with_names(Family::Yerc, &robots, || read_signal(text));
         assert_eq!(known("clamp"), Ok(27015));
         assert!(known("lamp").unwrap_err().starts_with("'lamp' is #27016 on a and #27026 on b"));
         assert!(known("door").unwrap_err().starts_with("'door' is a name of a, but not of b"));
     }
 
     #[test]
-    fn ages_are_told_in_their_largest_unit() {
-        let told = [0, 1, 59, 60, 7_199, 90_000, -5].map(in_words);
+    fn describes_ages_in_their_largest_unit() {
+        let told = [0, 1, 59, 60, 7_199, 90_000, -5].map(describe_age);
         assert_eq!(told, ["0 seconds", "1 second", "59 seconds", "1 minute", "1 hour", "1 day", "0 seconds"]);
     }
 
     #[test]
-    fn what_has_several_addresses_says_which_to_type() {
+    fn lists_the_addresses_of_an_ambiguous_name() {
         let name = |address: &str, source| Name {
             kind: Kind::Signal,
             address: address.to_owned(),

@@ -6,13 +6,13 @@ use std::collections::VecDeque;
 use crate::output::view::{Cell, Section, Table};
 
 /// Number of rounds in a chart.
-const SHOWN: usize = 40;
+const MAX_POINTS: usize = 40;
 /// Bars from the minimum to the maximum.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// Values of earlier rounds.
 #[derive(Debug, Default)]
-pub struct Past(RefCell<Vec<Series>>);
+pub struct SeriesHistory(RefCell<Vec<Series>>);
 
 /// A value over time.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ struct Series {
 #[derive(Debug, Clone, Default)]
 pub struct Plot(Vec<Series>);
 
-impl Past {
+impl SeriesHistory {
     /// Adds the values of a round: name, unit, decimals, value. A different set of names restarts the chart.
     pub fn add(&self, values: impl IntoIterator<Item = (String, &'static str, usize, f64)>) -> Plot {
         let mut past = self.0.borrow_mut();
@@ -44,7 +44,7 @@ impl Past {
         }
         for (series, (.., value)) in past.iter_mut().zip(values) {
             series.values.push_back(value);
-            if series.values.len() > SHOWN {
+            if series.values.len() > MAX_POINTS {
                 series.values.pop_front();
             }
         }
@@ -68,9 +68,9 @@ impl Plot {
 }
 
 fn range(values: &VecDeque<f64>) -> (f64, f64) {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if values.is_empty() { (0.0, 0.0) } else { (least, greatest) }
+    let minimum = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let maximum = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if values.is_empty() { (0.0, 0.0) } else { (minimum, maximum) }
 }
 
 /// One bar per round, the latest at the end; a constant value is a line at the bottom.
@@ -78,8 +78,8 @@ fn bars(values: &VecDeque<f64>) -> String {
     let (least, greatest) = range(values);
     let step = (greatest - least) / 8.0;
     let bar = |value: &f64| {
-        let above = (1..BARS.len()).filter(|bar| *value > least + step * f64::from(u8::try_from(*bar).unwrap_or(0)));
-        BARS[above.count()]
+        let offset = (1..BARS.len()).filter(|bar| *value > least + step * f64::from(u8::try_from(*bar).unwrap_or(0)));
+        BARS[offset.count()]
     };
     values.iter().map(bar).collect()
 }
@@ -91,8 +91,8 @@ mod tests {
     use crate::output::view::View;
 
     #[test]
-    fn values_become_bars_between_least_and_greatest() {
-        let past = Past::default();
+    fn draws_bars_between_minimum_and_maximum() {
+        let past = SeriesHistory::default();
         let mut plot = Plot::default();
         for value in 0..=7_u8 {
             plot = past.add([("X".to_owned(), "mm", 1, f64::from(value)), ("Y".to_owned(), "mm", 1, 5.0)]);
@@ -104,6 +104,6 @@ mod tests {
         for _ in 0..100 {
             plot = past.add([("Z".to_owned(), "mm", 1, 1.0)]);
         }
-        assert_eq!(plot.0[0].values.len(), SHOWN);
+        assert_eq!(plot.0[0].values.len(), MAX_POINTS);
     }
 }

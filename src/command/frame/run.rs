@@ -1,9 +1,9 @@
 //! Run loop for robot commands: select robots, pass the gate, run, report, repeat.
 
+mod failure_log;
 mod print;
 mod rounds;
 mod several;
-mod silences;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -14,21 +14,21 @@ use futures_util::stream;
 use serde::Serialize;
 use tokio::time::timeout_at;
 
+use self::failure_log::FailureLog;
 pub use self::print::as_value;
-use self::print::{ReportPosition, timed};
+use self::print::{ReportPosition, with_time};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
-use self::silences::Silences;
-use super::attach::{identify, is_held_by_another};
+use super::attach::{identify, is_held_by_other_process};
 use super::authority::{self, Authority};
 use super::background;
 use super::command::{AnyCommand, AnyContext};
-use super::connection::{Access, Connection, Entry, Own};
+use super::connection::{Access, Connection, Entry, FamilyArguments};
 use super::dry_run::{DryRun, Plan, is_end};
-use super::interrupt::{UnderWay, catch_interrupts, interruptible};
+use super::interrupt::{MotionInProgress, catch_interrupts, interruptible};
 use super::report::Outcome;
 use super::script_line::Line;
-use super::share::shared;
+use super::share::open_shared_session;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
@@ -59,7 +59,7 @@ pub struct Run {
     /// Screen state of a watch.
     pub redraw: Redraw,
     /// Family arguments before the command.
-    pub own: Own,
+    pub own: FamilyArguments,
 }
 
 /// A failure with the data for its envelope.
@@ -70,12 +70,12 @@ pub struct RunError {
     /// Envelope with robot and command.
     pub envelope: Option<Box<Envelope>>,
     /// Whether the report on stdout already shows the failure: then only the exit code is set.
-    pub told: bool,
+    pub is_reported: bool,
 }
 
 impl From<Failure> for RunError {
     fn from(failure: Failure) -> Self {
-        Self { failure, envelope: None, told: false }
+        Self { failure, envelope: None, is_reported: false }
     }
 }
 
@@ -87,17 +87,17 @@ impl From<anyhow::Error> for RunError {
 
 impl RunError {
     /// Failure of a command on a robot.
-    pub fn at(robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Self {
+    pub fn for_robot(robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Self {
         let envelope = Some(Box::new(Envelope::of(robot, command.id(), Err(failure.clone()))));
-        Self { failure, envelope, told: false }
+        Self { failure, envelope, is_reported: false }
     }
 }
 
 /// Default interval between reads.
-const EVERY: Duration = Duration::from_secs(1);
+const DEFAULT_INTERVAL: Duration = Duration::from_secs(1);
 /// Maximum number of robots in parallel. It is large enough that a plant with many switched-off robots takes one
 /// timeout, and small enough for an open-file limit of 256.
-const PARALLEL: usize = 128;
+const MAX_PARALLEL: usize = 128;
 
 /// Connection and its granted risk.
 type Granted = (Box<dyn Connection>, Grant);
@@ -108,19 +108,19 @@ impl Run {
         if let Some(outcome) = command.without_robot(&self.screen) {
             return self.local(command.id(), &*outcome?);
         }
-        let robots = self.ready(command).await?;
+        let robots = self.authorize_robots(command).await?;
         if robots.iter().any(|robot| robot.target.value.is_simulated()) && self.line.is_none() {
             self.screen.note_simulator();
         }
         match &robots[..] {
-            [robot] if !self.sources.selection.is_plural() => self.one(command, robot).await,
-            robots => self.many(command, robots).await,
+            [robot] if !self.sources.selection.is_plural() => self.run_one(command, robot).await,
+            robots => self.run_many(command, robots).await,
         }
     }
 
     /// Robots of a command, after it has been authorized for all of them.
-    pub async fn ready(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, RunError> {
-        let mut robots = self.chosen(command)?;
+    pub async fn authorize_robots(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, RunError> {
+        let mut robots = self.select_robots(command)?;
         let asks = |robot: &Robot| {
             let intent = self.intent(command, robot);
             intent.risk == Risk::Motion || intent.confirmation != Confirmation::Question
@@ -130,17 +130,19 @@ impl Run {
             // process.
             catch_interrupts();
             for robot in &robots {
-                self.check_model(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
+                self.check_model(command, robot)
+                    .await
+                    .map_err(|failure| RunError::for_robot(robot, command, failure))?;
             }
         }
         for robot in &robots {
             let intent = self.intent(command, robot);
-            let passed = authority::pass(self.gate, &self.screen, robot, &intent).await;
-            passed.map_err(|failure| RunError::at(robot, command, failure))?;
+            let authorized = authority::confirm_intent(self.gate, &self.screen, robot, &intent).await;
+            authorized.map_err(|failure| RunError::for_robot(robot, command, failure))?;
         }
         for robot in robots.iter_mut().filter(|robot| self.opens_session(command, robot)) {
-            let opened = background::open_for(robot, self.sources.inventory.path.as_deref(), &self.screen).await;
-            opened.map_err(|failure| RunError::at(robot, command, failure))?;
+            let opened = background::open_session(robot, self.sources.inventory.path.as_deref(), &self.screen).await;
+            opened.map_err(|failure| RunError::for_robot(robot, command, failure))?;
             robot.sessions = Sessions::Only;
         }
         self.begin_trace()?;
@@ -148,12 +150,12 @@ impl Run {
     }
 
     /// Runs a command once on [`ready`](Self::ready) robots, without a report.
-    pub async fn gather(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Vec<Outcome> {
-        at_a_time(robots.iter().map(|robot| self.once(command, robot))).await
+    pub async fn collect(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Vec<Outcome> {
+        run_parallel(robots.iter().map(|robot| self.run_once(command, robot))).await
     }
 
     /// Robots of a command, if the command is valid for them.
-    fn chosen(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
+    fn select_robots(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
         if command.intent(None).risk > Risk::Read && (self.repeat.is_wanted() || self.repeat.check.is_some()) {
             return Err(Failure::usage("--watch, --count, --until and --check need a command that only reads")
                 .hint("run this command once and watch `status` or `position`"));
@@ -170,9 +172,9 @@ impl Run {
                 robot.sessions = Sessions::Only;
             }
         }
-        if command.is_endless() && robots.len() > PARALLEL {
+        if command.is_endless() && robots.len() > MAX_PARALLEL {
             return Err(Failure::usage(format!(
-                "at most {PARALLEL} robots can be watched at a time, not {}",
+                "at most {MAX_PARALLEL} robots can be watched at a time, not {}",
                 robots.len()
             ))
             .hint("select fewer with -r or --tag"));
@@ -227,43 +229,44 @@ impl Run {
         if command.driver().is_none() {
             return Ok(());
         }
-        let robots = self.chosen(command)?;
+        let robots = self.select_robots(command)?;
         let mut asked = robots.iter().map(|robot| (robot, self.intent(command, robot)));
         asked.try_for_each(|(robot, intent)| self.gate.must_ask(&self.screen, robot, &intent).map(|_| ()))
     }
 
-    async fn one(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
+    async fn run_one(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
         if (self.repeat.is_wanted() || command.is_endless()) && !self.gate.dry_run {
             return self.watch(command, robot, None).await;
         }
-        let report = self.once(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
+        let report =
+            self.run_once(command, robot).await.map_err(|failure| RunError::for_robot(robot, command, failure))?;
         let printed = self.print(robot, command.id(), &*report, ReportPosition::Alone);
         if let Some(failure) = report.failure() {
             // A closed or full stdout does not change the failure.
-            let told = printed.is_ok() && self.screen.is_json();
-            return Err(RunError { failure, envelope: None, told });
+            let is_reported = printed.is_ok() && self.screen.is_json();
+            return Err(RunError { failure, envelope: None, is_reported });
         }
-        printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+        printed.map_err(|failure| self.mark_unprinted(command.intent(None).risk, failure))?;
         let checked = self.check(&Envelope::of(robot, command.id(), report.data()));
-        checked.map_err(|failure| RunError::at(robot, command, failure))
+        checked.map_err(|failure| RunError::for_robot(robot, command, failure))
     }
 
     /// Evaluates `--check`.
     fn check(&self, envelopes: &impl Serialize) -> Result<(), Failure> {
         let Some(check) = self.repeat.check.as_ref().filter(|_| !self.gate.dry_run) else { return Ok(()) };
         let envelopes = as_value(envelopes)?;
-        if check.holds(&envelopes)? {
+        if check.is_met(&envelopes)? {
             return Ok(());
         }
         let failure = Failure::new(Kind::ConditionNotMet, format!("the condition '{check}' is not met"));
-        Err(match check.never(&envelopes) {
+        Err(match check.check_keys(&envelopes) {
             Some(why) => failure.hint(why),
             None => failure,
         })
     }
 
     /// Failure to print a report of a completed action, with a note not to repeat the action.
-    fn unprinted(&self, risk: Risk, failure: Failure) -> Failure {
+    fn mark_unprinted(&self, risk: Risk, failure: Failure) -> Failure {
         if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
             return failure;
         }
@@ -277,7 +280,7 @@ impl Run {
         robot: &Robot,
         among: Option<ReportPosition<'_>>,
     ) -> Result<(), RunError> {
-        let stopped = |failure| RunError::at(robot, command, failure);
+        let stopped = |failure| RunError::for_robot(robot, command, failure);
         let (mut link, _) = self.connect(command, robot).await.map_err(stopped)?;
         let watched = self.watch_over(command, robot, &mut *link, among).await;
         let closed = link.close(&self.screen).await;
@@ -292,9 +295,10 @@ impl Run {
         link: &mut dyn Connection,
         among: Option<ReportPosition<'_>>,
     ) -> Result<(), RunError> {
-        let stopped = |failure| RunError::at(robot, command, failure);
-        let mut silences = Silences::new(self, robot);
-        let mut rounds = Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { EVERY });
+        let stopped = |failure| RunError::for_robot(robot, command, failure);
+        let mut silences = FailureLog::new(self, robot);
+        let mut rounds =
+            Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { DEFAULT_INTERVAL });
         loop {
             let grant = Grant::up_to(Risk::Read);
             let attempt = self.attempt(command, robot, link, &grant);
@@ -312,7 +316,7 @@ impl Run {
                     }
                     let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
                     let failure = report.failure().filter(|failure| {
-                        self.repeat.is_quiet && failure.kind == Kind::NoAnswer && !self.repeat.permits(failure)
+                        self.repeat.is_quiet && failure.kind == Kind::NoAnswer && !self.repeat.allows(failure)
                     });
                     if let Some(failure) = failure.as_ref().filter(|_| !is_met && rounds.is_first()) {
                         return Err(stopped(failure.clone()));
@@ -332,18 +336,18 @@ impl Run {
                     if self.repeat.is_quiet {
                         // It is reported at the end if the robot is still silent.
                     } else if self.is_for_people() {
-                        silences.say(&failure);
+                        silences.report(&failure);
                     } else {
-                        self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+                        self.emit(with_time(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
                     }
                     Some(failure)
                 }
-                Err(failure) => return Err(self.broken_off(robot, command, failure)?),
+                Err(failure) => return Err(self.interrupted(robot, command, failure)?),
             };
             if !rounds.next().await.map_err(stopped)? {
                 return match silence {
                     Some(failure) if self.repeat.is_quiet => Err(stopped(failure)),
-                    Some(failure) => Err(RunError { failure, envelope: None, told: true }),
+                    Some(failure) => Err(RunError { failure, envelope: None, is_reported: true }),
                     None => rounds.end().map_err(stopped),
                 };
             }
@@ -351,17 +355,17 @@ impl Run {
     }
 
     /// Failure that ends a watch. In a stream for programs it is written to stdout in order.
-    fn broken_off(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
+    fn interrupted(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
         // A wait reports once, like a single command.
         if self.is_for_people() || self.repeat.is_quiet || failure.kind == Kind::Interrupted {
-            return Ok(RunError::at(robot, command, failure));
+            return Ok(RunError::for_robot(robot, command, failure));
         }
-        self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
-        Ok(RunError { failure, envelope: None, told: true })
+        self.emit(with_time(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+        Ok(RunError { failure, envelope: None, is_reported: true })
     }
 
     /// One run on one connection.
-    async fn once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
+    async fn run_once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
         if self.gate.dry_run {
             return Ok(Box::new(DryRun::from(self.plan(command, robot, &self.screen).await?)));
         }
@@ -378,12 +382,12 @@ impl Run {
         let access = self.access(command, robot);
         let grant = access.grant.clone();
         let access = match &self.line {
-            Some(line) => line.connecting(robot, access, &self.screen).await?,
+            Some(line) => line.connect(robot, access, &self.screen).await?,
             None => access,
         };
         let goes_on = self.repeat.is_wanted() || command.is_endless();
         let robot = &match command.driver().filter(|_| goes_on) {
-            Some(driver) => match shared(driver, robot).await {
+            Some(driver) => match open_shared_session(driver, robot).await {
                 // Without a family in common, a robot that is not there has a line as well.
                 Err(failure) if failure.kind == Kind::NoAnswer && driver.family().is_none() => robot.clone(),
                 robot => robot?,
@@ -448,7 +452,7 @@ impl Run {
         let Some(driver) = command.driver().filter(|_| moves && !robot.target.value.is_simulated()) else {
             return Ok(None);
         };
-        let stops = command.entry(robot) == Entry::Harmless && !is_held_by_another(robot);
+        let stops = command.entry(robot) == Entry::Harmless && !is_held_by_other_process(robot);
         Guardian::start(robot, driver.stop(), stops).map(Some)
     }
 
@@ -461,7 +465,8 @@ impl Run {
         grant: &Grant,
     ) -> Outcome {
         let Intent { risk, is_stop, .. } = command.intent(Some(robot));
-        let _under_way = (risk == Risk::Motion && !is_stop && !robot.target.value.is_simulated()).then(UnderWay::begin);
+        let _under_way =
+            (risk == Risk::Motion && !is_stop && !robot.target.value.is_simulated()).then(MotionInProgress::begin);
         let context = self.context(command, robot, link, (&self.screen, grant));
         match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,
@@ -527,9 +532,9 @@ pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
 
 /// Runs the work of all robots with limited parallelism and returns the results in order. A slow robot delays only
 /// itself.
-async fn at_a_time<T>(work: impl Iterator<Item = impl Future<Output = T>>) -> Vec<T> {
+async fn run_parallel<T>(work: impl Iterator<Item = impl Future<Output = T>>) -> Vec<T> {
     let numbered = work.enumerate().map(|(number, work)| async move { (number, work.await) });
-    let mut done: Vec<(usize, T)> = stream::iter(numbered).buffer_unordered(PARALLEL).collect().await;
+    let mut done: Vec<(usize, T)> = stream::iter(numbered).buffer_unordered(MAX_PARALLEL).collect().await;
     done.sort_unstable_by_key(|(number, _)| *number);
     done.into_iter().map(|(_, came)| came).collect()
 }
@@ -539,7 +544,7 @@ mod tests {
     use super::*;
 
     #[tokio::test(start_paused = true)]
-    async fn a_fleet_takes_as_long_as_its_slowest() {
+    async fn runs_robots_in_parallel() {
         // Half of the robots do not answer, as in a plant with switched-off robots, mixed with the others.
         let silent = |robot: usize| robot.is_multiple_of(2);
         let ask = |robot| async move {
@@ -547,7 +552,7 @@ mod tests {
             robot
         };
         let start = tokio::time::Instant::now();
-        let robots = at_a_time((0..200).map(ask)).await;
+        let robots = run_parallel((0..200).map(ask)).await;
         assert!(robots.is_sorted() && robots.len() == 200);
         assert!(start.elapsed() < Duration::from_millis(2100), "{:?}", start.elapsed());
     }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::connection::{Access, ConnectMode};
-use super::session_manager::{By, SessionManager};
+use super::session_manager::{HeldBy, SessionManager};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::envelope::Envelope;
@@ -49,12 +49,12 @@ impl Line {
     pub async fn hold(&self, robot: &Robot, trace: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
         let trace = trace.map(Path::to_owned);
         let access = Access { trace, ..Access::reading(ConnectMode::Control) };
-        self.connecting(robot, access, screen).await.map(|_| ())
+        self.connect(robot, access, screen).await.map(|_| ())
     }
 
     /// Opens the link for later lines if the command needs one. A simulator is always kept, because it exists only as
     /// long as its link. Returns the access for the command.
-    pub async fn connecting(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
+    pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
         let access = Access { typed: Some(Arc::clone(&self.typed)), ..access };
         if access.mode != ConnectMode::Control && !robot.target.value.is_simulated() {
             return Ok(access);
@@ -62,7 +62,7 @@ impl Line {
         // Some families record in the process that holds the link, others in each line.
         let trace = access.trace.clone().filter(|path| path.as_os_str() != "-");
         let holding = Access { trace, mode: ConnectMode::Control, ..access.clone() };
-        let is_traced = self.manager.hold(robot, &holding, screen).await? == By::This { records: true };
+        let is_traced = self.manager.hold(robot, &holding, screen).await? == HeldBy::ThisProcess { records: true };
         Ok(Access { trace: access.trace.clone().filter(|_| !is_traced), ..access })
     }
 
@@ -75,7 +75,7 @@ impl Line {
     }
 
     /// Stores the envelope if all are written at the end; otherwise returns it for immediate output.
-    pub fn pass(&self, value: Value) -> Option<Value> {
+    pub fn stop_passing(&self, value: Value) -> Option<Value> {
         let Some(results) = &self.results else { return Some(value) };
         match value {
             Value::Array(values) => results.borrow_mut().extend(values),

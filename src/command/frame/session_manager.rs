@@ -17,9 +17,9 @@ use crate::settings::Robot;
 /// drop.
 #[derive(Debug, Clone)]
 pub struct SessionManager {
-    orders: mpsc::UnboundedSender<ManagerRequest>,
+    requests: mpsc::UnboundedSender<ManagerRequest>,
     /// Whether a note was printed that links cannot be kept open.
-    told: Arc<AtomicBool>,
+    reports: Arc<AtomicBool>,
 }
 
 /// Request to the manager thread.
@@ -33,7 +33,7 @@ pub enum ManagerRequest {
         /// Screen for notes.
         screen: Screen,
         /// Channel for the result.
-        done: oneshot::Sender<Result<By, Failure>>,
+        done: oneshot::Sender<Result<HeldBy, Failure>>,
     },
     /// Close all links and report the end.
     End(oneshot::Sender<()>),
@@ -47,39 +47,39 @@ impl fmt::Debug for ManagerRequest {
 
 /// Holder of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum By {
+pub enum HeldBy {
     /// This process.
-    This {
+    ThisProcess {
         /// Whether this process records the traffic.
         records: bool,
     },
     /// A session of another process.
-    Another,
+    OtherProcess,
     /// None: the session folder cannot be used; the reason.
-    Nobody(Failure),
+    None(Failure),
 }
 
 impl SessionManager {
     /// Client for a thread that handles these requests.
-    pub fn new(orders: mpsc::UnboundedSender<ManagerRequest>) -> Self {
-        Self { orders, told: Arc::default() }
+    pub fn new(requests: mpsc::UnboundedSender<ManagerRequest>) -> Self {
+        Self { requests, reports: Arc::default() }
     }
 
     /// Closes all links; `false` if the thread has already ended.
     pub fn end(&self, done: oneshot::Sender<()>) -> bool {
-        self.orders.send(ManagerRequest::End(done)).is_ok()
+        self.requests.send(ManagerRequest::End(done)).is_ok()
     }
 
     /// Ensures that the link to a robot stays open, and returns its holder.
-    pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<By, Failure> {
+    pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldBy, Failure> {
         let (done, is_done) = oneshot::channel();
         let order =
             ManagerRequest::Hold { robot: Box::new(robot.clone()), access: access.clone(), screen: *screen, done };
         let broken = || Failure::local("internal error: the session thread has ended");
-        self.orders.send(order).map_err(|_| broken())?;
+        self.requests.send(order).map_err(|_| broken())?;
         let by = interruptible(is_done).await?.map_err(|_| broken())??;
-        if let By::Nobody(why) = &by
-            && !self.told.swap(true, Ordering::Relaxed)
+        if let HeldBy::None(why) = &by
+            && !self.reports.swap(true, Ordering::Relaxed)
         {
             screen.note(&format!("connections are not kept open between lines: {why}"));
         }

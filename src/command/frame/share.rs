@@ -10,10 +10,10 @@ use crate::failure::{Failure, Kind};
 use crate::settings::{Origin, Robot, Sessions, duration};
 
 /// Idle time after which such a session closes.
-const IDLE: Duration = Duration::from_secs(5);
+const IDLE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Whether the robot accepts one client, and others may share its link.
-pub fn is_to_share(driver: &dyn Driver, robot: &Robot) -> bool {
+pub fn can_share(driver: &dyn Driver, robot: &Robot) -> bool {
     robot.sessions == Sessions::Shared && driver.takes_one_client(robot)
 }
 
@@ -22,12 +22,12 @@ pub fn is_to_share(driver: &dyn Driver, robot: &Robot) -> bool {
 ///
 /// # Errors
 /// If the link cannot be opened.
-pub async fn shared(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure> {
-    if !is_to_share(driver, robot) {
+pub async fn open_shared_session(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure> {
+    if !can_share(driver, robot) {
         return Ok(robot.clone());
     }
     if !is_held(robot) {
-        match start(robot, words(robot).into_iter()).await {
+        match start(robot, session_arguments(robot).into_iter()).await {
             Ok(_) => {}
             // Another process opened one first.
             Err(_) if is_held(robot) => {}
@@ -40,12 +40,12 @@ pub async fn shared(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure
 }
 
 /// Arguments that open a session with an idle timeout.
-fn words(robot: &Robot) -> Vec<OsString> {
+fn session_arguments(robot: &Robot) -> Vec<OsString> {
     let mut words: Vec<OsString> = Vec::new();
     if let Some(path) = &robot.inventory {
         words.extend(["--config".into(), path.into()]);
     }
-    let (idle, family, url) = (duration::display(IDLE), robot.family.name(), robot.target.value.url());
+    let (idle, family, url) = (duration::display(IDLE_TIMEOUT), robot.family.name(), robot.target.value.url());
     let (flag, name) = if robot.target.origin == Origin::Robot { ("-r", &robot.name[..]) } else { ("-t", url) };
     let opens = [flag, name, "session", "open", "--detached", "--idle", &idle, "--family", family];
     words.extend(opens.map(OsString::from));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::local::Target;
+use super::local_names::Target;
 use super::text_files;
 use crate::controller::findings::Findings;
 use crate::controller::sheet::{Column, Dialect, update, write};
@@ -50,11 +50,11 @@ impl SheetManner {
         if several {
             return Err(text_files::of_one_robot(&file));
         }
-        let is_there = file.symlink_metadata().is_ok();
-        let old = if self.update && is_there { Some(text_files::read(&file)?) } else { None };
+        let exists = file.symlink_metadata().is_ok();
+        let old = if self.update && exists { Some(text_files::read(&file)?) } else { None };
         let target = Target::new(file, self.force || self.update);
         let advice = "add --update to update its values and keep its comments, or --force to replace it";
-        let target = target.map_err(|failure| if is_there { failure.hint(advice) } else { failure })?;
+        let target = target.map_err(|failure| if exists { failure.hint(advice) } else { failure })?;
         let dialect = if self.decimal_comma { Dialect::DECIMAL_COMMA } else { Dialect::COMMAS };
         Ok(SheetTarget { target, dialect, old })
     }
@@ -76,10 +76,10 @@ impl SheetTarget {
         let text = match &self.old {
             None => write(self.dialect, columns, rows),
             Some(old) => {
-                let mut findings = Findings::default();
-                let updated = update(old, columns, rows, canonical, &mut findings);
+                let mut warnings = Findings::default();
+                let updated = update(old, columns, rows, canonical, &mut warnings);
                 let name = self.target.path().display().to_string();
-                updated.ok_or_else(|| text_files::faulty(&name, &findings.into_errors()))?
+                updated.ok_or_else(|| text_files::file_failure(&name, &warnings.into_errors()))?
             }
         };
         text_files::write(&self.target, &text)

@@ -73,18 +73,18 @@ pub fn mismatch(name: &str, taught: &str, held: &str) -> Failure {
 }
 
 /// Failure: the point was written but could not be read back.
-pub fn not_read_back(name: &str, failure: Failure, command: &str) -> Failure {
+pub fn unverified(name: &str, failure: Failure, command: &str) -> Failure {
     let message = format!("{name} was written, but not read back: {}", failure.message);
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(format!("read the point with `{command}`"))
 }
 
 /// Maximum size: a position needs about a kilobyte, and this leaves room for a whole report.
-const MOST: u64 = 1 << 20;
+const SIZE_LIMIT: u64 = 1 << 20;
 
 /// Position from the output of another command, in a file or on stdin (`-`), in typed form: `text` of `position
 /// --json`, an item of `get --json`, or the position itself. If a robot has several frames, the axes are used.
-pub fn printed_position(path: &Path) -> Result<String, Failure> {
-    let json = printed(path)?;
+pub fn parse_printed_position(path: &Path) -> Result<String, Failure> {
+    let json = printed_texts(path)?;
     let rows = ["positions", "items", "variables", "points"].iter().find_map(|list| json.get(*list)?.as_array());
     let found = match rows.map(Vec::as_slice) {
         Some([only]) => text(only),
@@ -110,9 +110,9 @@ fn text(json: &Json) -> Option<String> {
 }
 
 /// JSON in a file or on stdin (`-`); for an envelope, its data.
-fn printed(path: &Path) -> Result<Json, Failure> {
+fn printed_texts(path: &Path) -> Result<Json, Failure> {
     let shown = if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() };
-    let bytes = files::input(path, MOST).with_context(|| shown.clone())?;
+    let bytes = files::input(path, SIZE_LIMIT).with_context(|| shown.clone())?;
     let json: Result<Json, _> = serde_json::from_slice(&bytes);
     let mut json =
         json.map_err(|error| Failure::usage(format!("{shown}: {error}")).hint("use a file from `position --json`"))?;
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_position_is_read_from_what_any_command_printed() {
+    fn parses_positions_printed_by_any_command() {
         assert_eq!(text(&json!({"frame": "base", "x_mm": 1.0, "text": "x=1.00"})).as_deref(), Some("x=1.00"));
         assert_eq!(text(&json!({"name": "P1", "value": {"text": "pulse:s=1"}})).as_deref(), Some("pulse:s=1"));
         assert_eq!(text(&json!({"point": 1, "x_mm": 1.5, "r_mm": -2.0, "ok": true})).as_deref(), Some("x=1.5 r=-2.0"));

@@ -5,10 +5,10 @@ use serde_json::Value;
 
 use super::authority::Authority;
 use super::command::{AnyCommand, AnyContext, Context};
-use super::connection::{self, Access, ConnectMode, Family, Lent};
+use super::connection::{self, Access, Borrowed, ConnectMode, Family};
 use super::dry_run::{DryRun, is_end};
-use super::orders::BEFORE;
 use super::report::{AnyReport as _, Outcome};
+use super::settings_report::OLD_VALUE;
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Gate, Grant};
@@ -19,7 +19,7 @@ use crate::settings::Robot;
 pub static QUIET: Screen = Screen::silent();
 
 /// Access without restrictions.
-pub fn everything() -> Access {
+pub fn unlimited_access() -> Access {
     Access { grant: Grant::up_to(Risk::Motion), ..Access::reading(ConnectMode::Control) }
 }
 
@@ -33,8 +33,8 @@ pub fn context<'a, F: Family>(robot: &'a Robot, link: &'a mut F::Link) -> Contex
 /// Runs a command on a link that the test keeps.
 pub async fn run<F: Family>(command: &dyn AnyCommand, context: Context<'_, F>) -> Outcome {
     let Context { robot, link, screen, several, authority } = context;
-    let mut lent = Lent::<F>(link);
-    command.run(AnyContext { robot, connection: &mut lent, screen, several, authority }).await
+    let mut borrowed = Borrowed::<F>(link);
+    command.run(AnyContext { robot, connection: &mut borrowed, screen, several, authority }).await
 }
 
 /// Report of a dry run.
@@ -60,15 +60,15 @@ pub fn planned<F: Family>(
 
 /// Frames of [`planned`], without reads of old values.
 pub fn frames(planned: &Value) -> Vec<Value> {
-    all_frames(planned).into_iter().filter(|frame| frame["about"] != BEFORE).collect()
+    complete_frames(planned).into_iter().filter(|frame| frame["about"] != OLD_VALUE).collect()
 }
 
 /// All frames of [`planned`].
-pub fn all_frames(planned: &Value) -> Vec<Value> {
+pub fn complete_frames(planned: &Value) -> Vec<Value> {
     planned["frames"].as_array().expect("frames").clone()
 }
 
 /// Number of frames of [`planned`] that only read old values.
 pub fn count_before(planned: &Value) -> usize {
-    all_frames(planned).len() - frames(planned).len()
+    complete_frames(planned).len() - frames(planned).len()
 }

@@ -3,25 +3,27 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::local::Target;
+use super::local_names::Target;
 use crate::controller::findings::Finding;
 use crate::failure::Failure;
 use crate::files;
 
 /// Maximum file size: larger than all data of a controller.
-const MOST: u64 = 16 << 20;
+const SIZE_LIMIT: u64 = 16 << 20;
 
 /// Bytes of a file, or of stdin for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    files::input(path, MOST).map_err(|error| match error.kind() {
-        ErrorKind::FileTooLarge => Failure::usage(format!("{} is larger than the memory of a controller", shown(path)))
-            .hint("check that it is the right file"),
-        _ => Failure::io(shown(path), &error),
+    files::input(path, SIZE_LIMIT).map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => {
+            Failure::usage(format!("{} is larger than the memory of a controller", display_path(path)))
+                .hint("check that it is the right file")
+        }
+        _ => Failure::io(display_path(path), &error),
     })
 }
 
 /// File name in reports.
-pub fn shown(path: &Path) -> String {
+pub fn display_path(path: &Path) -> String {
     if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() }
 }
 
@@ -49,7 +51,7 @@ pub fn write(target: &Target, text: &str) -> Result<String, Failure> {
 }
 
 /// All errors of a file, one line each.
-pub fn faulty(name: &str, errors: &[Finding]) -> Failure {
+pub fn file_failure(name: &str, errors: &[Finding]) -> Failure {
     let lines: Vec<String> = errors
         .iter()
         .map(|Finding { line, column, message, hint, .. }| {

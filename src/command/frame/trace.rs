@@ -22,9 +22,9 @@ pub struct Trace {
     level: u8,
     capture: Option<CaptureWriter>,
     /// Text lines that wait to be written.
-    held: Option<Vec<String>>,
+    pending: Option<Vec<String>>,
     /// Reason why the trace is incomplete.
-    broken: Option<Failure>,
+    failure: Option<Failure>,
 }
 
 impl Trace {
@@ -57,7 +57,7 @@ impl Trace {
             Some(path) if !access.dry_run => Some(begin(path).with_context(|| path.display().to_string())?),
             _ => None,
         };
-        Ok(Self { screen: *screen, level, capture, held: None, broken: None })
+        Ok(Self { screen: *screen, level, capture, pending: None, failure: None })
     }
 
     /// Requested text: 0 nothing, 1 one line per frame, 2 also the bytes.
@@ -68,7 +68,7 @@ impl Trace {
     /// Writes a line of text.
     pub fn line(&mut self, direction: Direction, text: &str) {
         let line = format!("{} {text}", direction.arrow());
-        match &mut self.held {
+        match &mut self.pending {
             Some(held) => held.push(line),
             None => self.screen.note(&line),
         }
@@ -84,26 +84,26 @@ impl Trace {
     }
 
     /// Holds text until [`Trace::release`], because stderr can block.
-    pub fn hold(&mut self) {
-        self.held.get_or_insert_default();
+    pub fn pause(&mut self) {
+        self.pending.get_or_insert_default();
     }
 
     /// Writes the held text.
-    pub fn release(&mut self) {
-        for line in self.held.take().unwrap_or_default() {
+    pub fn resume(&mut self) {
+        for line in self.pending.take().unwrap_or_default() {
             self.screen.note(&line);
         }
     }
 
     /// Adds a datagram to the capture file; `ends` has the own address first.
     pub fn datagram(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
-        let (from, to) = in_order(direction, ends);
+        let (from, to) = write_in_order(direction, ends);
         self.capture(|capture, time| capture.datagram(time, from, to, bytes));
     }
 
     /// Adds a piece of a stream to the capture file: TCP between two addresses (own address first), or a serial line.
     pub fn piece(&mut self, direction: Direction, ends: Option<(SocketAddr, SocketAddr)>, bytes: &[u8]) {
-        self.capture(|capture, time| match ends.map(|ends| in_order(direction, ends)) {
+        self.capture(|capture, time| match ends.map(|ends| write_in_order(direction, ends)) {
             Some((from, to)) => capture.segment(time, from, to, bytes),
             None => capture.line(time, direction, bytes),
         });
@@ -115,24 +115,24 @@ impl Trace {
         let Some(capture) = &mut self.capture else { return };
         if let Err(error) = add(capture, now()) {
             self.capture = None;
-            self.broken = Some(not_whole(&plain(&error)));
+            self.failure = Some(incomplete(&plain(&error)));
         }
     }
 
     /// Closes the trace and reports whether it is complete.
     pub fn finish(&mut self) -> Result<(), Failure> {
-        self.broken.take().map_or(Ok(()), Err)
+        self.failure.take().map_or(Ok(()), Err)
     }
 }
 
 /// Locks data that a link shares with the observer of its client, such as the trace. A panic leaves it complete,
 /// because it is written frame by frame.
-pub fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+pub fn lock_writer<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Sender and receiver.
-fn in_order(direction: Direction, (own, other): (SocketAddr, SocketAddr)) -> (SocketAddr, SocketAddr) {
+fn write_in_order(direction: Direction, (own, other): (SocketAddr, SocketAddr)) -> (SocketAddr, SocketAddr) {
     match direction {
         Direction::Sent => (own, other),
         Direction::Received => (other, own),
@@ -145,7 +145,7 @@ pub fn now() -> Duration {
 }
 
 /// Failure for an incomplete trace.
-pub fn not_whole(why: &str) -> Failure {
+pub fn incomplete(why: &str) -> Failure {
     Failure::local(format!("the --trace file is incomplete: {why}"))
 }
 
@@ -156,15 +156,15 @@ mod tests {
     use crate::output::{ColorChoice, Format};
 
     #[test]
-    fn text_waits_while_it_is_held() {
+    fn buffers_text_while_paused() {
         let access = Access::reading(ConnectMode::Control);
         let screen = Screen::new(Format::Json, ColorChoice::Never, true, 2);
         let mut trace = Trace::of_lines(&access, &screen).unwrap();
-        trace.hold();
+        trace.pause();
         trace.line(Direction::Sent, "@HSON");
         trace.message(Direction::Received, "@OK", b"@OK\r\n");
-        assert_eq!(trace.held.as_deref(), Some(&["-> @HSON".to_owned(), "<- @OK".to_owned()][..]));
-        trace.release();
-        assert_eq!(trace.held, None);
+        assert_eq!(trace.pending.as_deref(), Some(&["-> @HSON".to_owned(), "<- @OK".to_owned()][..]));
+        trace.resume();
+        assert_eq!(trace.pending, None);
     }
 }

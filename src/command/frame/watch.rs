@@ -19,15 +19,15 @@ use crate::output::view::{Cell, Section, View};
 use crate::settings::duration;
 
 /// Read interval, if there is no change notification.
-const PAUSE: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// If there are more items than this, only those that have a name or are on are printed at the start.
-const MANY: usize = 24;
+const MANY_ITEMS: usize = 24;
 
 /// Field of the user name.
 const LABEL: &str = "label";
 /// Field of the user names of bits.
-const LABELS: &str = "labels";
+const LABEL_KEYS: &str = "labels";
 
 /// Location of the watched items in the data of a read: the list and its fields.
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +62,7 @@ pub trait Watchable: Command {
 
     /// Waits until a new read is useful.
     async fn changed(&self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
-        tokio::time::sleep(PAUSE).await;
+        tokio::time::sleep(POLL_INTERVAL).await;
         Ok(())
     }
 }
@@ -77,7 +77,7 @@ pub struct Watch<C: Args> {
     within: Option<Duration>,
     /// Items of the previous read.
     #[arg(skip)]
-    before: RefCell<Option<Vec<Thing>>>,
+    before: RefCell<Option<Vec<WatchedItem>>>,
 }
 
 impl<C: Watchable + Args> Command for Watch<C> {
@@ -98,11 +98,11 @@ impl<C: Watchable + Args> Command for Watch<C> {
             }
             let authority = authority.clone();
             let report = self.what.run(Context { robot, link: &mut *link, screen, several, authority }).await?;
-            let now = C::WATCHED.things(&report.data()?);
+            let now = C::WATCHED.watched_items(&report.data()?);
             let before = self.before.replace(Some(now.clone()));
             let is_first = before.is_none();
             let changes = match before {
-                None => began(&now),
+                None => describe_start(&now),
                 Some(before) => differences(&before, &now),
             };
             if is_first || !changes.is_empty() {
@@ -114,7 +114,7 @@ impl<C: Watchable + Args> Command for Watch<C> {
 
 /// A watched item.
 #[derive(Debug, Clone, PartialEq)]
-struct Thing {
+struct WatchedItem {
     name: String,
     label: Option<String>,
     value: Value,
@@ -123,16 +123,16 @@ struct Thing {
 }
 
 impl Watched {
-    fn things(self, data: &Value) -> Vec<Thing> {
+    fn watched_items(self, data: &Value) -> Vec<WatchedItem> {
         let items = data[self.list].as_array().map(Vec::as_slice).unwrap_or_default();
-        items.iter().flat_map(|item| self.things_of(item)).collect()
+        items.iter().flat_map(|item| self.items_of_list(item)).collect()
     }
 
-    fn things_of(self, item: &Value) -> Vec<Thing> {
+    fn items_of_list(self, item: &Value) -> Vec<WatchedItem> {
         let name = format!("{}{}", self.prefix, plain(&item[self.name]));
         // The user name is more informative than the description.
         let label = item[LABEL].as_str().or_else(|| item[self.label].as_str()).map(ToOwned::to_owned);
-        let thing = |name: String, value: &Value| Thing {
+        let thing = |name: String, value: &Value| WatchedItem {
             name,
             label: label.clone(),
             value: value.clone(),
@@ -140,15 +140,15 @@ impl Watched {
         };
         if let Some(message) = item["error"]["message"].as_str() {
             let name = if item[self.name].is_null() { plain(&item["error"]["asked"]) } else { name };
-            return vec![Thing { label: Some(message.to_owned()), ..thing(name, &Value::Null) }];
+            return vec![WatchedItem { label: Some(message.to_owned()), ..thing(name, &Value::Null) }];
         }
         match self.value.map(|field| &item[field]) {
             None => vec![thing(name, &Value::Bool(true))],
             Some(Value::Array(bits)) => {
-                let named = |at: usize| item[LABELS].get(at)?.as_str().map(ToOwned::to_owned);
+                let named = |at: usize| item[LABEL_KEYS].get(at)?.as_str().map(ToOwned::to_owned);
                 let things = bits.iter().enumerate().map(|(at, bit)| {
                     let bit = thing(format!("{name}.{}", at + 1), bit);
-                    Thing { label: named(at).or_else(|| bit.label.clone()), ..bit }
+                    WatchedItem { label: named(at).or_else(|| bit.label.clone()), ..bit }
                 });
                 things.collect()
             }
@@ -158,22 +158,22 @@ impl Watched {
 }
 
 /// Changes at the start: the current values.
-fn began(now: &[Thing]) -> Vec<Change> {
+fn describe_start(now: &[WatchedItem]) -> Vec<Change> {
     let is_off = |value: &Value| *value == false || *value == 0;
-    let is_told = |thing: &&Thing| now.len() <= MANY || thing.label.is_some() || !is_off(&thing.value);
+    let is_told = |thing: &&WatchedItem| now.len() <= MANY_ITEMS || thing.label.is_some() || !is_off(&thing.value);
     now.iter().filter(is_told).map(|thing| Change::new(thing, None, Some(thing))).collect()
 }
 
 /// Changed, new and removed items.
-fn differences(before: &[Thing], now: &[Thing]) -> Vec<Change> {
-    let find = |things: &[Thing], name: &str| things.iter().find(|thing| thing.name == name).cloned();
+fn differences(before: &[WatchedItem], now: &[WatchedItem]) -> Vec<Change> {
+    let find = |things: &[WatchedItem], name: &str| things.iter().find(|thing| thing.name == name).cloned();
     let changed = now.iter().filter_map(|thing| {
         let old = find(before, &thing.name);
         (old.as_ref().map(|old| &old.value) != Some(&thing.value))
             .then(|| Change::new(thing, old.as_ref(), Some(thing)))
     });
-    let gone = before.iter().filter(|old| find(now, &old.name).is_none());
-    changed.chain(gone.map(|old| Change::new(old, Some(old), None))).collect()
+    let is_gone = before.iter().filter(|old| find(now, &old.name).is_none());
+    changed.chain(is_gone.map(|old| Change::new(old, Some(old), None))).collect()
 }
 
 /// Changes at one moment; in the first report, the current values.
@@ -207,8 +207,8 @@ struct Change {
 }
 
 impl Change {
-    fn new(thing: &Thing, old: Option<&Thing>, new: Option<&Thing>) -> Self {
-        let value = |thing: Option<&Thing>| thing.map_or(Value::Null, |thing| thing.value.clone());
+    fn new(thing: &WatchedItem, old: Option<&WatchedItem>, new: Option<&WatchedItem>) -> Self {
+        let value = |thing: Option<&WatchedItem>| thing.map_or(Value::Null, |thing| thing.value.clone());
         let item = new.map(|thing| thing.item.clone());
         let time = Timestamp::UNIX_EPOCH;
         Self { time, name: thing.name.clone(), label: thing.label.clone(), old: value(old), new: value(new), item }
@@ -283,15 +283,18 @@ mod tests {
     }
 
     #[test]
-    fn a_change_is_told_with_old_and_new() {
+    fn reports_a_change_with_old_and_new() {
         let data = |first: bool, second: bool| {
-            SIGNALS.things(&json!({"signals": [
+            SIGNALS.watched_items(&json!({"signals": [
                 {"name": "#27010", "class": "network input", "ok": true, "on": first},
                 {"name": "#27011", "class": "network input", "ok": true, "on": second},
             ]}))
         };
         let (before, now) = (data(false, true), data(true, true));
-        assert_eq!(lines(&began(&before), false), ["T  #27010 (network input)  off", "T  #27011 (network input)  on"]);
+        assert_eq!(
+            lines(&describe_start(&before), false),
+            ["T  #27010 (network input)  off", "T  #27011 (network input)  on"]
+        );
         let changes = differences(&before, &now);
         assert_eq!(lines(&changes, false), ["T  #27010 (network input)  off -> on"]);
         assert_eq!(differences(&now, &now), []);
@@ -303,26 +306,26 @@ mod tests {
     }
 
     #[test]
-    fn what_is_there_or_not_comes_and_goes() {
+    fn reports_appearing_and_disappearing_items() {
         let alarms = Watched { list: "alarms", name: "code", prefix: "alarm ", label: "name", value: None, ..SIGNALS };
-        let one = alarms.things(&json!({"alarms": [{"code": 4315, "name": "COLLISION"}]}));
+        let one = alarms.watched_items(&json!({"alarms": [{"code": 4315, "name": "COLLISION"}]}));
         assert_eq!(lines(&differences(&[], &one), true), ["T  alarm 4315 (COLLISION)  present"]);
         assert_eq!(lines(&differences(&one, &[]), true), ["T  alarm 4315 (COLLISION)  gone"]);
     }
 
     #[test]
-    fn bits_are_watched_one_by_one_and_what_fails_says_why() {
+    fn watches_bits_separately_and_reports_failures() {
         let ports = Watched { list: "ports", value: Some("bits"), ..SIGNALS };
-        let data = |bit: bool| ports.things(&json!({"ports": [{"name": "PN01", "bits": [true, bit]}]}));
+        let data = |bit: bool| ports.watched_items(&json!({"ports": [{"name": "PN01", "bits": [true, bit]}]}));
         assert_eq!(lines(&differences(&data(false), &data(true)), false), ["T  PN01.2  off -> on"]);
-        let failed = SIGNALS.things(&json!({"signals": [{"name": "#1", "error": {"message": "refused"}}]}));
-        assert_eq!(lines(&began(&failed), false), ["T  #1 (refused)  -"]);
+        let failed = SIGNALS.watched_items(&json!({"signals": [{"name": "#1", "error": {"message": "refused"}}]}));
+        assert_eq!(lines(&describe_start(&failed), false), ["T  #1 (refused)  -"]);
     }
 
     #[test]
-    fn of_many_only_what_is_named_or_on_is_told_at_first() {
-        let things = |count: u16| -> Vec<Thing> {
-            let thing = |number| Thing {
+    fn starts_with_named_or_active_items_only() {
+        let things = |count: u16| -> Vec<WatchedItem> {
+            let thing = |number| WatchedItem {
                 name: format!("B{number}"),
                 label: None,
                 value: u16::from(number == 3).into(),
@@ -330,7 +333,7 @@ mod tests {
             };
             (0..count).map(thing).collect()
         };
-        assert_eq!(began(&things(24)).len(), 24);
-        assert_eq!(began(&things(25)).len(), 1);
+        assert_eq!(describe_start(&things(24)).len(), 24);
+        assert_eq!(describe_start(&things(25)).len(), 1);
     }
 }

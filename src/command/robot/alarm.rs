@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::face::shared::Alike;
+use crate::command::face::shared_commands::CommonReport;
 use crate::command::frame::items::{ItemError, ItemOutcome, verdict};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, Table, Tone, View};
@@ -77,7 +77,7 @@ impl Alarm {
 }
 
 /// Family-specific data of an alarm.
-pub trait Besides {
+pub trait ExtraColumns {
     /// Columns and values; `None` if there is no value.
     fn cells(&self) -> Vec<(&'static str, Option<String>)>;
 }
@@ -89,14 +89,14 @@ pub struct InWords {
     data: Option<String>,
 }
 
-impl Besides for InWords {
+impl ExtraColumns for InWords {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         vec![("data", self.data.clone())]
     }
 }
 
 /// Family-specific data of the whole list.
-pub trait Standing {
+pub trait AlarmState {
     /// Text for an empty list.
     fn none(&self) -> &'static str {
         "no alarm"
@@ -107,7 +107,7 @@ pub trait Standing {
 #[derive(Debug, Clone, Copy, Default, Serialize, JsonSchema)]
 pub struct Nothing {}
 
-impl Standing for Nothing {}
+impl AlarmState for Nothing {}
 
 /// Present or past alarms: report of `alarm list` and `alarm history`.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -152,7 +152,7 @@ impl<T> Row<T> {
     }
 }
 
-impl<T: Besides, S> Alike for Alarms<T, S> {
+impl<T: ExtraColumns, S> CommonReport for Alarms<T, S> {
     type Core = AllAlarms;
 
     fn core(&self) -> AllAlarms {
@@ -181,7 +181,7 @@ impl AllAlarms {
     }
 
     /// View in the form of a family.
-    pub fn of_one(&self) -> View {
+    pub fn for_robot(&self) -> View {
         shown(&self.alarms, "no alarm")
     }
 }
@@ -208,12 +208,12 @@ impl<T, S> Alarms<T, S> {
     }
 
     /// Entries that could be read.
-    pub fn known(&self) -> impl Iterator<Item = (&Row<T>, &AlarmEntry<T>)> {
+    pub fn known_alarms(&self) -> impl Iterator<Item = (&Row<T>, &AlarmEntry<T>)> {
         self.alarms.iter().filter_map(|row| Some((row, row.outcome.data()?)))
     }
 }
 
-impl<T: Besides> AlarmEntry<T> {
+impl<T: ExtraColumns> AlarmEntry<T> {
     /// Row of a table with all columns.
     fn cells(&self, list: Option<&'static str>, index: u16) -> Vec<Cell> {
         let Alarm { code, text, time, .. } = &self.alarm;
@@ -234,7 +234,7 @@ impl<T: Besides> AlarmEntry<T> {
     }
 }
 
-impl<T: Besides + Serialize + JsonSchema, S: Standing + Serialize + JsonSchema> Report for Alarms<T, S> {
+impl<T: ExtraColumns + Serialize + JsonSchema, S: AlarmState + Serialize + JsonSchema> Report for Alarms<T, S> {
     fn view(&self) -> View {
         shown(&self.alarms, self.standing.none())
     }
@@ -245,26 +245,26 @@ impl<T: Besides + Serialize + JsonSchema, S: Standing + Serialize + JsonSchema> 
 }
 
 /// Shows a single alarm with all fields, several as a table; `none` is the text for an empty list.
-fn shown<T: Besides>(rows: &[Row<T>], none: &str) -> View {
+fn shown<T: ExtraColumns>(rows: &[Row<T>], none: &str) -> View {
     let known = || rows.iter().filter_map(|row| row.outcome.data());
-    let told: Vec<Cell> = known().filter_map(|entry| site(&entry.alarm)).map(Cell::from).collect();
+    let entry_text: Vec<Cell> = known().filter_map(|entry| add_site_text(&entry.alarm)).map(Cell::from).collect();
     match (rows, known().next()) {
         ([], _) => View::text(none),
         ([row], Some(entry)) => View::default().and(Section::Fields(entry.fields(row.list))),
-        _ if told.is_empty() => View::table(table(rows)),
-        _ => View::table(table(rows)).and(Section::Lines(told)),
+        _ if entry_text.is_empty() => View::table(table(rows)),
+        _ => View::table(table(rows)).and(Section::Lines(entry_text)),
     }
 }
 
 /// Text of `alarms.toml` for an alarm, as a line below a table.
-fn site(alarm: &Alarm) -> Option<String> {
+fn add_site_text(alarm: &Alarm) -> Option<String> {
     let Alarm { code, cause, remedy, source: Source::Site, .. } = alarm else { return None };
     let parts: Vec<&str> = [cause, remedy].into_iter().flatten().map(String::as_str).collect();
     (!parts.is_empty()).then(|| format!("{}: {}", code.as_deref().unwrap_or_default(), parts.join("; ")))
 }
 
 /// Table with one row per entry and only the columns that have a value.
-fn table<T: Besides>(rows: &[Row<T>]) -> Table {
+fn table<T: ExtraColumns>(rows: &[Row<T>]) -> Table {
     let own = rows.iter().find_map(|row| Some(row.outcome.data()?.own.cells())).unwrap_or_default();
     let own = own.into_iter().map(|(name, _)| name);
     let columns: Vec<_> = ["list", "#", "code", "alarm"].into_iter().chain(own).chain(["time"]).collect();
@@ -274,7 +274,7 @@ fn table<T: Besides>(rows: &[Row<T>]) -> Table {
 }
 
 /// Row with this number of columns.
-fn cells<T: Besides>(row: &Row<T>, columns: usize) -> Vec<Cell> {
+fn cells<T: ExtraColumns>(row: &Row<T>, columns: usize) -> Vec<Cell> {
     let mut cells = match (row.outcome.data(), row.outcome.error()) {
         (Some(entry), _) => entry.cells(row.list, row.index),
         (None, error) => {

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::command::Report;
 use crate::command::backup::manifest::{Hash, LeftOut, Saved};
-use crate::command::backup::{goes_on, gravity};
+use crate::command::backup::{continues_after, severity};
 use crate::command::frame::items::ItemError;
 use crate::failure::{Failure, Kind};
 use crate::output::csv::RowsOf;
@@ -49,19 +49,19 @@ impl<M> FileItem<M> {
 
     /// Adds the local file.
     #[must_use]
-    pub fn at(self, path: &Path) -> Self {
+    pub fn with_path(self, path: &Path) -> Self {
         Self { path: Some(path.display().to_string()), ..self }
     }
 
     /// Adds a file of a backup in `folder`.
     #[must_use]
-    pub fn of_copy(self, folder: &Path, Saved { file, bytes, sha256 }: &Saved) -> Self {
-        Self { bytes: Some(*bytes), sha256: Some(sha256.clone()), ..self.at(&folder.join(file)) }
+    pub fn from_copy(self, folder: &Path, Saved { file, bytes, sha256 }: &Saved) -> Self {
+        Self { bytes: Some(*bytes), sha256: Some(sha256.clone()), ..self.with_path(&folder.join(file)) }
     }
 
     /// Adds the content.
     #[must_use]
-    pub fn holding(self, content: Hash) -> Self {
+    pub fn with_content(self, content: Hash) -> Self {
         Self { bytes: Some(content.bytes), sha256: Some(content.hex()), ..self }
     }
 }
@@ -119,14 +119,14 @@ impl FileItem {
     /// Records a failure. Returns whether the next file can be tried: yes after a refusal of this file, no after a lost
     /// connection or a full disk.
     pub fn fail(&mut self, failure: Failure) -> bool {
-        let goes_on = goes_on(&failure);
+        let continues_after = continues_after(&failure);
         (self.more.state, self.ok) = (State::Failed, false);
         self.error = Some(ItemError::new(self.name.as_str(), failure));
-        goes_on
+        continues_after
     }
 
     /// Records the content, or the failure. Returns whether the next file can be tried.
-    pub fn settle(&mut self, outcome: Result<Option<Hash>, Failure>) -> bool {
+    pub fn finish(&mut self, outcome: Result<Option<Hash>, Failure>) -> bool {
         match outcome {
             Ok(content) => {
                 if let Some(content) = content {
@@ -171,7 +171,7 @@ impl FileItem {
         let keys: Vec<&str> = left_out.iter().map(|left| left.key.as_str()).collect();
         let without = match &keys[..] {
             [] => String::new(),
-            [first, .., last] if keys.len() > MOST_KEYS => {
+            [first, .., last] if keys.len() > MAX_KEYS => {
                 format!("; without {} values, {first} to {last}", keys.len())
             }
             few => format!("; without {}", few.join(", ")),
@@ -203,7 +203,7 @@ impl FileItem {
 /// Text if nothing had to be written.
 pub const NO_DIFFERENCE: &str = "nothing differed";
 /// Maximum number of left-out values in a table.
-const MOST_KEYS: usize = 6;
+const MAX_KEYS: usize = 6;
 
 /// Files in the order of processing.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -230,7 +230,7 @@ impl<M> Files<M> {
     }
 
     /// The failure, if there is only one file and it failed.
-    pub fn or_only_failure(self) -> Result<Self, Failure> {
+    pub fn single_failure(self) -> Result<Self, Failure> {
         match &self.files[..] {
             [FileItem { error: Some(error), .. }] => Err(error.failure()),
             _ => Ok(self),
@@ -238,9 +238,9 @@ impl<M> Files<M> {
     }
 
     /// The most severe failure of a file; the first of equal severity.
-    pub fn gravest(&self) -> Option<Failure> {
+    pub fn most_severe(&self) -> Option<Failure> {
         let failures = self.files.iter().filter_map(|file| file.error.as_ref()).map(ItemError::failure);
-        failures.rev().max_by_key(|failure| gravity(failure.kind))
+        failures.rev().max_by_key(|failure| severity(failure.kind))
     }
 
     /// View for people.
@@ -250,9 +250,9 @@ impl<M> Files<M> {
 
     /// Failure of the report: some failed and some did not, unless an outcome is unknown or the work was interrupted.
     pub fn failure(&self) -> Option<Failure> {
-        let gravest = self.gravest()?;
+        let most_severe = self.most_severe()?;
         if self.asked <= 1 {
-            return Some(gravest);
+            return Some(most_severe);
         }
         let failed = self.files.iter().filter(|file| file.error.is_some()).count();
         let not_tried = self.files.iter().filter(|file| !file.ok && file.error.is_none()).count();
@@ -260,12 +260,12 @@ impl<M> Files<M> {
             0 => format!("{failed} of {} failed", self.asked),
             _ => format!("{failed} of {} failed, {not_tried} not tried", self.asked),
         };
-        let kind = match gravest.kind {
+        let kind = match most_severe.kind {
             kind @ (Kind::OutcomeUnknown | Kind::Interrupted) => kind,
             _ if self.asked > failed + not_tried => Kind::Mixed,
             kind => kind,
         };
-        Some(Failure { kind, message: format!("{counts}: {}", gravest.message), ..gravest })
+        Some(Failure { kind, message: format!("{counts}: {}", most_severe.message), ..most_severe })
     }
 }
 
@@ -293,9 +293,9 @@ mod tests {
 
     fn files() -> Vec<FileItem> {
         let mut files: Vec<FileItem> = ["A.JBI", "B.JBI", "C.JBI", "D.JBI"].map(FileItem::pending).into();
-        assert!(files[0].settle(Ok(Some(Hash::of(b"abc")))));
-        assert!(files[1].settle(Err(Failure::new(Kind::Refused, "no. Never").code("0xE29C"))));
-        assert!(!files[2].settle(Err(Failure::new(Kind::NoAnswer, "silence").hint("cable"))));
+        assert!(files[0].finish(Ok(Some(Hash::of(b"abc")))));
+        assert!(files[1].finish(Err(Failure::new(Kind::Refused, "no. Never").code("0xE29C"))));
+        assert!(!files[2].finish(Err(Failure::new(Kind::NoAnswer, "silence").hint("cable"))));
         files
     }
 
@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn every_file_has_the_keys_of_the_concept() {
+    fn every_file_has_all_keys() {
         let json = serde_json::to_value(saved(files())).unwrap();
         let sha256 = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         let first = serde_json::json!({
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gravest_failure_decides() {
+    fn most_severe_failure_decides() {
         let report = saved(files());
         let failure = report.failure().unwrap();
         assert_eq!((failure.kind, failure.kind.exit()), (Kind::Mixed, 9));
@@ -332,10 +332,10 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_answer_and_ctrl_c_keep_their_exit_codes() {
+    fn lost_answers_and_interrupts_keep_their_exit_codes() {
         for kind in [Kind::OutcomeUnknown, Kind::Interrupted] {
             let mut files = files();
-            files[2].settle(Err(Failure::new(kind, "lost")));
+            files[2].finish(Err(Failure::new(kind, "lost")));
             assert_eq!(saved(files).failure().unwrap().kind, kind);
         }
         let mut files = files();
@@ -344,15 +344,15 @@ mod tests {
     }
 
     #[test]
-    fn one_file_fails_as_itself() {
-        let failed = saved(files().drain(1..2).collect()).or_only_failure().unwrap_err();
+    fn single_file_fails_with_its_own_error() {
+        let failed = saved(files().drain(1..2).collect()).single_failure().unwrap_err();
         assert_eq!((failed.kind, failed.message.as_str()), (Kind::Refused, "B.JBI: no. Never"));
-        assert!(saved(files()).or_only_failure().is_ok());
-        assert!(saved(files().drain(..1).collect()).or_only_failure().unwrap().failure().is_none());
+        assert!(saved(files()).single_failure().is_ok());
+        assert!(saved(files().drain(..1).collect()).single_failure().unwrap().failure().is_none());
     }
 
     #[test]
-    fn parts_say_how_many_values_were_written_and_left_out() {
+    fn counts_written_and_omitted_values() {
         let mut part = FileItem::values("p");
         part.more.unchanged = Some(9);
         part.succeed(State::Done);

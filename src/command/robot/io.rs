@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::frame::items::{ItemError, nothing, verdict};
+use crate::command::frame::items::{ItemError, all_failed, verdict};
 use crate::command::frame::watch::Watched;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -157,7 +157,7 @@ impl Signals {
     /// # Errors
     /// If no signal was read, for the same reason.
     pub fn new(items: Vec<IoRow>) -> Result<Self, Failure> {
-        nothing(items.len(), items.iter().filter_map(|row| row.error.as_ref()))?;
+        all_failed(items.len(), items.iter().filter_map(|row| row.error.as_ref()))?;
         Ok(Self { items })
     }
 }
@@ -196,7 +196,7 @@ impl WrittenSignal {
 
     /// Result of a write with a different value read back.
     #[must_use]
-    pub fn but(mut self, value: IoValue, failure: Failure) -> Self {
+    pub fn with_error(mut self, value: IoValue, failure: Failure) -> Self {
         (self.row.ok, self.row.value) = (false, Some(value));
         self.row.error = Some(ItemError::new(self.row.item.name.as_str(), failure));
         self
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_in_every_row() {
+    fn every_row_has_every_key() {
         let read = serde_json::to_value(IoRow::state(item(None), Ok(true))).unwrap();
         let expected = json!({"name": "IN1.3", "label": null, "kind": "input", "address": "PN01.3", "meaning": null, "ok": true, "value": true});
         assert_eq!(read, expected);
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_has_what_is_on_or_has_a_name() {
+    fn lists_active_or_named_signals() {
         let usual = Filter { r#in: false, out: false, off: false };
         let lists = |filter: Filter, label, on| filter.lists(&IoRow::state(item(label), Ok(on)));
         assert!(lists(usual, None, true) && lists(usual, Some("clamp"), false) && !lists(usual, None, false));

@@ -54,14 +54,14 @@ impl<V, M> Item<V, M> {
         let name = name.into();
         let (ok, value, error) = match outcome {
             Ok(value) => (true, value, None),
-            Err(failure) => (false, None, Some(ItemError::new(asked(kind, &name), failure))),
+            Err(failure) => (false, None, Some(ItemError::new(as_requested(kind, &name), failure))),
         };
         Self { name, label: None, kind, more, ok, value, error, cells: Vec::new() }
     }
 
     /// Adds the table cells of its value.
     #[must_use]
-    pub fn shown(mut self, cells: impl Fn(&V) -> Vec<Cell>) -> Self {
+    pub fn with_cells(mut self, cells: impl Fn(&V) -> Vec<Cell>) -> Self {
         self.cells.extend(self.value.iter().flat_map(cells));
         self
     }
@@ -74,7 +74,7 @@ impl<V, M> Item<V, M> {
 }
 
 /// Name of an item in messages: `point 19`, or `B5` if the name implies the kind.
-pub fn asked(kind: &str, name: &str) -> String {
+pub fn as_requested(kind: &str, name: &str) -> String {
     if name.starts_with(|c: char| c.is_ascii_digit()) { format!("{kind} {name}") } else { name.to_owned() }
 }
 
@@ -123,7 +123,7 @@ impl<V, M> Items<V, M> {
     }
 
     /// The failure, if there is only one item and it was not read.
-    pub fn or_only_failure(self) -> Result<Self, Failure> {
+    pub fn single_failure(self) -> Result<Self, Failure> {
         match &self.items[..] {
             [Item { error: Some(error), .. }] => Err(error.failure()),
             _ => Ok(self),
@@ -167,8 +167,8 @@ impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for Items<V, M
     }
 
     fn failure(&self) -> Option<Failure> {
-        let has_none = self.items.iter().all(|item| item.value.is_none());
-        let failure = verdict(self.items.len(), self.errors().chain(self.undefined.iter().filter(|_| has_none)))?;
+        let is_empty = self.items.iter().all(|item| item.value.is_none());
+        let failure = verdict(self.items.len(), self.errors().chain(self.undefined.iter().filter(|_| is_empty)))?;
         Some(match self.items.len() - self.asked.min(self.items.len()) {
             0 => failure,
             rest => Failure { message: format!("{}; {rest} were not read", failure.message), ..failure },
@@ -208,7 +208,7 @@ impl<V, M> WrittenItems<V, M> {
     }
 
     /// Report with a sentence.
-    pub fn said(words: impl Into<String>, items: Vec<Written<V, M>>) -> Self {
+    pub fn describe(words: impl Into<String>, items: Vec<Written<V, M>>) -> Self {
         Self { items, words: Some(words.into()), columns: Columns::default() }
     }
 }

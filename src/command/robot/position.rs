@@ -6,9 +6,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::face::shared::Alike;
+use crate::command::face::shared_commands::CommonReport;
 use crate::command::frame::items::{ItemError, verdict};
-use crate::command::frame::plot::{Past, Plot};
+use crate::command::frame::plot::{Plot, SeriesHistory};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, Table, View};
 
@@ -132,8 +132,8 @@ impl Position {
         let words = words.into_iter().filter_map(|(name, word)| Some((name, Cell::from(word.as_deref()?))));
         let numbers = [("tool", self.tool), ("user", self.user_frame)];
         let numbers = numbers.into_iter().filter_map(|(name, number)| Some((name, Cell::from(number?))));
-        let besides = numbers.chain(words).map(|(name, cell)| vec![name.into(), cell, "".into()]);
-        self.coordinates().map(number).chain(besides).collect()
+        let add_note = numbers.chain(words).map(|(name, cell)| vec![name.into(), cell, "".into()]);
+        self.coordinates().map(number).chain(add_note).collect()
     }
 }
 
@@ -225,7 +225,7 @@ impl Positions {
 
     /// Replaces the table by a chart of the rounds so far, if requested; coordinates have priority over axes.
     #[must_use]
-    pub fn plotted(self, is_asked: bool, past: &Past) -> Self {
+    pub fn plotted(self, is_asked: bool, past: &SeriesHistory) -> Self {
         let has_coordinates = |position: &&Position| position.joints.is_empty();
         let shown = self.read().find(has_coordinates).or(self.read().next());
         let plot = shown.filter(|_| is_asked).map(|position| past.add(position.values()));
@@ -261,7 +261,7 @@ impl Positions {
     }
 }
 
-impl Alike for Positions {
+impl CommonReport for Positions {
     type Core = AllPositions;
 
     fn core(&self) -> AllPositions {
@@ -299,8 +299,8 @@ impl Report for AllPositions {
     fn view(&self) -> View {
         let mut table = Table::new(&["group", "frame", "position"], "no position");
         for Row { position, error, .. } in &self.positions {
-            let told = error.as_ref().map_or_else(|| position.line().into(), ItemError::cell);
-            table.row([Cell::maybe(position.group.as_deref()), position.frame.as_str().into(), told]);
+            let described = error.as_ref().map_or_else(|| position.line().into(), ItemError::cell);
+            table.row([Cell::maybe(position.group.as_deref()), position.frame.as_str().into(), described]);
         }
         View::table(table)
     }
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_stand_beside_coordinates() {
+    fn shows_axes_and_coordinates_together() {
         let both =
             Positions::new(vec![Row::new("R1", "joint", Ok(pulses(&[1, 2]))), Row::new("R1", "base", Ok(cartesian()))]);
         assert_eq!(
@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_row_has_every_key() {
+    fn failed_row_has_every_key() {
         let failed = Row::new("R2", "base", Err(Failure::new(Kind::Refused, "no")));
         let keys = |row: &Row| {
             let json = serde_json::to_value(row).unwrap();

@@ -99,8 +99,8 @@ impl Fault {
     /// Code and text, as far as known.
     pub fn describe(&self) -> Option<String> {
         let parts = [&self.fault_code, &self.fault_text];
-        let told = parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ");
-        Some(told).filter(|told| !told.is_empty())
+        let described = parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ");
+        Some(described).filter(|told| !told.is_empty())
     }
 }
 

@@ -14,7 +14,7 @@ pub struct TerminalLink {
 
 impl TerminalLink {
     /// Creates the link. A dangling link of a killed simulator is replaced; any other file is not changed.
-    pub fn make(name: &Path, leads_to: &str) -> Result<Self, Failure> {
+    pub fn create(name: &Path, leads_to: &str) -> Result<Self, Failure> {
         let failed = |error: io::Error| {
             let failure = Failure::io(name.display(), &error);
             match error.kind() {
@@ -59,30 +59,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_link_is_there_as_long_as_it_is_served() {
+    fn link_exists_while_it_is_served() {
         let folder = tempfile::tempdir().unwrap();
         let (name, port) = (folder.path().join("toyo"), folder.path().join("pts"));
         std::fs::write(&port, "").unwrap();
         let leads_to = port.to_str().unwrap();
-        let link = TerminalLink::make(&name, leads_to).unwrap();
+        let link = TerminalLink::create(&name, leads_to).unwrap();
         assert_eq!(std::fs::read_link(&name).unwrap(), port);
-        let second = TerminalLink::make(&name, leads_to).unwrap_err();
+        let second = TerminalLink::create(&name, leads_to).unwrap_err();
         assert!(second.hint.unwrap().contains("--link"), "one that leads somewhere is somebody's");
         drop(link);
         assert!(!name.is_symlink());
     }
 
     #[test]
-    fn what_a_killed_simulator_left_is_replaced_and_what_is_not_ours_stays() {
+    fn replaces_links_of_killed_simulators_only() {
         let folder = tempfile::tempdir().unwrap();
         let (name, port) = (folder.path().join("toyo"), folder.path().join("pts"));
         symlink(folder.path().join("gone"), &name).unwrap();
-        let link = TerminalLink::make(&name, port.to_str().unwrap()).unwrap();
+        let link = TerminalLink::create(&name, port.to_str().unwrap()).unwrap();
         assert_eq!(std::fs::read_link(&name).unwrap(), port);
         std::fs::remove_file(&name).unwrap();
         std::fs::write(&name, "mine").unwrap();
         drop(link);
         assert_eq!(std::fs::read_to_string(&name).unwrap(), "mine");
-        assert!(TerminalLink::make(&name, port.to_str().unwrap()).is_err());
+        assert!(TerminalLink::create(&name, port.to_str().unwrap()).is_err());
     }
 }

@@ -8,11 +8,11 @@ use super::explain::alarm_from_code;
 use super::link::Link;
 use super::link::Toyo;
 use super::wait::{status_page, wait_for_status};
-use crate::command::face::shared::Alike;
+use crate::command::face::shared_commands::CommonReport;
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
-use crate::command::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, Besides, Nothing, Row, Source};
+use crate::command::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Nothing, Row, Source};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -94,7 +94,7 @@ pub struct Axis {
     alarm: Option<String>,
 }
 
-impl Besides for Axis {
+impl ExtraColumns for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         // The text already names the cause.
         Vec::new()
@@ -195,7 +195,7 @@ impl Command for Reset {
         let words = remaining
             .as_ref()
             .map_or_else(|| "the alarm has ended".to_owned(), |remaining| format!("still there: {}", remaining.line()));
-        let new = New::of("fault_code", remaining.as_ref().and_then(|remaining| remaining.code.clone()), words);
+        let new = NewValue::of("fault_code", remaining.as_ref().and_then(|remaining| remaining.code.clone()), words);
         Ok(ResetReport { done: new.replaces(old), alarms: remaining.into_iter().collect() })
     }
 }
@@ -209,7 +209,7 @@ pub struct ResetReport {
     alarms: Vec<Told>,
 }
 
-impl Alike for ResetReport {
+impl CommonReport for ResetReport {
     type Core = Done;
 
     fn core(&self) -> Done {

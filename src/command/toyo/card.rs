@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::link::Toyo;
 use super::wait::{AcceptedWork, Work};
 use crate::command::frame::dry_run::{Known as _, unknown};
-use crate::command::frame::ending::MotionEnd;
+use crate::command::frame::wait_arguments::MotionEnd;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;

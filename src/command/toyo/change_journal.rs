@@ -12,7 +12,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 
 use crate::client::toyo::Moving;
-use crate::command::frame::local::state_folder;
+use crate::command::frame::local_names::state_folder;
 use crate::files;
 
 /// Changes that are not restored yet.

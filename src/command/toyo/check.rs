@@ -49,12 +49,12 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     let mode = status.run_mode().map_or("unknown", RunMode::name);
     layers.ok("mode", mode);
     if status.slave_not_ready() {
-        layers.wrong("slaves", "a slave does not answer", "check power and cables of the slave stations");
+        layers.fail_with("slaves", "a slave does not answer", "check power and cables of the slave stations");
     } else {
         layers.ok("slaves", "ready");
     }
     if status.needs_power_cycle() {
-        layers.wrong(
+        layers.fail_with(
             "power cycle",
             "parameter 2 was changed, and the controller executes nothing before a restart",
             "switch the controller's power off and on",
@@ -64,11 +64,11 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     }
     if status.has_error() || status.error != errors::NONE {
         let error = errors::explain(status.error);
-        layers.wrong("error", format!("{:02X}, {}: {}", error.code, error.name, error.cause), error.remedy);
+        layers.fail_with("error", format!("{:02X}, {}: {}", error.code, error.name, error.cause), error.remedy);
     } else {
         layers.ok("error", "none");
     }
-    layers.left_over(&left_over(status));
+    layers.leftover_drafts(&left_over(status));
     // Servo power without use is only a remark, not a failure.
     let is_idle = !status.executing() && !status.homing() && !is_held(robot);
     let on = if is_idle { "on; no program runs and no session is open: `toyo servo off`" } else { "on" };

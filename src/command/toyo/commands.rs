@@ -5,7 +5,7 @@ use super::{
     alarm, backup, bus, card, coordinate, counter, easy, home, host, info, init, io, jog, mvm, offset, orders,
     overrides, palletizing, param, point, ports, position, program, raw, robot_type, rows, run, sim, status, task,
 };
-use crate::command::backup::words::Diff;
+use crate::command::backup::family_backup::Diff;
 use crate::command::{Offline, Subcommands, commands};
 
 commands! {

@@ -8,7 +8,7 @@ use super::overview::overview;
 use super::simulated;
 use crate::client::toyo::{Client, Endpoint, Error, Line, Options};
 use crate::command::frame::attach::{LockResult, lock_soon};
-use crate::command::frame::trace::locked;
+use crate::command::frame::trace::lock_writer;
 use crate::command::{Access, Family as _};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -88,10 +88,10 @@ impl Connector {
     /// Opens the line, or joins the session that has it open.
     async fn open(&self) -> Result<Line, Failure> {
         let Self { endpoint, robot, access, screen, claim } = self;
-        if locked(claim).is_none() {
+        if lock_writer(claim).is_none() {
             match lock_soon(robot, access, screen).await? {
                 LockResult::Session(attached) => return Ok(Stream::Session(attached)),
-                LockResult::Own(own) => *locked(claim) = own,
+                LockResult::Own(own) => *lock_writer(claim) = own,
             }
         }
         endpoint.open(robot.timeout.value).await.map_err(|error| failure(&robot.label(), error))

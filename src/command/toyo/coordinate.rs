@@ -7,7 +7,7 @@ use super::link::wrong;
 use super::point::table as point_table;
 use super::position::Coordinates;
 use super::values::{Changes, assignment, json};
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -104,7 +104,8 @@ impl Command for Set {
         authority.confirm(&Change::new(self.in_words(&target))).await?;
         link.ask(&request).await?;
         let words = format!("task {} has {target} at {}", field("task").meaning(task), self.pace());
-        let new = New::of("coordinates", serde_json::json!(coordinates), words).with("task", json(field("task"), task));
+        let new =
+            NewValue::of("coordinates", serde_json::json!(coordinates), words).with("task", json(field("task"), task));
         let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", json(field("speed"), speed)) };
         Ok(new.replaces(Old::UNREAD))
     }

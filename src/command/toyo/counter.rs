@@ -7,7 +7,7 @@ use super::rows::Listed;
 use crate::command::ValueKind;
 use crate::command::commands;
 use crate::command::frame::store::{
-    Answers, Differing, Field, Get, Ids, List, Row, Single, Store, Words, Writable, ids, table_commands,
+    Answers, Differing, Field, Get, Ids, List, Row, Single, Store, TableWords, Writable, ids, table_commands,
 };
 use crate::command::frame::watch::Watch;
 use crate::command::toyo::complete;
@@ -61,7 +61,7 @@ impl Store for Counters {
     type More = Listed;
     type Options = Single;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["counter", "counters"],
         placeholder: "N",
         range: "Counters, 1 to 99: 5, CN05 or 1-10, or a name",
@@ -136,7 +136,7 @@ impl Writable for Counters {
         texts.first().copied().flatten().map(|text| number(&fields()[1], text)).transpose()
     }
 
-    fn whole(&self, counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
+    fn complete_draft(&self, counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
         let missing = || Failure::usage(format!("{}: the count is missing", Self::name(counter)));
         let count = draft.ok_or_else(|| missing().hint("type a number from 0 to 9999"))?;
         let record = read(counter).row().answers[0].record(vec![Value::Number(counter), Value::Number(count)]);
@@ -188,7 +188,7 @@ impl Store for Timers {
     type More = Listed;
     type Options = Single;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["timer", "timers"],
         placeholder: "N",
         range: "Timers, 1 to 9: 5, TN5 or 1-3, or a name",

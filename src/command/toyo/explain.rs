@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::instructions::InstructionHelp;
 use crate::command::face::explain::{self as face, Codes, Known};
-use crate::command::robot::alarm::{Alarm, Besides, Kind, Source};
+use crate::command::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
 use crate::command::{Report, ValueKind};
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::errors;
@@ -106,7 +106,7 @@ pub struct Axis {
     axis: Option<u8>,
 }
 
-impl Besides for Axis {
+impl ExtraColumns for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         // The text already names the cause.
         Vec::new()

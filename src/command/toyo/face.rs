@@ -11,14 +11,14 @@ use super::orders::Stop;
 use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview, panel};
-use crate::command::backup::words::Backups;
-use crate::command::backup::{BackedUp, Making, Restored, Restoring};
+use crate::command::backup::family_backup::Backups;
+use crate::command::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use crate::command::face::HeldLink;
-use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::face::panel::Panel;
+use crate::command::face::registration::Declaration;
 use crate::command::face::sample::Traffic;
+use crate::command::face::teach_panel::Panel;
 use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Context};
 use crate::controller::Risk;
@@ -102,7 +102,7 @@ impl Backups for Toyo {
         if robot.read_only.value { Risk::Read } else { Self::BACKUP_RISK }
     }
 
-    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
         let current_task = context.robot.read_only.value;
         if current_task {
             context.screen.note(&format!(
@@ -113,7 +113,7 @@ impl Backups for Toyo {
         back_up(context, making, current_task).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
         restore(context, restoring).await
     }
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::testing::{Bench, Fault, ReceivedBlocks, gate_input, plan, text};
 use crate::command::CommandSet as _;
-use crate::command::frame::testing::{QUIET, all_frames};
+use crate::command::frame::testing::{QUIET, complete_frames};
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::commands::Row;
@@ -191,7 +191,7 @@ fn a_dry_run_shows_the_blocks_that_are_sent() {
                 continue;
             }
         };
-        let planned = all_frames(&report);
+        let planned = complete_frames(&report);
         if !planned.iter().any(|frame| risk(&text(frame)) == *expected_risk) {
             wrong.push(format!("{line}: no frame has the risk of the command: {planned:?}"));
         }

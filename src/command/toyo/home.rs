@@ -8,7 +8,7 @@ use super::link::{Link, Toyo};
 use super::position::{Coordinates, UNIT, titled};
 use super::wait::{AcceptedWork, Work};
 use crate::client::toyo::Letters;
-use crate::command::frame::ending::MotionEnd;
+use crate::command::frame::wait_arguments::MotionEnd;
 use crate::command::robot::motion::Motion;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;

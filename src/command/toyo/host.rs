@@ -5,7 +5,7 @@ use clap::Args;
 use super::link::Toyo;
 use super::orders::no_effect;
 use super::wait::wait_for_status;
-use crate::command::frame::orders::{Done, New, Old, Switch};
+use crate::command::frame::settings_report::{Done, NewValue, Old, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -46,7 +46,7 @@ impl Command for Host {
         if wait_for_status(context.link, (2, "whether the host has switched"), |status| status.host_on() == is_on)
             .await?
         {
-            return Ok(New::of("host_on", is_on, done).replaces(old));
+            return Ok(NewValue::of("host_on", is_on, done).replaces(old));
         }
         Err(no_effect("the host").hint("`toyo status` shows whether the host is ON"))
     }

@@ -20,10 +20,10 @@ use super::user_choices::UserChoices;
 use super::write_log::WriteLog;
 use crate::client::toyo::{Client, Error, Letters, Line, is_stop, status_page};
 pub use crate::client::toyo::{Moving, Refusal, jog};
-use crate::command::face::sample::{Traffic, counted};
+use crate::command::face::sample::{Traffic, counter};
 use crate::command::frame::dry_run::Plan;
-use crate::command::frame::orders::{BEFORE, unwritten};
-use crate::command::frame::trace::locked;
+use crate::command::frame::settings_report::{OLD_VALUE, nothing_written};
+use crate::command::frame::trace::lock_writer;
 use crate::command::{Access, Family};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::{Answer, Request};
@@ -77,7 +77,7 @@ impl Family for Toyo {
         Ok(format!("the robot was stopped ({stop}); the axes are at {}", coordinates.in_a_line()))
     }
 
-    fn must_halt(link: &Link) -> bool {
+    fn needs_halt(link: &Link) -> bool {
         link.moving() == Some(Moving::Jog)
     }
 
@@ -100,16 +100,16 @@ impl Family for Toyo {
         let Link { client, observer, label, mut write_log, .. } = link;
         let (totals, closed) = client.close().await;
         // Motion that continues on purpose was already reported.
-        locked(&observer).journal.moving(None);
+        lock_writer(&observer).journal.moving(None);
         let Counters { sent, received, .. } = totals.counters;
         screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", totals.waited));
-        if let Some(counts) = counted(&disturbances(&totals.counters)) {
+        if let Some(counts) = counter(&disturbances(&totals.counters)) {
             screen.detail(1, &format!("on the line: {counts}"));
         }
         if let Err(error) = write_log.keep() {
             screen.detail(1, &format!("the EEPROM write log could not be saved: {error}"));
         }
-        closed.map_err(|error| failure(&label, error)).and(locked(&observer).trace.finish())
+        closed.map_err(|error| failure(&label, error)).and(lock_writer(&observer).trace.finish())
     }
 }
 
@@ -202,10 +202,10 @@ impl Link {
     /// request and returns `None`. A lost line is a failure, and nothing was written.
     pub async fn before(&mut self, question: &Request) -> Result<Option<Record>, Failure> {
         if self.is_dry() {
-            self.plan(question, BEFORE);
+            self.plan(question, OLD_VALUE);
             return Ok(None);
         }
-        Ok(self.try_ask(question).await.map_err(unwritten)?.ok())
+        Ok(self.try_ask(question).await.map_err(nothing_written)?.ok())
     }
 
     /// Reads one page of the status before a write; the other pages are 0.
@@ -261,9 +261,9 @@ impl Link {
     /// Stops the motion, and returns the position of rest.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
         // Stale changes are reported after the stop.
-        let printed = std::mem::replace(&mut locked(&self.observer).printed, PrintedNotices::ALL);
+        let printed = std::mem::replace(&mut lock_writer(&self.observer).printed, PrintedNotices::ALL);
         let stopped = self.client.stop(moving).await;
-        let mut observer = locked(&self.observer);
+        let mut observer = lock_writer(&self.observer);
         observer.printed = printed;
         observer.trace.release();
         stopped.map_err(|error| self.failure(error))
@@ -272,24 +272,24 @@ impl Link {
     /// Stops a motion that the controller refused before it began. The stop is sent once.
     pub async fn stop_refused_motion(&mut self, moving: Moving) {
         self.client.stop_refused_motion(moving).await;
-        locked(&self.observer).trace.release();
+        lock_writer(&self.observer).trace.release();
     }
 
     /// Detects a lost connection early, and buffers trace text until [`Link::stop`]. Neither long timeouts nor a
     /// blocked terminal must delay the stop.
     pub fn use_short_timeouts(&mut self) {
         self.client.use_short_timeouts();
-        locked(&self.observer).trace.hold();
+        lock_writer(&self.observer).trace.hold();
     }
 
     /// Records that the user chose the present state of the host.
     pub fn choose_host(&mut self, is_on: bool) {
-        locked(&self.observer).choose_host(is_on);
+        lock_writer(&self.observer).choose_host(is_on);
     }
 
     /// Records that the user chose this task as the current one.
     pub fn choose_task(&mut self, task: u8) {
-        locked(&self.observer).choose_task(task);
+        lock_writer(&self.observer).choose_task(task);
     }
 
     /// Records requests in a dry run. Their answers are not known.

@@ -10,7 +10,7 @@ use super::numbers::Numbers;
 use super::rows::{Listed, WRITING, texts, unlisted};
 use super::values::{Changes, word};
 use crate::command::frame::store::{
-    Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids, table_commands,
+    Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, table_commands,
 };
 use crate::controller::Risk;
 use crate::controller::toyo::field::{self, Value};
@@ -139,7 +139,7 @@ impl Store for Groups {
     type More = Listed;
     type Options = Single;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["group", "groups"],
         placeholder: "GROUP",
         range: "Groups of the MVM table, 1 to 32: 5, 1-3",
@@ -231,7 +231,12 @@ impl Writable for Groups {
         Ok(sheets)
     }
 
-    fn whole(&self, group: i32, draft: &Vec<Changes>, old: Option<&Vec<Record>>) -> Result<Vec<Record>, Failure> {
+    fn complete_draft(
+        &self,
+        group: i32,
+        draft: &Vec<Changes>,
+        old: Option<&Vec<Record>>,
+    ) -> Result<Vec<Record>, Failure> {
         let record = |(index, changes): (usize, &Changes)| {
             let values = match (changes.whole(), old) {
                 (Some(values), _) => values,

@@ -46,7 +46,7 @@ pub fn number(field: &Field, text: &str) -> Result<i32, String> {
 /// Parses a number, an address such as `TN1`, or a name.
 pub fn named<T>(kind: NameKind, text: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, String> {
     let any = names_of::address_of(kind, 1).unwrap_or_default();
-    names::read(&[kind], &any, text, |text| {
+    names::parse_or_name(&[kind], &any, text, |text| {
         let prefix = any.trim_end_matches(|c: char| c.is_ascii_digit());
         let front = text.get(..prefix.len()).filter(|front| front.eq_ignore_ascii_case(prefix));
         parse(if front.is_some() { &text[prefix.len()..] } else { text })

@@ -8,8 +8,8 @@ use super::link::Moving;
 use super::link::Toyo;
 use super::position::UNIT;
 use super::wait::wait_for_status;
-use crate::command::face::shared::Alike;
-use crate::command::frame::orders::{Done, New, Old, Switch};
+use crate::command::face::shared_commands::CommonReport;
+use crate::command::frame::settings_report::{Done, NewValue, Old, Switch};
 use crate::command::robot::position::Position;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -48,7 +48,7 @@ impl Command for Servo {
             Switch::On => (table::Command::Svon, true, "servo power is on"),
             Switch::Off => (table::Command::Svof, false, "servo power is off"),
         };
-        let (new, old) = (New::of("servo_on", is_on, words), link.status_before(3).await?);
+        let (new, old) = (NewValue::of("servo_on", is_on, words), link.status_before(3).await?);
         let old = Old::read(old.map(Status::servo_on));
         authority.confirm(&new.question(self.intent(), &old)).await?;
         link.ask(&Request::bare(command)).await?;
@@ -150,7 +150,7 @@ impl Command for Mode {
         link.ask(&Request::bare(mode.command())).await?;
         if wait_for_status(link, (2, "whether the mode is active"), |status| mode.is_in_force(status)).await? {
             let (set, new) = mode.data();
-            return Ok(New::of(set, new, mode.in_force()).replaces(old));
+            return Ok(NewValue::of(set, new, mode.in_force()).replaces(old));
         }
         Err(no_effect("the mode")
             .hint("check parameter M10, which selects easy or external point mode: `toyo param get M10`"))
@@ -175,7 +175,7 @@ impl Command for Reset {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         context.link.ask(&Request::bare(table::Command::Rest)).await?;
         let words = "the controller was reset; `toyo alarm reset` cancels errors";
-        Ok(New::of("programs", "reset", words).replaces(Old::UNREAD))
+        Ok(NewValue::of("programs", "reset", words).replaces(Old::UNREAD))
     }
 }
 
@@ -215,7 +215,7 @@ impl Command for Stop {
         let position = context.link.coordinates(&record?).await;
         let words = format!("the axes have stopped at {}", position.in_a_line());
         let position = position.position().of_group(UNIT);
-        Ok(StopReport { done: New::of("running", false, words).replaces(Old::UNREAD), position })
+        Ok(StopReport { done: NewValue::of("running", false, words).replaces(Old::UNREAD), position })
     }
 }
 
@@ -228,7 +228,7 @@ pub struct StopReport {
     position: Position,
 }
 
-impl Alike for StopReport {
+impl CommonReport for StopReport {
     type Core = Done;
 
     fn core(&self) -> Done {

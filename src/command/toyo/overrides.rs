@@ -8,7 +8,7 @@ use super::eeprom::{Cell, Cells};
 use super::link::Toyo;
 use super::link::wrong;
 use super::numbers::{number, small};
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -78,7 +78,7 @@ impl Command for Set {
         let mut cells = Cells::default();
         let stored = context.link.store(context.screen, &cell, &mut cells).await?;
         let old = Old::read(stored.and_then(|record| record.number(field().name)));
-        let new = New::of("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
+        let new = NewValue::of("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
         Ok(WriteReport { done: new.with("speed_override_percent", self.percent).replaces(old), cells })
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::command::face::panel::{Panel, SmallStep, System, words};
+use crate::command::face::teach_panel::{Panel, SmallStep, System, words};
 
 const AXES: [(&str, &str); 4] = [("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("R", "mm")];
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::link::Toyo;
 use crate::client::toyo::Letters;
-use crate::command::frame::plot::Past;
+use crate::command::frame::plot::SeriesHistory;
 use crate::command::robot::position::{self as robot, Positions};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::layout::Record;
@@ -22,7 +22,7 @@ pub struct Position {
     #[arg(long)]
     plot: bool,
     #[arg(skip)]
-    past: Past,
+    past: SeriesHistory,
 }
 
 impl Command for Position {

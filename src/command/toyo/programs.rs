@@ -9,7 +9,7 @@ use super::copies::{self, Copied};
 use super::link;
 use super::link::Toyo;
 use super::numbers::{number, read_back, stored_otherwise};
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -93,6 +93,6 @@ impl<K: Kind> Command for Select<K> {
                 .hint("a running program stays selected"));
         }
         let words = format!("{} {} is selected; `{}` starts it", K::WHAT, self.program, K::RUN);
-        Ok(New::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
+        Ok(NewValue::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
     }
 }

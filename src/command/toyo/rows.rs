@@ -14,9 +14,9 @@ use super::numbers::Numbers;
 use super::values::{Changes, NOT_IN_MANUAL, word};
 use crate::client::toyo::Letters;
 use crate::command::frame::store::{
-    Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids, table_commands,
+    Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, table_commands,
 };
-use crate::command::robot::item::asked;
+use crate::command::robot::item::as_requested;
 use crate::controller::Risk;
 use crate::controller::toyo::field::{self, Form, Value};
 use crate::controller::toyo::layout::{Layout, Record, UNLISTED};
@@ -45,7 +45,7 @@ pub trait Kind: Debug + Send + Sync + 'static {
     /// Values of one row in a report.
     type Value: Debug + Clone + Serialize + JsonSchema;
     /// Terms for help and messages.
-    const WORDS: Words;
+    const WORDS: TableWords;
     /// Ids of its reports.
     const IDS: Ids;
     /// Fields of a row, in the order of the protocol.
@@ -76,8 +76,8 @@ pub trait Kind: Debug + Send + Sync + 'static {
 /// Help of commands that write to the EEPROM.
 pub const WRITING: &str = "Equal values are not written, because the EEPROM takes about a million rewrites.";
 
-const fn words(nouns: [&'static str; 2], placeholder: &'static str, range: &'static str) -> Words {
-    Words { nouns, placeholder, range, reading: None, writing: Some(WRITING) }
+const fn words(nouns: [&'static str; 2], placeholder: &'static str, range: &'static str) -> TableWords {
+    TableWords { nouns, placeholder, range, reading: None, writing: Some(WRITING) }
 }
 
 /// A table as a store.
@@ -115,7 +115,7 @@ impl<K: Kind> Store for Rows<K> {
     type More = Listed;
     type Options = Single;
 
-    const WORDS: Words = K::WORDS;
+    const WORDS: TableWords = K::WORDS;
     const IDS: Ids = K::IDS;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
@@ -262,7 +262,7 @@ impl<T: EepromRow> Writable for T {
     }
 
     fn typed(&self, key: T::Key, words: &[String]) -> Result<Changes, Failure> {
-        let what = asked(T::WORDS.nouns[0], &T::name(key));
+        let what = as_requested(T::WORDS.nouns[0], &T::name(key));
         let changes = Changes::read_by(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
         if let Some(values) = changes.whole() {
             self.check(key, &values)?;
@@ -270,13 +270,15 @@ impl<T: EepromRow> Writable for T {
         Ok(changes)
     }
 
-    fn whole(&self, key: T::Key, changes: &Changes, old: Option<&Record>) -> Result<Record, Failure> {
+    fn complete_draft(&self, key: T::Key, changes: &Changes, old: Option<&Record>) -> Result<Record, Failure> {
         let values = match (changes.whole(), old) {
             (Some(values), _) => values,
             (None, Some(old)) => changes.over(old)?,
             (None, None) => {
-                let message =
-                    format!("{} was not read, so missing values are unknown", asked(T::WORDS.nouns[0], &T::name(key)));
+                let message = format!(
+                    "{} was not read, so missing values are unknown",
+                    as_requested(T::WORDS.nouns[0], &T::name(key))
+                );
                 return Err(Failure::usage(message).hint("nothing was written; type all values"));
             }
         };
@@ -288,7 +290,7 @@ impl<T: EepromRow> Writable for T {
         EepromRow::consequences(self, rows)
     }
 
-    fn afterwards(&self, written: &[T::Key]) -> Option<String> {
+    fn follow_up_note(&self, written: &[T::Key]) -> Option<String> {
         EepromRow::afterwards(self, written)
     }
 
@@ -360,7 +362,7 @@ pub trait TableOf: Debug + Send + Sync + 'static {
     /// Parameter id.
     const TABLE: &'static str;
     /// See [`Kind::WORDS`].
-    const WORDS: Words;
+    const WORDS: TableWords;
     /// See [`Kind::IDS`].
     const IDS: Ids;
     /// See [`Kind::FIELDS`].
@@ -376,7 +378,7 @@ fn table<T: TableOf>() -> &'static Parameter {
 
 impl<T: TableOf> Kind for T {
     type Value = T::Value;
-    const WORDS: Words = T::WORDS;
+    const WORDS: TableWords = T::WORDS;
     const IDS: Ids = T::IDS;
     const FIELDS: &'static [Field] = T::FIELDS;
 
@@ -430,7 +432,7 @@ impl TableOf for Speed {
     type Value = f64;
     const TABLE: &'static str = "T2";
     const IDS: Ids = ids!("toyo.speed-table");
-    const WORDS: Words =
+    const WORDS: TableWords =
         words(["speed-table row", "speed-table rows"], "ROW", "Rows of the speed table, 1 to 20: 5, 1-5,20");
     const FIELDS: &'static [Field] = &[Field::number("speed_mm_s", "speed (mm/s)")];
 
@@ -443,7 +445,7 @@ impl TableOf for Accel {
     type Value = f64;
     const TABLE: &'static str = "T3";
     const IDS: Ids = ids!("toyo.accel-table");
-    const WORDS: Words =
+    const WORDS: TableWords =
         words(["accel-table row", "accel-table rows"], "ROW", "Rows of the acceleration table, 1 to 20: 5, 1-5,20");
     const FIELDS: &'static [Field] = &[Field::number("time_s", "time (s)")];
 
@@ -456,7 +458,7 @@ impl TableOf for Torque {
     type Value = TorqueRow;
     const TABLE: &'static str = "T5";
     const IDS: Ids = ids!("toyo.torque-table");
-    const WORDS: Words =
+    const WORDS: TableWords =
         words(["torque-table row", "torque-table rows"], "ROW", "Rows of the torque limit table, 1 to 8: 5, 1-3");
     const FIELDS: &'static [Field] = &[Field::number("limit", "limit"), Field::number("load", "load")];
 

@@ -17,7 +17,7 @@ use super::wait::{AcceptedWork, End, Work, step};
 use crate::client::toyo::Letters;
 use crate::command::frame::cycle::{Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
-use crate::command::frame::ending::{MotionEnd, ProgramEnd};
+use crate::command::frame::wait_arguments::{MotionEnd, ProgramEnd};
 use crate::command::robot::motion::Motion;
 use crate::command::robot::position::Position;
 use crate::command::robot::program::{self as robot, ProgramState};
@@ -71,7 +71,7 @@ impl Command for Sequential {
 
     fn intent(&self) -> String {
         match self.step {
-            Some(step) => format!("run the sequential program from step {step}{}", self.repeat.in_words()),
+            Some(step) => format!("run the sequential program from step {step}{}", self.repeat.describe()),
             None => "run the sequential program from its current step".to_owned(),
         }
     }
@@ -110,7 +110,7 @@ impl Command for Palletizing {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
-        format!("run {}{}", program_text("palletizing", self.number.or(self.program)), self.repeat.in_words())
+        format!("run {}{}", program_text("palletizing", self.number.or(self.program)), self.repeat.describe())
     }
 
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
@@ -147,7 +147,7 @@ impl Command for Easy {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
-        format!("run {}{}", program_text("easy", self.number.or(self.program)), self.repeat.in_words())
+        format!("run {}{}", program_text("easy", self.number.or(self.program)), self.repeat.describe())
     }
 
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
@@ -363,7 +363,7 @@ async fn start_and_wait(
     let limit = limit.or(repeat.repeat.map(|_| None));
     let letters = if limit.is_none() { Letters::UNKNOWN } else { link.letters().await? };
     loop {
-        link.ask(start).await.map_err(|failure| runs.early(failure))?;
+        link.ask(start).await.map_err(|failure| runs.add_to_failure(failure))?;
         let Some(limit) = limit else {
             return Ok(RunReport::new(robot::Program {
                 state: Some(ProgramState::Running),
@@ -371,17 +371,17 @@ async fn start_and_wait(
             }));
         };
         let report = within(limit, wait(link, screen, start.command(), letters)).await;
-        let report = report.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
+        let report = report.map_err(|failure| if link.is_dry() { failure } else { runs.add_to_failure(failure) })?;
         if repeat.repeat.is_none() {
             return Ok(report);
         }
         if report.program.state == Some(ProgramState::Held) {
             let failure = Failure::new(Kind::ConditionNotMet, "the program is paused at a stop or after a step")
                 .hint("to continue, start it without a step or program");
-            return Err(runs.early(failure));
+            return Err(runs.add_to_failure(failure));
         }
-        runs.ended(report.program.elapsed_ms.unwrap_or(0));
-        if runs.are_over() {
+        runs.add(report.program.elapsed_ms.unwrap_or(0));
+        if runs.is_complete() {
             return Ok(RunReport::new(robot::Program { cycle: runs.cycle(), ..report.program }));
         }
     }

@@ -8,7 +8,7 @@ use clap::Args;
 
 use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::serve::terminal_link::TerminalLink;
-use crate::command::serve::{self, Serving, Started, address, cannot_listen};
+use crate::command::serve::{self, Serving, Started, address, bind_failure};
 use crate::command::toyo::simulated::{self, Simulated};
 use crate::failure::{Failure, plain};
 use crate::transport::fault::LineFaultSpec;
@@ -72,17 +72,17 @@ impl serve::Serve for Serve {
         let (server, endpoint, address, link) = if self.pty {
             let made = StreamServer::pseudo_terminal(speed, self.fault);
             let (server, path) = made.map_err(|error| no_terminal(&error))?;
-            let link = self.link.map(|link| TerminalLink::make(&link, &path)).transpose()?;
+            let link = self.link.map(|link| TerminalLink::create(&link, &path)).transpose()?;
             let name = link.as_ref().map_or_else(|| path.clone(), |link| link.name().display().to_string());
             (server, format!("serial://{name}"), None, link)
         } else {
             let made = StreamServer::tcp(self.bind, speed, self.fault).await;
-            let (server, local) = made.map_err(|error| cannot_listen(&format!("TCP {}", self.bind), &error))?;
+            let (server, local) = made.map_err(|error| bind_failure(&format!("TCP {}", self.bind), &error))?;
             (server, format!("tcp://{local}"), Some(local), None)
         };
         let target = format!("{endpoint}{settings}");
         Ok(Started {
-            reach: serve::reach("toyo", &target),
+            reach: serve::connect_hint("toyo", &target),
             report: Serving { family: "toyo", target },
             server: Toyo { server, simulated: Simulated::new(start), _link: link },
             address,
@@ -101,7 +101,7 @@ pub struct Toyo {
 }
 
 impl serve::Server for Toyo {
-    async fn turn(&mut self) -> io::Result<()> {
+    async fn run_until_change(&mut self) -> io::Result<()> {
         self.server.turn(&mut self.simulated).await
     }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::link::Link;
 use super::link::Toyo;
 use super::numbers::{number, read_back, small, stored_otherwise};
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -81,7 +81,7 @@ impl Command for Set {
                 .hint("check for a second client that selects tasks; `toyo task get` shows the current task"));
         }
         let words = current_in_words(task_number);
-        Ok(New::of("task", task_number, words).with("task", task_number).replaces(old))
+        Ok(NewValue::of("task", task_number, words).with("task", task_number).replaces(old))
     }
 }
 

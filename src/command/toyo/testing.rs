@@ -14,9 +14,9 @@ use super::link::Toyo;
 use super::simulated::Simulated;
 use crate::cli::{Cli, FamilyWord, Top};
 use crate::client::toyo::{Client, FENCE};
-use crate::command::face::words::{Typed, Wish};
+use crate::command::face::family_command::{FamilyLine, ParsedCommand};
 use crate::command::frame::authority::Authority;
-use crate::command::frame::testing::{self, QUIET, context, everything, frames, planned};
+use crate::command::frame::testing::{self, QUIET, context, frames, planned, unlimited_access};
 use crate::command::{AnyCommand, Context, Family as _};
 use crate::controller::Risk;
 use crate::controller::toyo::simulator::Start;
@@ -188,7 +188,7 @@ impl Bench {
         let runtime = runtime();
         let link = runtime
             .block_on(async {
-                let (pace, access) = (Pace::new(9600, 11), everything());
+                let (pace, access) = (Pace::new(9600, 11), unlimited_access());
                 let line =
                     Stream::InProcess(Box::new(InProcessLine::new(peer as Box<dyn Peer + Send>, Some(pace), None)));
                 let client = Client::over(line, pace.time(1), connect::options(&robot, &access));
@@ -214,7 +214,7 @@ impl Bench {
                 panic!("{words:?} has ended before: {:?}", done.map(|report| report.data()));
             }
         });
-        Toyo::must_halt(&self.link)
+        Toyo::needs_halt(&self.link)
     }
 
     /// Lets time pass.
@@ -240,7 +240,7 @@ impl Bench {
     pub(super) fn new(target: &str) -> Self {
         let runtime = runtime();
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Toyo::connect(&robot, everything(), &quiet())).expect("a link");
+        let link = runtime.block_on(Toyo::connect(&robot, unlimited_access(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -290,7 +290,9 @@ fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>)
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Toyo))?.remove(0);
     match cli.command {
-        Top::Family(FamilyWord { typed: Typed { wish: Wish::Command(command), .. }, .. }) => Ok((robot, command)),
+        Top::Family(FamilyWord { typed: FamilyLine { command: ParsedCommand::Command(command), .. }, .. }) => {
+            Ok((robot, command))
+        }
         _ => unreachable!("the words follow toyo"),
     }
 }

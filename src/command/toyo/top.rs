@@ -6,7 +6,7 @@ use super::io::{INPUTS, OUTPUTS, PortBank, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
 use super::position::Coordinates;
-use crate::command::face::declared;
+use crate::command::face::registration;
 use crate::command::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
 use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Family as _};
@@ -30,7 +30,7 @@ pub struct Poller {
 /// Soft limits of axes 1 to 4; `None` if the controller does not report them.
 type Limits = [Option<(f64, f64)>; 4];
 
-impl declared::Poller for Poller {
+impl registration::Poller for Poller {
     type Family = Toyo;
 
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
@@ -53,7 +53,7 @@ impl declared::Poller for Poller {
             Detail::Summary => None,
             Detail::Axes | Detail::Full => Some(self.whole(detail, status, coordinates).await?),
         };
-        Ok(Sample { line: report(status, coordinates), answered_in, alarms: alarms(status), whole })
+        Ok(Sample { line: report(status, coordinates), answered_in, alarms: alarms(status), full: whole })
     }
 
     fn link(&mut self) -> &mut Link {
@@ -124,13 +124,13 @@ fn indicators(status: Status) -> Vec<Indicator> {
         Indicator::new("host", status.host_on(), Tone::Good),
         Indicator::new("pendant", status.pendant_on(), Tone::Warning),
         Indicator::new("servo", status.servo_on(), Tone::Good),
-        Indicator::should("origin", status.homed(), Tone::Warning),
+        Indicator::expected("origin", status.homed(), Tone::Warning),
         Indicator::new("homing", status.homing(), Tone::Warning),
         Indicator::new("running", status.executing(), Tone::Good),
         Indicator::new("paused", status.paused(), Tone::Warning),
         Indicator::new("in position", status.in_position(), Tone::Good),
         Indicator::new("error", status.has_error(), Tone::Bad),
-        Indicator::should("ready", status.ready_output(), Tone::Plain),
+        Indicator::expected("ready", status.ready_output(), Tone::Plain),
         Indicator::new("waits", status.waits_for_input(), Tone::Warning),
         Indicator::new("one move", status.single_movement(), Tone::Plain),
         Indicator::new("slave lost", status.slave_not_ready(), Tone::Bad),

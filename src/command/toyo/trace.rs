@@ -51,12 +51,12 @@ impl Trace {
 
     /// See [`trace::Trace::hold`].
     pub fn hold(&mut self) {
-        self.record.hold();
+        self.record.pause();
     }
 
     /// See [`trace::Trace::release`].
     pub fn release(&mut self) {
-        self.record.release();
+        self.record.resume();
     }
 
     /// Checks that the trace is complete.

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::command::frame::local::state_folder;
+use crate::command::frame::local_names::state_folder;
 use crate::files;
 
 /// Choices for one robot.

@@ -10,7 +10,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use crate::command::frame::local::state_folder;
+use crate::command::frame::local_names::state_folder;
 use crate::files;
 
 /// Number of writes to one cell over one link that causes a warning.

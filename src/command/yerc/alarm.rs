@@ -5,15 +5,15 @@ mod report;
 use clap::{Args, ValueEnum};
 
 pub(super) use self::report::in_a_line;
-use self::report::{Own, WithTexts, entry, explained, short};
-use super::each::{Batch, Outcome, ReadError};
+use self::report::{Own, WithTexts, entry, explain, short};
+use super::existing_items::{Batch, Outcome, ReadError};
 use super::link::Link;
 use super::link::Yerc;
-use super::numbers::within;
-use super::orders::usage;
+use super::numbers::parse_in_range;
+use super::switch_commands::usage;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::robot::alarm::{self, Alarms, Row};
 use crate::command::{Command, Context, commands};
@@ -67,15 +67,13 @@ impl Command for List {
             // The manual does not describe gaps between slots, so all four slots are read.
             let outcome = match read(link, &mut batch, &mut texts, |texts| question(slot, texts)).await? {
                 Ok(alarm) if alarm.is_none() => continue,
-                Ok(alarm) => {
-                    explained(entry(&alarm, link.encoding, link.model_for_display()), context.robot, link).await
-                }
+                Ok(alarm) => explain(entry(&alarm, link.encoding, link.model_for_display()), context.robot, link).await,
                 Err(denied) => Err(denied.into()),
             };
             alarms.push(Row::new(slot.into(), format!("alarm slot {slot}"), outcome));
         }
         let report = Alarms { alarms, standing: WithTexts { with_texts: texts }, asked: SLOTS.into() };
-        items::nothing(report.asked, report.errors())?;
+        items::all_failed(report.asked, report.errors())?;
         Ok(report)
     }
 }
@@ -119,10 +117,10 @@ pub struct History {
     #[arg(long, value_enum, default_value = "all")]
     class: Class,
     /// First entry of each list; 1 is the latest
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = within::<u8>(1, 100))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_in_range::<u8>(1, 100))]
     from: u8,
     /// At most N entries of each list
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = within::<u8>(1, 100))]
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = parse_in_range::<u8>(1, 100))]
     limit: u8,
     /// Read only codes and names, for older controllers (0x71 instead of 0x30B)
     #[arg(long)]
@@ -130,7 +128,7 @@ pub struct History {
 }
 
 /// Last entry of a list.
-const LAST: u8 = 100;
+const HISTORY_SIZE: u8 = 100;
 
 impl Command for History {
     type Family = Yerc;
@@ -140,7 +138,7 @@ impl Command for History {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<Own, WithTexts>, Failure> {
         let link = context.link;
         let mut texts = !self.no_texts;
-        let numbers = self.from..=self.from.saturating_add(self.limit - 1).min(LAST);
+        let numbers = self.from..=self.from.saturating_add(self.limit - 1).min(HISTORY_SIZE);
         let classes = CLASSES.iter().filter(|row| self.class == Class::All || self.class == row.0);
         let question = |class, number, texts| ReadAlarmHistory::new(class, number, texts).map_err(usage);
         let all = classes.clone().flat_map(|row| numbers.clone().map(|number| question(row.1, number, texts)));
@@ -156,7 +154,7 @@ impl Command for History {
                 let outcome = match read(link, &mut batch, &mut texts, |texts| question(list, number, texts)).await? {
                     Ok(alarm) if alarm.is_none() => break,
                     Ok(alarm) => {
-                        explained(entry(&alarm, link.encoding, link.model_for_display()), context.robot, link).await
+                        explain(entry(&alarm, link.encoding, link.model_for_display()), context.robot, link).await
                     }
                     Err(denied) => Err(denied.into()),
                 };
@@ -165,7 +163,7 @@ impl Command for History {
             }
         }
         let report = Alarms { alarms, standing: WithTexts { with_texts: texts }, asked };
-        items::nothing(asked, report.errors())?;
+        items::all_failed(asked, report.errors())?;
         Ok(report)
     }
 }
@@ -185,7 +183,7 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
                 if failure.kind == Kind::NoAnswer {
                     return Err(failure);
                 }
-                let text = format!("slot {slot}: {}", items::brief(&failure));
+                let text = format!("slot {slot}: {}", items::shorten(&failure));
                 alarms.push(alarm::Alarm {
                     text: Some(text),
                     kind: Some(alarm::Kind::Alarm),
@@ -206,7 +204,7 @@ pub(super) fn plan_latest(link: &mut Link) -> Result<(), Failure> {
 
 /// Notes in a dry run all requests, and the first fallback request for an older controller.
 fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<(), Failure> {
-    let noted = link.plan_all(all);
+    let item_name = link.plan_all(all);
     if texts && link.is_dry() {
         let about = "without texts, if the controller has none; all later requests are then without texts";
         link.plan_if(
@@ -214,7 +212,7 @@ fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<
             Reason::about(about).depending_on("whether the controller refuses the previous request"),
         );
     }
-    noted
+    item_name
 }
 
 /// Reads an alarm with its texts, or without texts after the controller has indicated that it does not support the
@@ -227,7 +225,7 @@ async fn read<Q: Query<Answer = payload::Alarm>>(
 ) -> Result<Outcome<payload::Alarm>, Failure> {
     if *texts {
         match link.ask_in_batch(batch, &question(true)?).await? {
-            Err(ReadError::Refused(refusal)) if may_be_unknown(refusal.status) => *texts = false,
+            Err(ReadError::Refused(refusal)) if is_possibly_unsupported(refusal.status) => *texts = false,
             outcome => return Ok(outcome),
         }
     }
@@ -237,7 +235,7 @@ async fn read<Q: Query<Answer = payload::Alarm>>(
 /// Whether a status can mean that a controller before FS1.14 does not have 0x30A. The manuals do not define the
 /// status, so each of these selects the older command: "command error", "undefined command", undefined instance or
 /// attribute.
-fn may_be_unknown(status: Status) -> bool {
+fn is_possibly_unsupported(status: Status) -> bool {
     matches!(status.code, 0x01 | 0x08 | 0x09 | 0x28)
         || (status.added_size > 0 && matches!(status.added & 0xFFFF, 0x1010 | 0xA000..=0xA002))
 }
@@ -259,7 +257,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 context.link.ask(&$query).await?;
-                Ok(New::of($set, $new, $done).replaces(Old::UNREAD))
+                Ok(NewValue::of($set, $new, $done).replaces(Old::UNREAD))
             }
         }
     };
@@ -283,7 +281,7 @@ mod tests {
     use crate::command::yerc::testing::{frames, golden, objection, reports};
 
     #[test]
-    fn present_alarms_are_asked_with_texts_in_four_slots() {
+    fn reads_present_alarms_with_texts_in_four_slots() {
         assert_eq!(
             frames("alarm list").unwrap(),
             ["0a03010000010000", "0a03020000010000", "0a03030000010000", "0a03040000010000", "7000010000010000"]
@@ -292,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn history_asks_each_class_from_a_number_on() {
+    fn reads_the_history_of_each_class_from_a_number() {
         // 0x71 user alarm (user) 100 is instance 3100 (golden frame R05 reads one field of it).
         assert_eq!(
             frames("alarm history --class user --from 99 --limit 5 --no-texts").unwrap(),
@@ -315,26 +313,26 @@ mod tests {
     }
 
     #[test]
-    fn reset_and_cancel_are_the_frames_of_the_manual() {
+    fn sends_reset_and_cancel_frames_of_the_manual() {
         assert_eq!(frames("alarm reset").unwrap(), ["820001000110000001000000"]);
         assert_eq!(frames("alarm cancel").unwrap(), [golden("R39")]);
     }
 
     #[test]
-    fn only_what_may_be_an_unknown_command_leads_to_the_older_one() {
+    fn falls_back_to_the_older_command_if_unsupported() {
         for code in [0x01, 0x08, 0x09, 0x28] {
-            assert!(may_be_unknown(Status { code, added_size: 0, added: 0 }), "{code:#x}");
+            assert!(is_possibly_unsupported(Status { code, added_size: 0, added: 0 }), "{code:#x}");
         }
         for added in [0x1010, 0xA000, 0xA001, 0xA002] {
-            assert!(may_be_unknown(Status::refused(added)), "{added:#x}");
+            assert!(is_possibly_unsupported(Status::refused(added)), "{added:#x}");
         }
         for status in [Status::refused(0x2010), Status::refused(0x2100), Status { code: 0x1F, ..Status::OK }] {
-            assert!(!may_be_unknown(status), "{status:?}");
+            assert!(!is_possibly_unsupported(status), "{status:?}");
         }
     }
 
     #[tokio::test(start_paused = true)]
-    async fn older_software_is_asked_without_texts() {
+    async fn reads_older_software_without_texts() {
         let alarm = "alarm = [{ code = 4315, data = 3, type = 1 }]\n";
         let lines = ["alarm list", "alarm list --no-texts", "alarm history --limit 2"];
         let [with, without, history] = reports(alarm, &lines).await.try_into().unwrap();
@@ -352,7 +350,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn a_reset_clears_the_list() {
+    async fn reset_clears_the_list() {
         let lines = ["alarm reset", "alarm list", "alarm cancel"];
         let [_, list, cancel] = reports("alarm = [{ code = 4315 }]", &lines).await.try_into().unwrap();
         assert_eq!(list.unwrap()["alarms"], json!([]));

@@ -7,10 +7,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::each::existing;
+use super::existing_items::ask_existing;
 use super::link::Yerc;
-use super::orders::usage;
 use super::position::ByAxis;
+use super::switch_commands::usage;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
@@ -93,7 +93,7 @@ impl Command for AxesOf {
         }
         let is_all = self.group == Groups::All;
         let mut found: Vec<GroupAxes> = Vec::new();
-        for ((group, coordinates), outcome) in existing(link, questions).await? {
+        for ((group, coordinates), outcome) in ask_existing(link, questions).await? {
             let names = outcome.map(|names| names_of(&names, encoding));
             if is_all && names.as_ref().is_ok_and(Vec::is_empty) {
                 continue;
@@ -119,8 +119,8 @@ impl Command for AxesOf {
 
 /// Names of the axes; the names of unused axes are empty.
 fn names_of(names: &AxisNames, encoding: Encoding) -> Vec<String> {
-    let used = names.names.iter().filter(|name| !name.is_empty());
-    used.map(|name| encoding.decode(name.as_bytes())).collect()
+    let used_axes = names.names.iter().filter(|name| !name.is_empty());
+    used_axes.map(|name| encoding.decode(name.as_bytes())).collect()
 }
 
 /// The axes of control groups.
@@ -246,7 +246,7 @@ mod tests {
     use crate::output::render;
 
     #[test]
-    fn one_group_or_all_of_the_model() {
+    fn parses_one_group_or_all() {
         assert_eq!(frames("axes --group R1").unwrap(), [golden("R11"), "7400650000010000".to_owned()]);
         assert_eq!(frames("axes --group S24").unwrap(), ["74002c0000010000"]);
         assert_eq!(frames("axes").unwrap().len(), 8 * 2 + 8 * 2 + 24);
@@ -255,14 +255,14 @@ mod tests {
     }
 
     #[test]
-    fn error_and_torque_of_a_group() {
+    fn reads_error_and_torque_of_a_group() {
         let axes = "7400010000010000".to_owned();
         assert_eq!(frames("position-error").unwrap(), [golden("R15"), axes]);
         assert_eq!(frames("torque --group B8").unwrap(), ["7700120000010000", "7400120000010000"]);
     }
 
     #[test]
-    fn unused_axes_are_no_names() {
+    fn omits_unused_axes() {
         let mut names = AxisNames::default();
         for (slot, name) in names.names.iter_mut().zip(["S", "L", "U"]) {
             *slot = Text::cut(name.as_bytes());
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn torque_is_labelled_as_raw() {
+    fn labels_torque_as_raw() {
         let axes = Axes::new(&[-3, 7]).unwrap();
         let report = Torques { group: "R1".into(), torque_raw: ByAxis::new(axes, true, AxisSet::ALL) };
         assert_eq!(render::csv(&report.view()), "axis,torque_raw\nS,-3\nL,7\n");
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn the_controller_tells_which_groups_it_has() {
+    async fn asks_the_controller_for_its_groups() {
         let [axes] = reports("groups = [\"R1\", \"S1\"]", &["axes"]).await.try_into().unwrap();
         let groups = axes.unwrap();
         assert_eq!(groups["groups"].as_array().map(Vec::len), Some(2), "{groups}");

@@ -13,7 +13,7 @@ use crate::controller::yerc::query::{ReadStatus, ReadSystemInfo, SystemPart};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::names::Place;
+use crate::settings::names::CacheFile;
 
 const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
 
@@ -64,11 +64,11 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     );
     if status.alarm() || status.error() {
         let what = if status.alarm() { "an alarm is present" } else { "an error is present" };
-        layers.wrong("alarm", what, "see `yerc alarm list`, then reset with `yerc alarm reset`");
+        layers.fail_with("alarm", what, "see `yerc alarm list`, then reset with `yerc alarm reset`");
     } else {
         layers.ok("alarm", "none");
     }
-    layers.left_over(&left_over(status));
+    layers.leftover_drafts(&left_over(status));
     // Unused servo power may be from an earlier client. It is not a fault.
     let is_idle = !status.running() && !status.held() && !is_held(robot);
     let on =
@@ -103,7 +103,7 @@ fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
 
 /// Checks whether stored names belong to this controller.
 fn names(robot: &Robot, link: &Link, layers: &mut Layers) {
-    let Some(Ok(Some(kept))) = robot.names.place().map(Place::read) else { return };
+    let Some(Ok(Some(kept))) = robot.names.cache_file().map(CacheFile::read) else { return };
     match link.told_software().map_or(Ok(()), |software| kept.check(&software)) {
         Ok(()) => layers.ok("names", format!("{} stored, read on {}", kept.count(), kept.read_at.strftime("%Y-%m-%d"))),
         Err(failure) => layers.warn("names", failure.message, failure.hint.unwrap_or_default()),

@@ -2,9 +2,9 @@
 
 use super::link::Yerc;
 use super::{
-    alarm, axes, file, hours, info, io, job, moves, names, orders, position, raw, register, status, teach, var,
+    alarm, axes, file, hours, info, io, job, moves, names, position, raw, register, status, switch_commands, teach, var,
 };
-use crate::command::backup::words::{Backup, Diff, Restore};
+use crate::command::backup::family_backup::{Backup, Diff, Restore};
 use crate::command::{Subcommands, commands};
 
 commands! {
@@ -29,17 +29,17 @@ commands! {
         Info(info::Info),
         "Power and operation":
         /// Switch servo power
-        Servo(orders::Servo),
+        Servo(switch_commands::Servo),
         /// Stop the running job and all motion: HOLD on
         Stop(job::Halt),
         /// Apply (on) or release (off) HOLD
-        Hold(orders::Hold),
+        Hold(switch_commands::Hold),
         /// Lock or unlock the pendant and the operation signals
-        Hlock(orders::Hlock),
+        Hlock(switch_commands::Hlock),
         /// Select step, one cycle or continuous
-        Cycle(orders::Cycle),
+        Cycle(switch_commands::Cycle),
         /// Show a message on the pendant
-        Say(orders::Say),
+        Say(switch_commands::Say),
         "Motion":
         /// Move a robot or station
         Move(Subcommands<moves::Move>),

@@ -17,7 +17,7 @@ pub const VARIABLE: ValueKind = ValueKind::Named(
     Named {
         kinds: &[Kind::Variable],
         endings: &[""],
-        listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).begun()).into(),
+        listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).incomplete()).into(),
     },
 );
 /// Variable with the start of an assignment.
@@ -26,7 +26,7 @@ pub const VARIABLE_VALUE: ValueKind = ValueKind::Named(
     Named {
         kinds: &[Kind::Variable],
         endings: &["="],
-        listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).begun()).into(),
+        listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).incomplete()).into(),
     },
 );
 /// Signal by its name.
@@ -56,14 +56,14 @@ const VARIABLES: [(&str, &str); 8] = [
 
 async fn jobs(robot: &dyn Ask) {
     for (name, _) in files_of(robot, "jbi").await {
-        robot.tell(Candidate::new(name.strip_suffix(".JBI").unwrap_or(&name), ""));
+        robot.add_candidate(Candidate::new(name.strip_suffix(".JBI").unwrap_or(&name), ""));
     }
 }
 
 async fn files(robot: &dyn Ask) {
     for kind in ["jbi", "dat", "cnd", "prm", "sys", "lst"] {
         for (name, kind) in files_of(robot, kind).await {
-            robot.tell(Candidate::new(name, kind));
+            robot.add_candidate(Candidate::new(name, kind));
         }
     }
 }

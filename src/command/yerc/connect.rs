@@ -3,7 +3,7 @@
 use super::failure::failure;
 use super::link::Yerc;
 use super::overview::overview;
-use super::simulated;
+use super::simulator_start;
 use crate::client::yerc::{Client, Endpoint, Options};
 use crate::command::frame::attach::attach;
 use crate::command::{Access, Family as _};
@@ -22,7 +22,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
             let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose().map_err(|error| {
                 Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
             })?;
-            let start = simulated::start(
+            let start = simulator_start::start(
                 sim.state.as_deref(),
                 robot.model.value.named().unwrap_or(Model::Dx200),
                 faults.as_ref(),
@@ -61,7 +61,7 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
 
 /// Opens a connection for a session. A first request checks that a controller answers, because UDP sends without a
 /// receiver as well.
-pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<Datagrams, Failure> {
+pub async fn hold_robot(robot: &Robot, access: &Access, screen: &Screen) -> Result<Datagrams, Failure> {
     let robot = &Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Yerc::connect(robot, access.clone(), screen).await?;
     overview(&mut link).await?;

@@ -63,7 +63,7 @@ impl decode::Decode for Decode {
     }
 
     fn decode(&self) -> Result<DecodedFrames, Failure> {
-        Ok(self.explained(&self.frames()?))
+        Ok(self.explain_frames(&self.frames()?))
     }
 }
 
@@ -78,14 +78,14 @@ impl Decode {
             }
         } else {
             let parsed: Result<Vec<_>, _> = self.hex.iter().map(|text| parse_hex(text)).collect();
-            pieces = joined(parsed.map_err(wrong)?);
+            pieces = join_pieces(parsed.map_err(wrong)?);
         }
         let frames: Vec<Vec<u8>> = pieces.iter().flat_map(|bytes| split(bytes)).collect();
         if frames.is_empty() { Err(wrong("no bytes to decode".to_owned())) } else { Ok(frames) }
     }
 
     /// Decodes each frame. An answer is decoded with the earlier request of the same id, or with the options.
-    fn explained(&self, frames: &[Vec<u8>]) -> DecodedFrames {
+    fn explain_frames(&self, frames: &[Vec<u8>]) -> DecodedFrames {
         let mut asked: Vec<(u8, Request)> = Vec::new();
         let mut explained = Vec::new();
         for bytes in frames {
@@ -132,7 +132,7 @@ pub const IDENTIFIER: &[u8] = b"YERC";
 
 /// Joins arguments that the shell separated at spaces. An argument that starts like a frame, or is as long as a
 /// frame, starts a new frame.
-fn joined(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
+fn join_pieces(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let mut pieces: Vec<Vec<u8>> = Vec::new();
     for bytes in arguments {
         match pieces.last_mut() {
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_as_tools_print_them() {
+    fn parses_bytes_as_tools_print_them() {
         let bytes = parse_hex(STATUS).unwrap();
         assert_eq!(bytes.len(), 32);
         for separator in [" ", ":", ", ", "-", " 0x", "\n"] {
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_in_pieces_and_in_a_row() {
+    fn decodes_split_and_consecutive_frames() {
         let apart = spaced(STATUS, " ");
         let words: Vec<&str> = apart.split(' ').collect();
         assert_eq!(yerc(&words).frames().unwrap().len(), 1);
@@ -267,19 +267,19 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_is_explained_by_its_request() {
+    fn decodes_an_answer_with_its_request() {
         let answer = "594552432000080003010100000000803939393939393939810000000000000012000000c0000000";
         let alone = yerc(&[answer]);
-        let title = |yerc: &Decode, at: usize| yerc.explained(&yerc.frames().unwrap()).frames[at].title.clone();
+        let title = |yerc: &Decode, at: usize| yerc.explain_frames(&yerc.frames().unwrap()).frames[at].title.clone();
         assert_eq!(title(&alone, 0), "answer");
         assert_eq!(title(&yerc(&[STATUS, answer]), 1), "answer: 0x72 status read");
         assert_eq!(title(&Decode { command: Some(0x72), ..alone }, 0), "answer: 0x72 status read");
     }
 
     #[test]
-    fn damage_is_a_failure_with_the_fields_before_it() {
+    fn damaged_frame_fails_with_the_fields_before_the_damage() {
         let cut = yerc(&[&STATUS[..40]]);
-        let frames = cut.explained(&cut.frames().unwrap());
+        let frames = cut.explain_frames(&cut.frames().unwrap());
         assert_eq!(frames.frames[0].fields.len(), 8);
         let failure = Report::failure(&frames).unwrap();
         assert_eq!(failure.kind.exit(), 5);

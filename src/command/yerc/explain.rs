@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::command::ValueKind;
 use crate::command::face::explain::{self as face, Codes, Known};
-use crate::command::robot::alarm::{Alarm, Besides, Kind, Source};
+use crate::command::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
 use crate::controller::yerc::status;
 use crate::failure::Failure;
 use crate::settings::alarms::{Alarms, Origin};
@@ -53,7 +53,7 @@ pub struct Listed {
     models: Vec<String>,
 }
 
-impl Besides for Listed {
+impl ExtraColumns for Listed {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         vec![("listed for", Some(self.models.join(", ")).filter(|models| !models.is_empty()))]
     }
@@ -69,10 +69,10 @@ fn alarm_number(text: &str) -> Option<u32> {
 fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>, Failure> {
     let code = number.to_string();
     let site = alarms.find(origin, &code)?;
-    let look = "look up the number in the controller's maintenance manual, or read its text with `armctl yerc alarm \
+    let find_alarm = "look up the number in the controller's maintenance manual, or read its text with `armctl yerc alarm \
                 list`";
     let text = site.is_none().then(|| "an alarm number".to_owned());
-    let remedies: &[&str] = if site.as_ref().is_some_and(|site| site.remedy.is_some()) { &[] } else { &[look] };
+    let remedies: &[&str] = if site.as_ref().is_some_and(|site| site.remedy.is_some()) { &[] } else { &[find_alarm] };
     let alarm = Alarm { code: Some(code), text, kind: Some(Kind::Alarm), source: Source::Armctl, ..Alarm::default() };
     Ok(Known::new(false, alarm, [&[], remedies], site, Listed { models: Vec::new() }))
 }

@@ -6,18 +6,18 @@ use super::decode::Decode;
 use super::explain::Explain;
 use super::file::{Restore, back_up};
 use super::link::{Link, Yerc};
-use super::orders::Hold;
 use super::serve::Serve;
+use super::switch_commands::Hold;
 use super::top::Poller;
-use super::{check, connect, overview, panel};
-use crate::command::backup::words::Backups;
-use crate::command::backup::{BackedUp, Making, Restored, Restoring};
+use super::{check, connect, overview, teach_panel};
+use crate::command::backup::family_backup::Backups;
+use crate::command::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use crate::command::face::HeldLink;
-use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::face::panel::Panel;
+use crate::command::face::registration::Declaration;
 use crate::command::face::sample::Traffic;
+use crate::command::face::teach_panel::Panel;
 use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Context};
 use crate::controller::yerc::{passing, simulator, status};
@@ -46,7 +46,7 @@ impl Declaration for Yerc {
     const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yerc-setup`.";
     const SETUP: (&'static str, &'static str) = ("settings of a Yaskawa controller", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
-    const PANEL: Panel = panel::PANEL;
+    const PANEL: Panel = teach_panel::PANEL;
     const GUARD: Guard = Guard { is_harmless_data: passing::only_reads_or_stops, is_harmless_image: |_, _| false };
 
     fn urls() -> Vec<(String, &'static str)> {
@@ -79,18 +79,18 @@ impl Declaration for Yerc {
     }
 
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
-        Ok(SharedLink::Datagrams(connect::hold(robot, access, screen).await?).into())
+        Ok(SharedLink::Datagrams(connect::hold_robot(robot, access, screen).await?).into())
     }
 }
 
 impl Backups for Yerc {
     const IDS: [&'static str; 3] = ["yerc.backup", "yerc.restore", "yerc.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
         Restore::of(restoring).run(context).await
     }
 }

@@ -25,8 +25,8 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::Unexpected(_) => about(Kind::Malformed, error.to_string())
             .hint("check the model (?model=fs100, dx100, dx200 or yrc1000); -vvv shows the bytes"),
         Error::OutcomeUnknown { request, waited, counters } => {
-            let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
-            let what = format!("sent once, no answer within {waited:?}{seen}: the result is unknown");
+            let is_seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
+            let what = format!("sent once, no answer within {waited:?}{is_seen}: the result is unknown");
             about(Kind::OutcomeUnknown, what)
                 .hint(format!("check before you repeat it: {}", verification_hint(&request)))
         }
@@ -44,7 +44,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::HostNotFound { .. } => {
             about(Kind::NoAnswer, error.to_string()).hint("check the name, or use the address of the controller")
         }
-        Error::Io { port, error } => broken(label, port, &error),
+        Error::Io { port, error } => broken_link(label, port, &error),
         Error::ModelRefused(refusal) => {
             let failure = Failure::from(refusal);
             let message = format!("{error_text}; the request depends on it and was not sent");
@@ -66,7 +66,7 @@ const NAME_MODEL: &str =
     "set the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME model=…`";
 
 /// Failure for a socket error.
-fn broken(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
+fn broken_link(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
     use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable};
 
     let port = port.map_or_else(|| "of the session".to_owned(), |port| port.to_string());
@@ -133,7 +133,7 @@ mod tests {
     use crate::controller::yerc::wire::Status;
 
     #[test]
-    fn a_motion_that_is_refused_for_motion_may_be_that_motion() {
+    fn refusal_during_motion_hints_at_the_running_motion() {
         let to = RefusedRequest::Robot { command: 0x8B, instance: 1 };
         let hint = |added, risk| refused(Refusal { status: Status::refused(added), to }, risk).hint.unwrap();
         assert!(hint(0x2010, Risk::Motion).contains("duplicated it"));
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_names_the_request() {
+    fn refusal_names_the_request() {
         let message = |to| Failure::from(Refusal { status: Status::refused(0xA001), to }).message;
         let robot = message(RefusedRequest::from(&Request {
             command: 0x7A,

@@ -5,10 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::axes::{Groups, groups_of};
-use super::each::{Outcome, existing};
+use super::existing_items::{Outcome, ask_existing};
 use super::link::Yerc;
-use super::numbers::within;
-use super::orders::usage;
+use super::numbers::parse_in_range;
+use super::switch_commands::usage;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
@@ -27,7 +27,7 @@ pub struct Hours {
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
     /// Operation time of an application
-    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = within::<u8>(1, 8))]
+    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = parse_in_range::<u8>(1, 8))]
     application: Option<u8>,
 }
 
@@ -70,7 +70,7 @@ impl Command for Hours {
         let counters = self.counters(model).into_iter();
         let questions: Vec<_> = counters.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
         let outcomes = if self.group == Some(Groups::All) {
-            let mut found = existing(link, questions).await?;
+            let mut found = ask_existing(link, questions).await?;
             // A controller may answer with empty values for a counter that does not exist.
             let is_empty = |time: &ManagementTime| time.start.is_empty() && time.elapsed.is_empty();
             found.retain(|(_, outcome)| !outcome.as_ref().is_ok_and(is_empty));
@@ -83,7 +83,7 @@ impl Command for Hours {
             Time::new(counter, outcome.map_err(Failure::from), encoding)
         };
         let report = Times { times: outcomes.into_iter().map(time).collect() };
-        items::nothing(report.times.len(), report.errors())?;
+        items::all_failed(report.times.len(), report.errors())?;
         Ok(report)
     }
 }
@@ -187,7 +187,7 @@ mod tests {
     use crate::output::render;
 
     #[test]
-    fn counters_by_kind() {
+    fn selects_counters_by_kind() {
         let instances = |words: &str| -> Vec<String> {
             frames(words).unwrap().into_iter().map(|frame| frame[4..8].to_owned()).collect()
         };
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn times_in_every_form() {
+    fn formats_times_in_every_form() {
         let time =
             |elapsed: &[u8]| ManagementTime { start: Text::cut(b"2024/01/02 03:04"), elapsed: Text::cut(elapsed) };
         let times = Times {

@@ -5,10 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::axes::{Groups, groups_of};
-use super::each::existing;
+use super::existing_items::ask_existing;
 use super::link::Yerc;
-use super::numbers::within;
-use super::orders::usage;
+use super::numbers::parse_in_range;
+use super::switch_commands::usage;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report};
@@ -27,7 +27,7 @@ pub struct Info {
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
     /// Application number
-    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = within::<u8>(1, 8))]
+    #[arg(long, value_name = "N", conflicts_with = "group", value_parser = parse_in_range::<u8>(1, 8))]
     application: Option<u8>,
 }
 
@@ -68,12 +68,12 @@ impl Command for Info {
         let questions: Vec<_> = parts.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
         // A single part is a list with one entry: its refusal is the failure.
         let is_single = questions.len() == 1;
-        let answers = existing(link, questions).await?;
+        let answers = ask_existing(link, questions).await?;
         // Controllers answer with only the version for groups that do not exist.
-        let is_there = |info: &SystemInfo| is_single || !(info.name.is_empty() && info.parameters.is_empty());
+        let exists = |info: &SystemInfo| is_single || !(info.name.is_empty() && info.parameters.is_empty());
         let first = answers.iter().find_map(|(_, outcome)| outcome.as_ref().ok());
         let software_version = first.map(|info| encoding.decode(info.version.as_bytes()));
-        let parts = answers.into_iter().filter(|(_, outcome)| outcome.as_ref().map_or(true, is_there));
+        let parts = answers.into_iter().filter(|(_, outcome)| outcome.as_ref().map_or(true, exists));
         let parts = parts.map(|(part, outcome)| Part::new(part, outcome.map_err(Failure::from), encoding));
         Ok(Versions { software_version, parts: parts.collect() })
     }
@@ -112,8 +112,8 @@ impl Part {
             SystemPart::Application(number) => (None, Some(number)),
         };
         let named = info.map(|info| Named {
-            name: given(&info.name, encoding),
-            parameter_version: given(&info.parameters, encoding),
+            name: reported_name(&info.name, encoding),
+            parameter_version: reported_name(&info.parameters, encoding),
         });
         let outcome = ItemOutcome::new(name_of(group.as_deref(), application), named);
         Self { group, application, outcome }
@@ -125,7 +125,7 @@ fn name_of(group: Option<&str>, application: Option<u8>) -> String {
     group.map_or_else(|| format!("application {}", application.unwrap_or_default()), ToOwned::to_owned)
 }
 
-fn given<const N: usize>(text: &Text<N>, encoding: Encoding) -> Option<String> {
+fn reported_name<const N: usize>(text: &Text<N>, encoding: Encoding) -> Option<String> {
     (!text.is_empty()).then(|| encoding.decode(text.as_bytes()))
 }
 
@@ -157,7 +157,7 @@ mod tests {
     use crate::output::render;
 
     #[test]
-    fn parts_by_model() {
+    fn selects_parts_by_model() {
         assert_eq!(frames("info --group R1").unwrap(), [golden("R55")]);
         assert_eq!(frames("info --application 8").unwrap(), ["89006c0000010000"]);
         assert_eq!(frames("info").unwrap().len(), 8 + 24 + 8);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn the_version_stands_once() {
+    fn shows_the_version_once() {
         let info = SystemInfo {
             version: Text::cut(b"DS2.07"),
             name: Text::cut(b"ES0165D-A0*"),
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn only_what_exists_is_listed() {
+    async fn lists_existing_parts_only() {
         let [all, one] = reports("groups = [\"R1\"]", &["info", "info --group R2"]).await.try_into().unwrap();
         let all = all.unwrap();
         assert_eq!(all["software_version"], "DN2.07.00A(JP/US)-00");

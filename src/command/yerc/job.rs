@@ -13,14 +13,14 @@ use serde::Serialize;
 
 use self::source::Source;
 pub use self::stop::Halt;
-use super::each::{Outcome, ReadError};
+use super::existing_items::{Outcome, ReadError};
 use super::file::Edit;
 use super::link::{Link, Yerc};
-use super::numbers::within;
-use super::orders::refuse_controls;
+use super::numbers::parse_in_range;
+use super::switch_commands::refuse_controls;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::yerc::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -240,10 +240,10 @@ pub struct Select {
     #[arg(add = complete::JOB)]
     name: String,
     /// Start line
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 9999))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_in_range::<u32>(0, 9999))]
     line: u32,
     /// Set the master job of this task instead of the job to start
-    #[arg(long, value_name = "N", conflicts_with = "line", value_parser = within::<u8>(0, u8::MAX))]
+    #[arg(long, value_name = "N", conflicts_with = "line", value_parser = parse_in_range::<u8>(0, u8::MAX))]
     task: Option<u8>,
 }
 
@@ -295,14 +295,15 @@ impl Command for Select {
             context.screen.note(&format!("job name without .JBI: '{name}'"));
         }
         // The protocol cannot read the master job of a task.
-        let was = match self.task {
+        let old_selection = match self.task {
             None => {
                 let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
                 link.before(&question).await?
             }
             Some(_) => None,
         };
-        let was = was.filter(|job| !job.name.is_empty()).map(|job| link.encoding.name(job.name.as_bytes()).text);
+        let was =
+            old_selection.filter(|job| !job.name.is_empty()).map(|job| link.encoding.name(job.name.as_bytes()).text);
         let query = self.query(name, link).await?;
         link.ask(&query).await.map_err(|failure| about(name, failure))?;
         let words = match (self.task, self.line) {
@@ -310,7 +311,7 @@ impl Command for Select {
             (None, 0) => format!("{name} is selected"),
             (None, first) => format!("{name} is selected, start line {first}"),
         };
-        let new = New::of("program", name, words).with("program", name);
+        let new = NewValue::of("program", name, words).with("program", name);
         Ok(Selected {
             done: new.replaces(Old::read(was)),
             line: self.task.is_none().then_some(self.line),
@@ -349,7 +350,7 @@ mod tests {
     use std::time::Duration;
 
     use super::start::{Look, Watch};
-    use crate::command::yerc::motion::{START_WITHIN, StandstillCause};
+    use crate::command::yerc::motion::{START_TIMEOUT, StandstillCause};
     use crate::controller::Risk;
     use crate::controller::yerc::payload::{ControllerStatus, StatusBit, Text};
     use crate::controller::yerc::query::{Query as _, StartJob};
@@ -358,7 +359,7 @@ mod tests {
     use crate::output::render;
 
     #[test]
-    fn tasks_by_model() {
+    fn selects_tasks_by_model() {
         // Golden frame R09 reads a field of instance 6, sub task 5.
         assert_eq!(frames("job show").unwrap(), ["7300010000010000"]);
         assert_eq!(frames("job show --task 5").unwrap(), ["7300060000010000"]);
@@ -370,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn selection_is_the_frame_of_the_manual() {
+    fn selects_with_the_frame_of_the_manual() {
         let r51 = golden("R51");
         assert_eq!(frames("job select TESTJOB --line 10").unwrap(), std::slice::from_ref(&r51));
         assert_eq!(frames("job select TESTJOB.jbi --line 10").unwrap(), [r51]);
@@ -380,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_measured_in_bytes_of_the_encoding() {
+    fn measures_names_in_bytes_of_the_encoding() {
         let select = |name: &str| frames(&format!("job select {name}"));
         assert_eq!(select(&"A".repeat(32)).unwrap().len(), 1);
         let failure = select(&"A".repeat(33)).unwrap_err();
@@ -393,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn a_start_is_one_frame_and_a_motion() {
+    fn start_is_one_frame_and_a_motion() {
         let start = ["7300010000010000".to_owned(), "860001000110000001000000".to_owned()];
         assert_eq!(frames("job start").unwrap(), start);
         let waiting = frames("job start --wait 2m").unwrap();
@@ -408,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn an_absent_task_is_data() {
+    fn absent_task_is_data() {
         let info = JobInfo { name: Text::cut(b"\x85\x41"), line: 3, step: 0, speed_override: 3333 };
         let to = RefusedRequest::Robot { command: 0x73, instance: 2 };
         let refused = |code| Err(ReadError::Refused(Refusal { status: wire::Status::refused(code), to }));
@@ -439,20 +440,20 @@ mod tests {
     }
 
     #[test]
-    fn a_job_is_watched_from_start_to_end() {
+    fn watches_a_job_from_start_to_end() {
         let (idle, runs) = (status(&[StatusBit::ServoOn]), status(&[StatusBit::ServoOn, StatusBit::Running]));
         let mut watch = Watch::new(None);
         assert_eq!(watch.look(Duration::ZERO, idle), Look::Running, "the bit may come a moment later");
         assert_eq!(watch.look(Duration::from_millis(100), runs), Look::Running);
         assert_eq!(watch.look(Duration::from_secs(3600), runs), Look::Running);
         assert_eq!(watch.look(Duration::from_secs(3601), idle), Look::Ended);
-        assert_eq!(Watch::new(None).look(START_WITHIN, idle), Look::NotSeen);
+        assert_eq!(Watch::new(None).look(START_TIMEOUT, idle), Look::NeverStarted);
         let limit = Duration::from_secs(1);
-        assert_eq!(Watch::new(Some(limit)).look(limit, runs), Look::Late(limit));
+        assert_eq!(Watch::new(Some(limit)).look(limit, runs), Look::Timeout(limit));
     }
 
     #[test]
-    fn what_stops_a_job_is_told() {
+    fn reports_what_stopped_a_job() {
         let base = [StatusBit::ServoOn, StatusBit::Running];
         let look = |more: StatusBit| Watch::new(None).look(Duration::ZERO, status(&base).with(more, true));
         assert_eq!(look(StatusBit::Alarm), Look::Stopped(StandstillCause::Alarm));
@@ -461,7 +462,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn a_start_waits_for_the_end_if_it_is_asked_to() {
+    async fn start_can_wait_for_the_end() {
         let lines = ["job select テスト", "job start --wait", "job select TESTJOB", "job start --wait 2s", "job show"];
         let [selected, ended, _, late, shown] = reports("", &lines).await.try_into().unwrap();
         assert_eq!(selected.unwrap()["program"], "テスト");
@@ -476,7 +477,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn what_stops_a_job_ends_the_waiting() {
+    async fn alarm_or_hold_ends_the_wait() {
         let state = "job = \"TESTJOB\"\n[[event]]\nat_ms = 500\ndo = \"hold pendant on\"\n";
         let [started] = reports(state, &["job start --wait"]).await.try_into().unwrap();
         let failure = started.unwrap_err();
@@ -485,7 +486,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn absent_tasks_are_listed_and_refused_one_by_one() {
+    async fn lists_absent_tasks_separately() {
         let [all, one] = reports("", &["job show --task all", "job show --task 9"]).await.try_into().unwrap();
         let all = all.unwrap();
         assert_eq!(all["tasks"].as_array().map(Vec::len), Some(16));

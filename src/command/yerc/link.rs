@@ -6,18 +6,18 @@ use std::time::Duration;
 use derive_more::{Deref, DerefMut};
 
 use super::connect;
-use super::each::{Batch, Outcome};
+use super::existing_items::{Batch, Outcome};
 use super::failure::{failure, refused};
-use super::orders::usage;
-use super::told::Told;
+use super::model_cache::CachedModel;
+use super::switch_commands::usage;
 use super::trace::Trace;
 use crate::client::Watcher;
 use crate::client::yerc::{Cause, Client, Event, Totals, TransferError};
 pub use crate::client::yerc::{Error, Refusal, RefusedRequest};
 use crate::command::face::sample::Traffic;
 use crate::command::frame::dry_run::{Known as _, Plan};
-use crate::command::frame::orders::{BEFORE, unwritten};
-use crate::command::frame::trace::locked;
+use crate::command::frame::settings_report::{OLD_VALUE, nothing_written};
+use crate::command::frame::trace::lock_writer;
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -28,7 +28,7 @@ use crate::controller::yerc::session::{DownloadEnd, Reply, UploadEnd};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::settings::model::ToldModel;
+use crate::settings::model::ReportedModel;
 use crate::settings::target;
 use crate::transport::tap::Direction;
 
@@ -53,7 +53,7 @@ pub struct Link {
     /// Number of words of a cartesian move, 25 or 26.
     pub move_words: u8,
     /// Stored model of the controller.
-    told: Told,
+    cached_model: CachedModel,
 }
 
 impl Family for Yerc {
@@ -65,12 +65,12 @@ impl Family for Yerc {
         let mut client = connect::open(robot, &access, screen).await?;
         let trace = Arc::new(Mutex::new(Trace::open(&access, screen)?));
         let label = robot.label();
-        client.watch(Onlooker { trace: Arc::clone(&trace), screen: *screen, label: label.clone() });
+        client.watch(TraceObserver { trace: Arc::clone(&trace), screen: *screen, label: label.clone() });
         let move_words = robot.target.value.traits().move_words.unwrap_or(26);
         let pulses_per_degree = robot.pulses_per_degree.clone();
         let encoding = robot.encoding.value;
-        let told = Told::recall(robot, &mut client);
-        Ok(Link { client, trace, screen: *screen, label, encoding, pulses_per_degree, move_words, told })
+        let cached_model = CachedModel::recall(robot, &mut client);
+        Ok(Link { client, trace, screen: *screen, label, encoding, pulses_per_degree, move_words, cached_model })
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
@@ -88,13 +88,13 @@ impl Family for Yerc {
     }
 
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
-        link.keep_model();
+        link.cache_model();
         let Link { client, trace, label, .. } = link;
         let totals = client.close().await.map_err(|error| failure(&label, error))?;
         let [sent, received] = [totals.sent, totals.received];
         let exchanges = format!("{} exchanges in {:.1?}", totals.exchanges, totals.waited);
         screen.detail(1, &format!("{exchanges}: {sent} frames sent, {received} received"));
-        locked(&trace).finish()
+        lock_writer(&trace).finish()
     }
 }
 
@@ -113,14 +113,14 @@ impl Link {
     /// Model of the controller; read from it if unknown.
     pub async fn model(&mut self) -> Result<Model, Failure> {
         let model = self.client.model().await;
-        self.keep_model();
+        self.cache_model();
         model.map_err(|error| self.failure(error))
     }
 
     /// Model for building a request; the controller is asked only if the result depends on it: [`Client::model_for`].
     pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Failure> {
         let model = self.client.model_for(make).await;
-        self.keep_model();
+        self.cache_model();
         model.map_err(|error| self.failure(error))
     }
 
@@ -139,16 +139,16 @@ impl Link {
     }
 
     /// Stores the model that the controller reported, if it is new.
-    fn keep_model(&mut self) {
+    fn cache_model(&mut self) {
         if let (Some(identity), Some(software)) = (self.client.identity(), self.told_software()) {
-            let news = identity.model.map(|model| ToldModel::now(model, software));
-            self.told.keep(news, &self.screen, &self.label);
+            let is_new = identity.model.map(|model| ReportedModel::now(model, software));
+            self.cached_model.store_model(is_new, &self.screen, &self.label);
         }
     }
 
     /// Sends one request; a refusal is a failure.
     pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Failure> {
-        self.try_ask(query).await?.map_err(|refusal| refused(refusal, query.risk()))
+        self.ask_optional(query).await?.map_err(|refusal| refused(refusal, query.risk()))
     }
 
     /// Holds the robot, with several attempts in parallel until one is answered.
@@ -157,14 +157,14 @@ impl Link {
     }
 
     /// Sends one request; a refusal is a result.
-    pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
+    pub async fn ask_optional<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
         self.client.try_ask(query).await.map_err(|error| self.failure(error))
     }
 
     /// Reads the value that a write replaces; none if the controller refuses, and in a dry run, which notes the
     /// request. A lost connection is a failure: nothing was written.
     pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
-        let answer = self.for_purpose(BEFORE).try_ask(question).await.known().map_err(unwritten)?;
+        let answer = self.for_purpose(OLD_VALUE).ask_optional(question).await.known().map_err(nothing_written)?;
         Ok(answer.and_then(Result::ok))
     }
 
@@ -265,15 +265,15 @@ impl Link {
 
 /// Observer that records the traffic and prints other traffic at `-v`.
 #[derive(Debug)]
-struct Onlooker {
+struct TraceObserver {
     trace: Arc<Mutex<Trace>>,
     screen: Screen,
     label: String,
 }
 
-impl Watcher<Event> for Onlooker {
+impl Watcher<Event> for TraceObserver {
     fn frame(&mut self, direction: Direction, ends: crate::client::Ends, bytes: &[u8]) {
-        locked(&self.trace).record(direction, ends, bytes);
+        lock_writer(&self.trace).record(direction, ends, bytes);
     }
 
     fn event(&mut self, event: Event) {

@@ -4,16 +4,16 @@ use std::time::Duration;
 
 use super::alarm;
 use super::link::Link;
-use super::orders::usage;
+use super::switch_commands::usage;
 use crate::command::frame::dry_run::Reason;
 use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
 use crate::controller::yerc::query::{Query as _, ReadAlarm};
 use crate::failure::{Failure, Kind};
 
 /// Interval of status reads. A controller answers in 5 to 20 ms, and a shorter interval has no benefit.
-pub(super) const LOOK_EVERY: Duration = Duration::from_millis(50);
+pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// Maximum time for a controller to start an accepted motion or job.
-pub(super) const START_WITHIN: Duration = Duration::from_secs(3);
+pub(super) const START_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// A state of the controller in which nothing moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,7 +108,7 @@ pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
 }
 
 /// Failure for a lost connection during a wait. The action continues without supervision, so its outcome is unknown.
-pub(super) fn lost(done: &str, failure: Failure) -> Failure {
+pub(super) fn lost_contact(done: &str, failure: Failure) -> Failure {
     let message = format!("{done}, but its end was not reported: {failure}");
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }
         .hint("do not send it again; `yerc status` and `yerc position` show the result")
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_weightiest_trouble_is_named() {
+    fn names_the_most_severe_cause() {
         let fine = ControllerStatus::default().with(StatusBit::ServoOn, true).with(StatusBit::Play, true);
         let with =
             |bits: &[StatusBit]| StandstillCause::of(bits.iter().fold(fine, |status, bit| status.with(*bit, true)));
@@ -132,8 +132,8 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_contact_leaves_the_outcome_open() {
-        let failure = lost("the job was started", Failure::new(Kind::NoAnswer, "silence").code("0x1"));
+    fn lost_contact_leaves_the_outcome_unknown() {
+        let failure = lost_contact("the job was started", Failure::new(Kind::NoAnswer, "silence").code("0x1"));
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert_eq!(failure.message, "the job was started, but its end was not reported: silence");
     }

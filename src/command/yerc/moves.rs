@@ -1,11 +1,11 @@
 //! `yerc move joint|linear|relative` and `yerc move pulse joint|linear` (FS and DX 3.3.39, 3.3.40).
 
 mod arguments;
-mod going;
+mod execution;
 mod question;
-mod taught;
+mod variable_target;
 
-pub(super) use self::going::stands;
+pub(super) use self::execution::stands;
 pub(super) use self::question::{compared, moved_meanwhile};
 use clap::Args;
 
@@ -14,12 +14,12 @@ use std::borrow::Cow;
 use self::arguments::{
     By, Forms, Frame, Mover, Part, Speed, To, Values, base_lengths, base_pulses, robot_pulses, split, station_pulses,
 };
-use self::going::{Goal, Going, MotionReport};
+use self::execution::{Goal, Going, MotionReport};
 use self::question::Question;
-use self::taught::Motion;
+use self::variable_target::Motion;
 use super::link::Link;
 use super::link::Yerc;
-use crate::command::yerc::numbers::within;
+use crate::command::yerc::numbers::parse_in_range;
 use crate::command::{Command, Context, Subcommands, commands};
 use crate::controller::Risk;
 use crate::controller::units;
@@ -106,15 +106,15 @@ impl Target {
     }
 
     /// Rejects options whose value the variable or the pulses already contain.
-    fn refuse_besides(&self, flag: &str, has_frame: bool) -> Result<(), Failure> {
-        let given = [
+    fn refuse_extra_flags(&self, flag: &str, has_frame: bool) -> Result<(), Failure> {
+        let extra_flags = [
             ("--coordinate", self.frame.coordinate.is_some()),
             ("--tool or --user", has_frame),
             ("--form", self.forms.form.is_some() || self.forms.extended_form.is_some()),
             ("--base-axes", self.base_axes.is_some()),
             ("--station-axes", self.station_axes.is_some()),
         ];
-        match given.iter().find(|(_, is_given)| *is_given) {
+        match extra_flags.iter().find(|(_, is_given)| *is_given) {
             None => Ok(()),
             Some((other, _)) => {
                 Err(Failure::usage(format!("{other} cannot be used with {flag}, which already defines it"))
@@ -127,7 +127,7 @@ impl Target {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let part = split(mover.group, to.coordinates(), "--to", base_axes.as_ref(), station_axes.as_ref())?;
         let coordinate = frame.kind();
-        let mut order = plain(link, mover, speed, frame);
+        let mut order = cartesian_move(link, mover, speed, frame);
         order.form = forms.form();
         order.extended = forms.extended_form();
         let (goal, unnamed) = match part {
@@ -138,7 +138,7 @@ impl Target {
                     PositionKind::Base => Goal::Base(target, frame.tool()),
                     _ => Goal::Unknown(Coordinates::Base),
                 };
-                (goal, unnamed_base(mover.group, base))
+                (goal, unnamed_base_axes(mover.group, base))
             }
             Part::Station(axes) => {
                 order.station_axes = axes.padded();
@@ -151,7 +151,7 @@ impl Target {
 }
 
 /// Cartesian move without a target.
-fn plain(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> CartesianMove {
+fn cartesian_move(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> CartesianMove {
     let (robot, station) = mover.words();
     CartesianMove {
         layout: if link.move_words == 25 { MoveLayout::Words25 } else { MoveLayout::Words26 },
@@ -172,7 +172,7 @@ fn plain(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> CartesianMo
 }
 
 /// The base of a robot has the robot's number, and its axes move with the robot.
-fn unnamed_base(group: Group, base: Option<&Values>) -> Vec<(Group, usize, &'static str)> {
+fn unnamed_base_axes(group: Group, base: Option<&Values>) -> Vec<(Group, usize, &'static str)> {
     match group {
         Group::Robot(number) => vec![(Group::Base(number), base.map_or(0, |base| base.0.len()), "--base-axes")],
         _ => Vec::new(),
@@ -304,7 +304,7 @@ impl Distance {
 
     async fn going(&self, link: &mut Link, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
         let Self { frame, base_axes, station_axes, mover, .. } = self;
-        let mut order = plain(link, mover, speed, frame);
+        let mut order = cartesian_move(link, mover, speed, frame);
         let goal = match split(mover.group, self.robot(), "--by", base_axes.as_ref(), station_axes.as_ref())? {
             Part::Robot(by, base) => {
                 order.target = by;
@@ -336,7 +336,7 @@ struct PulseTarget {
         required_unless_present = "station_axes")]
     pulses: Option<Values>,
     /// Tool number
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 63))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_in_range::<u32>(0, 63))]
     tool: u32,
     /// Base axes of the robot, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = base_pulses)]
@@ -385,9 +385,9 @@ impl PulseTarget {
             Part::Robot(axes, base) => {
                 order.axes = axes.padded();
                 order.base = base.map(Values::padded).unwrap_or_default();
-                let mut unnamed = unnamed_base(mover.group, base);
-                unnamed.push((mover.group, axes.0.len(), "--pulses"));
-                (axes, unnamed)
+                let mut unnamed_axes = unnamed_base_axes(mover.group, base);
+                unnamed_axes.push((mover.group, axes.0.len(), "--pulses"));
+                (axes, unnamed_axes)
             }
             Part::Station(axes) => {
                 order.station_axes = axes.padded();
@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dry_run_shows_what_is_asked_before_and_after() {
+    fn dry_run_shows_reads_before_and_after() {
         let heads = |line: &str| frames(line).unwrap().iter().map(|frame| frame[..8].to_owned()).collect::<Vec<_>>();
         // Position and axes of the base, position and axes of the robot, the move request, the status reads.
         let before = ["75000b00", "74000b00", "75006500", "74006500"];
@@ -439,7 +439,7 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_move_is_the_golden_frame() {
+    fn linear_move_is_the_golden_frame() {
         for line in [
             "move linear --to 185,0,125,180,0,0 --speed 70mm/s --tool 1",
             "move linear --x 185.000 --y 0 --z 125 --rx 180 --ry -0 --rz 0 --speed 70.0mm/s --tool 1 --no-wait",
@@ -449,12 +449,12 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_move_is_the_golden_frame() {
+    fn pulse_move_is_the_golden_frame() {
         assert_eq!(order("move pulse joint --pulses 0,0,0,0,-90000,0 --speed 10%"), golden("R77"));
     }
 
     #[test]
-    fn every_word_of_a_cartesian_move_is_in_its_place() {
+    fn places_every_word_of_a_cartesian_move() {
         let line = "move joint --group R2 --to -1,2,-3,4,-5,6 --speed 50% --coordinate user --user 7 --tool 8 \
                     --form back,lower,noflip,s-ge180 --extended-form w-ge180 --base-axes 1.5,-2";
         let expected =
@@ -468,7 +468,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_not_given_are_zero_but_not_all() {
+    fn missing_distances_are_zero_but_one_is_required() {
         let sent = order("move relative --z -50 --rz 0.5 --speed 20deg/s --coordinate tool");
         let (head, data) = words(&sent);
         assert_eq!(head, "8a00030001020000");
@@ -482,7 +482,7 @@ mod tests {
     }
 
     #[test]
-    fn a_station_moves_by_its_own_axes() {
+    fn station_moves_by_its_own_axes() {
         let sent = order("move pulse joint --group S2 --station-axes 100,-200 --speed 5%");
         let (_, data) = words(&sent);
         assert_eq!(data[..4], [0, 2, 0, 500]);
@@ -500,7 +500,7 @@ mod tests {
     }
 
     #[test]
-    fn no_coordinate_is_guessed() {
+    fn requires_every_coordinate() {
         let missing = objection("move linear --x 1 --y 2 --z 3 --rx 4 --ry 5 --speed 1mm/s");
         assert!(missing.contains("provided:\n  --rz <DEG>\n"), "{missing}");
         assert!(objection("move linear --to 1,2,3 --speed 1mm/s").contains("six numbers"));
@@ -511,7 +511,7 @@ mod tests {
     }
 
     #[test]
-    fn speed_and_group_suit_the_motion() {
+    fn checks_speed_and_group_of_a_motion() {
         assert!(objection("move joint --to 1,2,3,4,5,6 --speed 10mm/s").contains("percent"));
         assert!(objection("move linear --to 1,2,3,4,5,6 --speed 10%").contains("mm/s or deg/s"));
         assert!(objection("move joint --to 1,2,3,4,5,6 --speed 1% --group B1").contains("--base-axes"));
@@ -521,7 +521,7 @@ mod tests {
     }
 
     #[test]
-    fn the_question_names_target_and_speed() {
+    fn question_names_target_and_speed() {
         assert_eq!(
             intent("move linear --to 185,0,125,180,0,0 --speed 70mm/s --tool 1 --form noflip"),
             "move R1 in a straight line to x=185.000 y=0.000 z=125.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg in base \
@@ -541,7 +541,7 @@ mod tests {
     const FAR: &str = "move linear --to 1300,0,1200,180,0,0 --speed 100mm/s";
 
     #[tokio::test(start_paused = true)]
-    async fn the_end_of_a_motion_is_waited_for() {
+    async fn waits_for_the_end_of_a_motion() {
         let lines =
             [FAR, FAR, "move relative --z -50 --speed 100mm/s --coordinate tool", "position --coordinates base"];
         let [far, again, up, position] = reports("", &lines).await.try_into().unwrap();
@@ -557,14 +557,14 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn without_waiting_the_motion_goes_on() {
+    async fn no_wait_leaves_the_motion_running() {
         let [moved, status] = reports("", &[&format!("{FAR} --no-wait"), "status"]).await.try_into().unwrap();
         assert_eq!(moved.unwrap()["elapsed_ms"], json!(null));
         assert_eq!(status.unwrap()["running"], json!(true));
     }
 
     #[tokio::test(start_paused = true)]
-    async fn an_alarm_or_hold_on_the_way_is_a_failure_that_tells_the_place() {
+    async fn alarm_or_hold_fails_with_the_position() {
         for (event, told) in [("alarm 4315 3 1", "alarm 4315 "), ("hold external on", "hold by external signal")] {
             let state = format!("[[event]]\nat_ms = 1000\ndo = \"{event}\"\n");
             let [moved, position] = reports(&state, &[FAR, "position"]).await.try_into().unwrap();
@@ -578,7 +578,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn an_axis_without_a_target_does_not_move_to_zero() {
+    async fn axis_without_a_target_does_not_move_to_zero() {
         let state = "positions = { B1 = [5000], S1 = [0, 70] }";
         let lines =
             [FAR, "move joint --group S1 --station-axes 5 --speed 1%", "position --group B1", "position --group S1"];

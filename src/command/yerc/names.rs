@@ -13,7 +13,7 @@ use crate::command::{Command, Context, Report, commands};
 use crate::controller::yerc::names::{FILES, FileNames, read};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, View};
-use crate::settings::names::{Kept, KeptFile, Place};
+use crate::settings::names::{CacheFile, CachedNames, KeptFile};
 
 commands! {
     /// Commands for names.
@@ -75,13 +75,13 @@ impl Command for Get {
                 }
             });
         }
-        items::nothing(files.len(), files.iter().filter_map(|file| file.error.as_ref()))?;
+        items::all_failed(files.len(), files.iter().filter_map(|file| file.error.as_ref()))?;
         let mut report = Fetched { files, names: names.len(), kept: false, read_at: None };
         // An incomplete set must not replace a complete one.
         if report.failure().is_none()
-            && let Some(place) = robot.names.place()
+            && let Some(place) = robot.names.cache_file()
         {
-            let kept = Kept::new(place, link.encoding, told_software(link).await, (kept, &names));
+            let kept = CachedNames::new(place, link.encoding, told_software(link).await, (kept, &names));
             place.write(&kept)?;
             (report.kept, report.read_at) = (true, Some(kept.read_at));
         }
@@ -169,8 +169,8 @@ impl Command for Forget {
     const ID: &'static str = "yerc.names.forget";
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Forgotten, Failure> {
-        let place = context.robot.names.place().filter(|_| !context.link.is_dry());
-        Ok(Forgotten { forgotten: place.map_or(Ok(false), Place::forget)? })
+        let place = context.robot.names.cache_file().filter(|_| !context.link.is_dry());
+        Ok(Forgotten { forgotten: place.map_or(Ok(false), CacheFile::forget)? })
     }
 }
 

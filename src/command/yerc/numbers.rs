@@ -5,7 +5,7 @@ use std::fmt::Display;
 use crate::controller::typed::integer;
 
 /// Parser for whole numbers from `first` to `last`.
-pub fn within<T>(first: T, last: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
+pub fn parse_in_range<T>(first: T, last: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
 where
     T: TryFrom<i64> + PartialOrd + Display + Copy + Send + Sync + 'static,
 {
@@ -21,8 +21,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_decimal_or_hexadecimal_and_stay_within() {
-        let number = within::<u8>(1, 100);
+    fn parses_decimal_and_hexadecimal_numbers_in_range() {
+        let number = parse_in_range::<u8>(1, 100);
         assert_eq!((number("7"), number("0x10")), (Ok(7), Ok(16)));
         assert_eq!(number("0x65"), Err("0x65 is not in 1..=100".to_owned()));
         assert_eq!(number("-1"), Err("-1 is not in 1..=100".to_owned()));

@@ -20,7 +20,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     };
     let query = link.by_model(|model| ReadPosition::new(model, Group::R1, Coordinates::Base)).await?;
     // A controller without a first robot has no position, which is not a failure.
-    let position = link.try_ask(&query).await.known()?.and_then(Result::ok);
+    let position = link.ask_optional(&query).await.known()?.and_then(Result::ok);
     Ok(report(status.ok_or_else(unknown)?, fault, position.as_ref()))
 }
 

@@ -13,7 +13,7 @@ use super::var::{PositionData, as_position, held};
 use crate::client::yerc::AxisSet;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
-use crate::command::frame::plot::Past;
+use crate::command::frame::plot::SeriesHistory;
 use crate::command::robot::position::{self as robot, Joint, Positions, Row};
 use crate::command::{Command, Context};
 use crate::controller::units::{self, Unit};
@@ -36,7 +36,7 @@ pub struct Position {
     #[arg(long)]
     plot: bool,
     #[arg(skip)]
-    past: Past,
+    past: SeriesHistory,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -92,7 +92,7 @@ impl Command for Position {
             rows.push(row(self.group, *coordinates, position, &per_degree));
         }
         let report = Positions::new(rows);
-        items::nothing(wanted.len(), report.errors())?;
+        items::all_failed(wanted.len(), report.errors())?;
         Ok(report.plotted(self.plot, &self.past))
     }
 }

@@ -7,11 +7,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::batch_split::{BatchSplit, read_in_batches};
 use super::complete;
 use super::link::Yerc;
-use super::orders::usage;
-use super::parts::{Parts, read_in_parts};
-use super::writes::{WriteOrder, before, write_all};
+use super::switch_commands::usage;
+use super::write_all::{WriteOrder, old_value, write_all};
 use crate::command::frame::items;
 use crate::command::frame::names;
 use crate::command::frame::watch::{Watch, Watchable, Watched};
@@ -55,7 +55,7 @@ impl Numbers {
 
 /// Parses register numbers: `5`, `M5`, `0..20`, or a name.
 fn numbers(text: &str) -> Result<Vec<u16>, String> {
-    names::read(&[Kind::Register], "0", text, |text| match register(text) {
+    names::parse_or_name(&[Kind::Register], "0", text, |text| match register(text) {
         Some(number) => Ok(vec![number]),
         None => parse_numbers(text).map_err(|error| error.to_string()),
     })
@@ -100,16 +100,16 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Items<u16, Word>, Failure> {
         let numbers = typed::once(self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()));
         let Context { link, robot, screen, .. } = context;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let model = link.model_for(|model| plan_register_reads(model, &numbers)).await?;
         let plan = |numbers: &[u16]| plan_register_reads(model, numbers).map_err(usage);
-        let mut outcomes = read_in_parts(link, plan, &numbers, |_| Parts::Halves, |_, _| {}).await?;
+        let mut outcomes = read_in_batches(link, plan, &numbers, |_| BatchSplit::Halves, |_, _| {}).await?;
         let words = numbers.into_iter().filter_map(|number| {
             let outcome = outcomes.remove(&number)?;
             Some(item(number, names, outcome.map_err(Failure::from)))
         });
         let report = Items::new(columns(), words.collect());
-        items::nothing(report.items.len(), report.errors())?;
+        items::all_failed(report.items.len(), report.errors())?;
         Ok(report)
     }
 }
@@ -127,7 +127,7 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenItems<u16, Word>, Failure> {
         let Context { link, robot, screen, .. } = context;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let mut seen = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen.insert(assignment.number)) {
             return Err(Failure::usage(format!("register {} is given twice", twice.number)).hint("give it one value"));
@@ -136,7 +136,7 @@ impl Command for Set {
         let steps = link.by_model(|model| plan_register_writes(model, &values)).await?;
         let numbers: Vec<u16> = values.iter().map(|(number, _)| *number).collect();
         let reads = link.by_model(|model| plan_register_reads(model, &numbers)).await?;
-        let old = before(link, &reads).await?;
+        let old = old_value(link, &reads).await?;
         write_all(link, screen, &steps).await?;
         let written = values
             .into_iter()
@@ -172,7 +172,7 @@ fn item(number: u16, names: &Names, value: Result<u16, Failure>) -> Item<u16, Wo
         (names::label(names, Kind::Register, &name), Word { number, value_hex: value.as_ref().ok().copied().map(hex) });
     Item::with("register", name, more, value.map(Some))
         .labelled(label)
-        .shown(|value| vec![(*value).into(), hex(*value).into()])
+        .with_cells(|value| vec![(*value).into(), hex(*value).into()])
 }
 
 fn columns() -> Columns {

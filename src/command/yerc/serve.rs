@@ -10,8 +10,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::serve::{self, Started, address, cannot_listen};
-use crate::command::yerc::simulated::{self, Simulated};
+use crate::command::serve::{self, Started, address, bind_failure};
+use crate::command::yerc::simulator_start::{self, Simulated};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::Simulator;
 use crate::failure::Failure;
@@ -66,7 +66,7 @@ impl serve::Serve for Serve {
 
     async fn start(self) -> Result<Started<Self>, Failure> {
         let model = self.model.unwrap_or(Model::Dx200);
-        let start = simulated::start(self.state.as_deref(), model, self.fault.as_ref())?;
+        let start = simulator_start::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
             let message = format!("the start state is for model {}, not {model}", start.model());
             return Err(Failure::usage(message).hint("remove --model, or change the file"));
@@ -76,12 +76,12 @@ impl serve::Serve for Serve {
         let file_port = self.file_port.unwrap_or(if robot.port() == 0 { 0 } else { robot.port().saturating_add(1) });
         let file = SocketAddr::new(robot.ip(), file_port);
         let bound = Server::bind([robot, file], self.fault.map(Faults::pair)).await;
-        let server = bound.map_err(|error| cannot_listen(&format!("UDP {robot} and {}", file.port()), &error))?;
+        let server = bound.map_err(|error| bind_failure(&format!("UDP {robot} and {}", file.port()), &error))?;
         let local = |channel| server.local(channel).context("socket");
         let (robot, file) = (local(0)?, local(1)?);
         let target = format!("udp://{robot}?file_port={}&model={model}", file.port());
         Ok(Started {
-            reach: serve::reach("yerc", &target),
+            reach: serve::connect_hint("yerc", &target),
             report: Serving { family: "yerc", model: model.name(), target },
             server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
             address: Some(robot),
@@ -98,7 +98,7 @@ pub struct Yerc {
 }
 
 impl serve::Server for Yerc {
-    async fn turn(&mut self) -> io::Result<()> {
+    async fn run_until_change(&mut self) -> io::Result<()> {
         self.server.turn(&mut self.simulated).await
     }
 

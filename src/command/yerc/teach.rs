@@ -6,13 +6,13 @@ use clap::{Args, ValueEnum};
 use super::complete;
 use super::link::{Link, Yerc};
 use super::moves::{compared, moved_meanwhile, stands};
-use super::orders::usage;
 use super::position;
+use super::switch_commands::usage;
 use super::var::{PositionData, as_position, called, held, is_undefined, unlike};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::names;
-use crate::command::frame::teach::{Taught, mismatch, not_read_back};
-use crate::command::yerc::each::ReadError;
+use crate::command::frame::teach::{Taught, mismatch, unverified};
+use crate::command::yerc::existing_items::ReadError;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::names::Kind;
@@ -62,7 +62,7 @@ impl From<StoredAs> for Coordinates {
 }
 
 fn variable(text: &str) -> Result<Reference, String> {
-    names::read(&[Kind::Variable], "P0", text, position_variable)
+    names::parse_or_name(&[Kind::Variable], "P0", text, position_variable)
 }
 
 fn position_variable(text: &str) -> Result<Reference, String> {
@@ -87,7 +87,7 @@ impl Command for Teach {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report, Failure> {
         let Context { link, authority, robot, screen, .. } = context;
-        let called = called(names::of(robot, screen), self.variable);
+        let called = called(names::of_robot(robot, screen), self.variable);
         let (name, group) = (self.variable.to_string(), self.group()?);
         let Some(old) = self.read(link.for_purpose("content of the variable")).await.known()? else {
             return Err(self.plan(link, group).await?);
@@ -108,8 +108,7 @@ impl Command for Teach {
         if !is_unchanged {
             link.ask(&WriteVariable::new(self.variable.number, new.clone()).map_err(usage)?).await?;
             let read_back = self.read(link).await;
-            let read_back =
-                read_back.map_err(|failure| not_read_back(&name, failure, &format!("yerc var get {name}")))?;
+            let read_back = read_back.map_err(|failure| unverified(&name, failure, &format!("yerc var get {name}")))?;
             if read_back.as_ref().map(Value::emit) != Some(new.emit()) {
                 let held = read_back.as_ref().map_or_else(|| "nothing".to_owned(), shown);
                 return Err(mismatch(&name, &shown(&new), &held));
@@ -144,7 +143,7 @@ impl Teach {
 
     /// Content of the variable; none if it is undefined.
     async fn read(&self, link: &mut Link) -> Result<Option<Value>, Failure> {
-        match link.try_ask(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
+        match link.ask_optional(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
             Ok(value) => Ok(Some(value)),
             Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => Ok(None),
             Err(refusal) => Err(refusal.into()),

@@ -6,10 +6,10 @@ use serde_json::Value;
 use super::link::Link;
 use super::link::Yerc;
 use crate::cli::{Cli, FamilyWord, Top};
-use crate::command::face::words::{Typed, Wish};
-use crate::command::frame::orders::IF_DIFFERENT;
+use crate::command::face::family_command::{FamilyLine, ParsedCommand};
+use crate::command::frame::settings_report::IF_DIFFERENT;
 use crate::command::frame::testing;
-use crate::command::frame::testing::{context, everything, planned};
+use crate::command::frame::testing::{context, planned, unlimited_access};
 use crate::command::{AnyCommand, Family as _};
 use crate::controller::text::hex;
 use crate::failure::Failure;
@@ -77,7 +77,7 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
     for words in lines {
         let (robot, command) = resolved(&target, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap();
         if link.is_none() {
-            link = Some(Yerc::connect(&robot, everything(), &quiet()).await.unwrap());
+            link = Some(Yerc::connect(&robot, unlimited_access(), &quiet()).await.unwrap());
         }
         let link = link.as_mut().expect("connected by the first line");
         let context = context(&robot, link);
@@ -102,7 +102,7 @@ impl Bench {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
-        let link = runtime.block_on(Yerc::connect(&robot, everything(), &quiet())).expect("a link");
+        let link = runtime.block_on(Yerc::connect(&robot, unlimited_access(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
@@ -135,7 +135,9 @@ pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn A
     let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
     let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
     match cli.command {
-        Top::Family(FamilyWord { typed: Typed { wish: Wish::Command(command), .. }, .. }) => Ok((robot, command)),
+        Top::Family(FamilyWord { typed: FamilyLine { command: ParsedCommand::Command(command), .. }, .. }) => {
+            Ok((robot, command))
+        }
         _ => unreachable!("the words follow yerc"),
     }
 }

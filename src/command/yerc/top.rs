@@ -4,7 +4,7 @@ use super::alarm::{SLOTS, present};
 use super::link::{Link, Yerc};
 use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
-use crate::command::face::declared;
+use crate::command::face::registration;
 use crate::command::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
 use crate::command::robot::state::Fault;
 use crate::command::{Access, Family as _};
@@ -31,7 +31,7 @@ pub struct Poller {
 const BANKS: [(&str, u16); 2] = [("inputs", 1), ("outputs", 1001)];
 const GROUPS: u16 = 4;
 
-impl declared::Poller for Poller {
+impl registration::Poller for Poller {
     type Family = Yerc;
 
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
@@ -50,7 +50,7 @@ impl declared::Poller for Poller {
             Detail::Axes | Detail::Full => Some(self.whole(detail, status, base.as_ref()).await?),
         };
         let fault = Fault::new(status.faulted(), alarms.first());
-        Ok(Sample { line: report(status, fault, base.as_ref()), answered_in, alarms, whole })
+        Ok(Sample { line: report(status, fault, base.as_ref()), answered_in, alarms, full: whole })
     }
 
     fn link(&mut self) -> &mut Link {
@@ -97,7 +97,7 @@ impl Poller {
     /// Reads an optional value: a refusal is `None`.
     async fn ask<Q: Query>(&mut self, query: Result<Q, QueryError>) -> Result<Option<Q::Answer>, Failure> {
         let query = query.map_err(|error| Failure::local(error.to_string()))?;
-        Ok(self.link.try_ask(&query).await?.ok())
+        Ok(self.link.ask_optional(&query).await?.ok())
     }
 }
 
@@ -107,7 +107,7 @@ fn indicators(status: ControllerStatus) -> Vec<Indicator> {
     vec![
         Indicator::new("teach", has(StatusBit::Teach), Tone::Warning),
         Indicator::new("play", has(StatusBit::Play), Tone::Good),
-        Indicator::should("remote", has(StatusBit::CommandRemote), Tone::Plain),
+        Indicator::expected("remote", has(StatusBit::CommandRemote), Tone::Plain),
         Indicator::new("servo", status.servo_on(), Tone::Good),
         Indicator::new("running", status.running(), Tone::Good),
         Indicator::new("hold", status.held(), Tone::Warning),

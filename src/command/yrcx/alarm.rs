@@ -9,11 +9,11 @@ use super::info::{Part, entry};
 use super::link::{Link, Yrcx};
 use super::numbers::Numbers;
 use super::several::read_numbers;
-use crate::command::face::shared::Alike;
+use crate::command::face::shared_commands::CommonReport;
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
-use crate::command::robot::alarm::{AlarmEntry, Alarms, Kind, Nothing, Row, Standing};
+use crate::command::robot::alarm::{AlarmEntry, AlarmState, Alarms, Kind, Nothing, Row};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
@@ -108,7 +108,7 @@ pub struct Signals {
     warning: bool,
 }
 
-impl Standing for Signals {
+impl AlarmState for Signals {
     fn none(&self) -> &'static str {
         match (self.alarm, self.warning) {
             (true, _) => "an alarm (SO(03) is on) that is not in the history",
@@ -140,7 +140,7 @@ impl Command for History {
         let read = read_numbers(context, ["alarm", "alarms"], field, &self.numbers, of).await?;
         let mut alarms = Vec::new();
         for (number, outcome) in read {
-            let Some(mut outcome) = outcome.filled() else { continue };
+            let Some(mut outcome) = outcome.with_defaults() else { continue };
             if let Some(entry) = outcome.data_mut() {
                 *entry = explained(entry.clone(), robot)?;
             }
@@ -175,7 +175,7 @@ impl Command for Reset {
         let Some(image) = link.look().await.known()? else { return Err(unknown()) };
         let (alarm, servo_on) = (output::ALARM.is_on(&image), output::SERVO_ON.is_on(&image));
         let words = if alarm { "alarm reset accepted; an alarm is still present" } else { "alarm reset" };
-        let report = WasReset { done: New::of("alarm", alarm, words).replaces(old), alarm, servo_on };
+        let report = WasReset { done: NewValue::of("alarm", alarm, words).replaces(old), alarm, servo_on };
         if !report.servo_on {
             if link.is_held() {
                 screen.note(POWER_OFF);
@@ -205,7 +205,7 @@ pub struct WasReset {
     servo_on: bool,
 }
 
-impl Alike for WasReset {
+impl CommonReport for WasReset {
     type Core = Done;
 
     fn core(&self) -> Done {

@@ -4,7 +4,7 @@
 use clap::{Args, ValueEnum};
 
 use super::position::Unit;
-use crate::command::frame::ending::MotionEnd;
+use crate::command::frame::wait_arguments::MotionEnd;
 use crate::controller::typed;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;

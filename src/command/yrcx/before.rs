@@ -6,7 +6,7 @@ use super::link::Link;
 use super::overwrite::there;
 use super::single::shown;
 use super::var::held;
-use crate::command::frame::orders::{BEFORE, Old, unwritten};
+use crate::command::frame::settings_report::{OLD_VALUE, Old, nothing_written};
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
@@ -16,7 +16,7 @@ use crate::gate::Change;
 /// Reads the values that a command replaces. Without an answer they stay unknown. A dry run notes the request.
 pub async fn before(link: &mut Link, order: &Order) -> Result<Old, Failure> {
     let Some(read) = reader(order) else { return Ok(Old::UNREAD) };
-    let values = there(link, &read.build()?, BEFORE).await.map_err(unwritten)?;
+    let values = there(link, &read.build()?, OLD_VALUE).await.map_err(nothing_written)?;
     Ok(Old::read(values.and_then(|values| told(order, &values))))
 }
 
@@ -29,7 +29,7 @@ pub fn question(order: &Order, intent: String, old: &Old) -> Change {
         Command::ServoFree => "free",
         _ => return change,
     };
-    match old.in_words() {
+    match old.describe() {
         Some(old) => change.replaces("servo", &old, new),
         None => change,
     }

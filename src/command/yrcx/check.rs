@@ -36,7 +36,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
             }
         }
     }
-    if held && image.is_none() && layers.is_well() {
+    if held && image.is_none() && layers.is_passed() {
         match through_session(robot, access, screen).await {
             Err(failure) => layers.fail(last, &failure),
             Ok(seen) => {
@@ -63,7 +63,7 @@ async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Resu
 
 fn signals(image: &Image, held: bool, layers: &mut Layers) {
     let mut must = |layer, is_well: bool, (well, ill): (&str, &str), advice: &str| {
-        if is_well { layers.ok(layer, well) } else { layers.wrong(layer, ill, advice) }
+        if is_well { layers.ok(layer, well) } else { layers.fail_with(layer, ill, advice) }
     };
     let is_stopped = output::EMERGENCY_STOP.is_on(image);
     must("CPU", output::CPU_OK.is_on(image), ("ready", "SO(01) is off"), "read the controller's display");
@@ -86,7 +86,7 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
         ("ready", &format!("its status is: {status}")),
         "another command is running, or an earlier one did not finish",
     );
-    layers.left_over(&left_over(image));
+    layers.leftover_drafts(&left_over(image));
     let runs = output::PROGRAM_RUNNING.is_on(image);
     let is_idle = !runs && !held;
     // The signals do not identify the program. A running program is not a fault.

@@ -11,7 +11,7 @@ use super::overwrite::there;
 use super::several::ask_each;
 use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
-use crate::command::frame::orders::{BEFORE, Old, Written};
+use crate::command::frame::settings_report::{OLD_VALUE, Old, Written};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
@@ -60,7 +60,7 @@ impl Command for Get {
             date = link.ask(&orders[0]).await.and_then(|done| date_of(&done.values));
         }
         let reading = Reading::of(date, time, Zoned::now().datetime());
-        items::nothing(PARTS, &reading.errors)?;
+        items::all_failed(PARTS, &reading.errors)?;
         Ok(reading)
     }
 }
@@ -252,12 +252,12 @@ async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<
     let mut found = [None, None];
     if date {
         let order = link.draft(table::Command::DateGet)?.build()?;
-        let values = there(link, &order, BEFORE).await?;
+        let values = there(link, &order, OLD_VALUE).await?;
         found[0] = values.and_then(|values| date_of(&values).ok()).map(|date| date.to_string());
     }
     if time {
         let order = link.draft(table::Command::TimeGet)?.build()?;
-        let values = there(link, &order, BEFORE).await?;
+        let values = there(link, &order, OLD_VALUE).await?;
         found[1] = values.and_then(|values| time_of(&values).ok()).as_ref().map(describe);
     }
     Ok(found)

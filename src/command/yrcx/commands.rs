@@ -6,7 +6,7 @@ use super::{
     alarm, backup, clock, data, devicenet, eip, info, io, motion, orders, param, point_calc, port, procedures,
     profibus, profinet, program, raw, status, teach, var,
 };
-use crate::command::backup::words::{Diff, Restore};
+use crate::command::backup::family_backup::{Diff, Restore};
 use crate::command::{Subcommands, commands};
 
 commands! {

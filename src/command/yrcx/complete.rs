@@ -34,7 +34,7 @@ pub const VARIABLE: ValueKind = named(&[Kind::Variable], &[""], || {
 pub const TASK: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     async {
         for (task, state) in tasks(robot).await {
-            robot.tell(Candidate::new(task, state));
+            robot.add_candidate(Candidate::new(task, state));
         }
     }
     .boxed_local()
@@ -89,7 +89,7 @@ async fn programs(robot: &dyn Ask, candidate: fn(&str, &str, &str) -> Candidate)
     for (task, state) in tasks(robot).await {
         if let Some(shown) = robot.data(&["yrcx", "program", "show", "--task", &task]).await {
             let (number, name) = (text(&shown, "number"), text(&shown, "program"));
-            robot.tell(candidate(&number, &name, &format!("task {task}, {state}")));
+            robot.add_candidate(candidate(&number, &name, &format!("task {task}, {state}")));
         }
     }
 }

@@ -9,7 +9,7 @@ use super::fieldbus::Explained;
 use super::info::told;
 use crate::command::ValueKind;
 use crate::command::face::explain::{self as face, Codes, Known};
-use crate::command::robot::alarm::{Alarm as Told, Besides, Kind, Source};
+use crate::command::robot::alarm::{Alarm as Told, ExtraColumns, Kind, Source};
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
 use crate::settings::alarms::{Alarms, Origin};
@@ -80,7 +80,7 @@ pub struct Group {
     group: Option<&'static str>,
 }
 
-impl Besides for Group {
+impl ExtraColumns for Group {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         vec![("group", self.group.map(ToOwned::to_owned))]
     }

@@ -14,16 +14,16 @@ use super::top::Poller;
 use super::trace::Recorder;
 use super::unit::Unit;
 use super::{check, hold, overview, panel};
-use crate::command::backup::words::Backups;
-use crate::command::backup::{BackedUp, Making, Restored, Restoring};
+use crate::command::backup::family_backup::Backups;
+use crate::command::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use crate::command::face::HeldLink;
-use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::face::panel::Panel;
+use crate::command::face::registration::Declaration;
 use crate::command::face::sample::Traffic;
+use crate::command::face::teach_panel::Panel;
 use crate::command::robot::alarm::Alarm;
-use crate::command::{Access, Context, Own};
+use crate::command::{Access, Context, FamilyArguments};
 use crate::controller::yrcx::{alarm, passing, simulator};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -67,8 +67,8 @@ impl Declaration for Yrcx {
         Unit::augment_args(command)
     }
 
-    fn read_arguments(matches: &mut ArgMatches) -> Result<Own, clap::Error> {
-        Unit::from_arg_matches_mut(matches).map(Own::of)
+    fn read_arguments(matches: &mut ArgMatches) -> Result<FamilyArguments, clap::Error> {
+        Unit::from_arg_matches_mut(matches).map(FamilyArguments::of)
     }
 
     fn stop_command() -> Self::Stop {
@@ -101,11 +101,11 @@ impl Declaration for Yrcx {
 impl Backups for Yrcx {
     const IDS: [&'static str; 3] = ["yrcx.backup", "yrcx.restore", "yrcx.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
         restore(context, restoring).await
     }
 }

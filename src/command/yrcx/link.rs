@@ -20,10 +20,10 @@ use super::unit::Unit;
 use crate::client::yrcx;
 pub use crate::client::yrcx::hex;
 use crate::client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
-use crate::command::face::sample::{Traffic, counted};
+use crate::command::face::sample::{Traffic, counter};
 use crate::command::frame::attach::{attach, is_held};
 use crate::command::frame::dry_run::Plan;
-use crate::command::frame::trace::locked;
+use crate::command::frame::trace::lock_writer;
 use crate::command::{Access, ConnectMode, Entry, Family};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::Alarm;
@@ -99,7 +99,7 @@ impl Family for Yrcx {
         link.client.stop().await.map(stopped).map_err(|error| link.failure(error))
     }
 
-    fn must_halt(link: &Link) -> bool {
+    fn needs_halt(link: &Link) -> bool {
         link.is_jogging()
     }
 
@@ -157,7 +157,7 @@ impl Family for Yrcx {
                  connection open"
             ));
         }
-        let recorded = locked(&trace).finish().and(recorder.map_or(Ok(()), Recorder::finish));
+        let recorded = lock_writer(&trace).finish().and(recorder.map_or(Ok(()), Recorder::finish));
         left.and(recorded)
     }
 }
@@ -184,7 +184,7 @@ fn tell_statistics(client: &Client, screen: &Screen) {
     let every = intervals.map(|(to, from)| format!(" every {to:?} and {from:?}")).unwrap_or_default();
     screen.detail(1, &format!("{sent} images sent, {received} received{every}"));
     irregular.push((losses.into(), "losses of the link"));
-    if let Some(text) = counted(&irregular) {
+    if let Some(text) = counter(&irregular) {
         screen.detail(1, &format!("link faults: {text}"));
     }
 }

@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use super::arguments::{Hand as HandSystem, Which};
 use super::single::one_row;
 use crate::command::commands;
-use crate::command::frame::orders::{Done, New, number};
+use crate::command::frame::settings_report::{Done, NewValue, number};
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 
@@ -62,7 +62,7 @@ one_row! {
             SpeedSetting::Auto => "auto_percent",
             SpeedSetting::Program => "program_percent",
         };
-        New::of(name, number(percent), format!("set the {setting} speed to {percent} %"))
+        NewValue::of(name, number(percent), format!("set the {setting} speed to {percent} %"))
     };
 
     /// Limits the torque of an axis, starting with the next motion; the parameter does not change.
@@ -78,7 +78,7 @@ one_row! {
     done {
         let percent = self.percent.trim_end_matches('%');
         let words = format!("limited the torque of axis {} to {percent} % , starting with the next motion", self.axis);
-        New::of("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
+        NewValue::of("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
     };
 
     /// Sets the inching distance.
@@ -93,7 +93,7 @@ one_row! {
             "set the inching distance to {} (pulses, or steps of 0.001 mm for Cartesian and tool axes)",
             self.distance
         );
-        New::of("inch_distance", number(&self.distance), words)
+        NewValue::of("inch_distance", number(&self.distance), words)
     };
 
     /// Selects a shift.
@@ -103,7 +103,7 @@ one_row! {
     }
     gives Command::ShiftSelect,
     with draft => draft.with(Key::Shift, self.shift.as_str()),
-    done New::of("shift", number(&self.shift), format!("selected shift {}", self.shift));
+    done NewValue::of("shift", number(&self.shift), format!("selected shift {}", self.shift));
 
     /// Selects a hand.
     HandSelect(self) "yrcx.hand.select" -> Done {
@@ -112,7 +112,7 @@ one_row! {
     }
     gives Command::HandSelect,
     with draft => draft.with(Key::Hand, self.hand.as_str()),
-    done New::of("hand", number(&self.hand), format!("selected hand {}", self.hand));
+    done NewValue::of("hand", number(&self.hand), format!("selected hand {}", self.hand));
 
     /// Selects a hand system.
     #[command(after_help = "`yrcx info arm` reads the hand system.")]
@@ -124,7 +124,7 @@ one_row! {
     with draft => draft.with(Key::Arm, i32::from(self.side == HandSystem::Left)),
     done {
         let side = if self.side == HandSystem::Left { "left" } else { "right" };
-        New::of("arm", side, format!("selected the {side}-handed system"))
+        NewValue::of("arm", side, format!("selected the {side}-handed system"))
     };
 
     /// Switches servos.
@@ -157,7 +157,7 @@ one_row! {
             ServoState::Off => "off",
             ServoState::Free => "free",
         };
-        let done = New::of("servo", state, format!("switched {} {state}", self.describe()));
+        let done = NewValue::of("servo", state, format!("switched {} {state}", self.describe()));
         done.with("axis", self.axis.as_deref().map_or(serde_json::Value::Null, number))
     };
 
@@ -177,11 +177,11 @@ one_row! {
         MotorState::Pwr => "switch motor power on",
     },
     done match self.state {
-        MotorState::On => New::of("motor_power", true, "switched motor power and all servos on").with("servo_on", true),
+        MotorState::On => NewValue::of("motor_power", true, "switched motor power and all servos on").with("servo_on", true),
         MotorState::Off => {
-            New::of("motor_power", false, "switched motor power and all servos off").with("servo_on", false)
+            NewValue::of("motor_power", false, "switched motor power and all servos off").with("servo_on", false)
         }
-        MotorState::Pwr => New::of("motor_power", true, "switched motor power on"),
+        MotorState::Pwr => NewValue::of("motor_power", true, "switched motor power on"),
     };
 
     /// Resets the status of remote commands to ready.
@@ -192,7 +192,7 @@ one_row! {
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,
-    done New::of("remote_command_status", "ready", "the controller is ready for a remote command");
+    done NewValue::of("remote_command_status", "ready", "the controller is ready for a remote command");
 }
 
 /// Speed settings.

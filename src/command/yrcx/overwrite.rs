@@ -15,9 +15,9 @@ use super::stores::{Kind, Numbered, Row};
 use crate::client::yrcx;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::orders::Old;
-use crate::command::frame::store::{Writable, overwriting, overwritten};
-use crate::command::robot::item::{Item, Written, WrittenItems, asked};
+use crate::command::frame::settings_report::Old;
+use crate::command::frame::store::{Writable, old_rows, overwriting};
+use crate::command::robot::item::{Item, Written, WrittenItems, as_requested};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table::Command;
@@ -162,7 +162,7 @@ trait Overwritten: Writable<Family = Yrcx> {
         let old = values.map(|values| table.row(key, values)).filter(|old| !table.is_blank(old));
         let is_same = old.as_ref().zip(new.as_ref().ok()).is_some_and(|(old, new)| Self::is_equal(old, new));
         let change = match (&old, &new) {
-            (Some(old), Ok(new)) => overwritten(&table, &[(key, Some(old), new)]),
+            (Some(old), Ok(new)) => old_rows(&table, &[(key, Some(old), new)]),
             (Some(old), Err(words)) => {
                 let [old, _] = table.difference(old, old);
                 overwriting(&table, &[[Self::asked(key), old, words.clone()]])
@@ -323,7 +323,10 @@ pub type Stored = WrittenItems<Json>;
 /// Report of a row that was stored, with the old one.
 pub fn stored(words: impl Into<String>, given: &Done) -> Stored {
     let Replaced { kind, name, values: [old, new], is_there } = given.replaced.clone().unwrap_or_default();
-    let words =
-        if is_there { format!("{} holds that already; nothing was written", asked(kind, &name)) } else { words.into() };
-    WrittenItems::said(words, vec![Written::new(Item::new(kind, name, Ok(new)), old, !is_there)])
+    let words = if is_there {
+        format!("{} holds that already; nothing was written", as_requested(kind, &name))
+    } else {
+        words.into()
+    };
+    WrittenItems::describe(words, vec![Written::new(Item::new(kind, name, Ok(new)), old, !is_there)])
 }

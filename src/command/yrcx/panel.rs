@@ -1,6 +1,6 @@
 //! Keys of `armctl teach` as `yrcx` command lines.
 
-use crate::command::face::panel::{Panel, System, words};
+use crate::command::face::teach_panel::{Panel, System, words};
 
 /// See [`Panel`].
 pub const PANEL: Panel = Panel {

@@ -13,7 +13,7 @@ use super::several::{ask_each, is_undefined};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::store::{
-    Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids, table_commands,
+    Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, table_commands,
 };
 use crate::controller::Risk;
 use crate::controller::nearest::nearest;
@@ -93,7 +93,7 @@ impl Store for Parameters {
     type More = More;
     type Options = Single;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["parameter", "parameters"],
         placeholder: "PARAMETER",
         range: "Name or number: WEIGHT; of an axis, TOLE.3, TOLE.1-4 or 259.3; TOLE is that of all axes",
@@ -136,7 +136,7 @@ impl Store for Parameters {
         Ok(Self { robot: link.unit() })
     }
 
-    fn place(&self) -> String {
+    fn table_suffix(&self) -> String {
         format!(" of robot {}", self.robot.max(1))
     }
 
@@ -196,7 +196,7 @@ impl Writable for Parameters {
         Ok(value.flatten())
     }
 
-    fn whole(&self, key: Setting, draft: &Option<i32>, old: Option<&Amount>) -> Result<Amount, Failure> {
+    fn complete_draft(&self, key: Setting, draft: &Option<i32>, old: Option<&Amount>) -> Result<Amount, Failure> {
         draft
             .map(|value| Amount::new(key, value))
             .or(old.copied())

@@ -9,7 +9,7 @@ use super::numbers::{Series, named, single};
 use super::several::ask_each;
 use super::single::one_row;
 use crate::command::frame::names;
-use crate::command::frame::orders::{Done, New};
+use crate::command::frame::settings_report::{Done, NewValue};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::robot::item::{Columns, Item, Items};
 use crate::command::yrcx::complete;
@@ -72,14 +72,14 @@ fn place(text: &str) -> Result<PortSignal, String> {
 
 /// Parses ports, a range of them, or a name.
 fn places(text: &str) -> Result<Series<PortSignal>, String> {
-    names::read(KINDS, "DO2", text, Series::reader(place))
+    names::parse_or_name(KINDS, "DO2", text, Series::reader(place))
 }
 
 /// SI and SO names refer to signals; a port has eight of them.
 const KINDS: &[Kind] = &[Kind::Port, Kind::Signal];
 
 fn signal_or_port(text: &str) -> Result<PortSignal, String> {
-    names::read(KINDS, "DO2.1", text, settable)
+    names::parse_or_name(KINDS, "DO2.1", text, settable)
 }
 
 fn settable(text: &str) -> Result<PortSignal, String> {
@@ -138,7 +138,7 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<Level, Bits>, Failure> {
         let Context { link, robot, screen, .. } = context;
-        let called = names::of(robot, screen);
+        let called = names::of_robot(robot, screen);
         let places: Vec<PortSignal> = Series::all(&self.places).copied().collect();
         let order = |place: &PortSignal| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
         let orders = places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
@@ -148,7 +148,7 @@ impl Command for Get {
             place.item(called, state)
         });
         let columns = Columns { name: "port", values: vec!["value", "bits 7 - 0"], empty: "no ports" };
-        Items::new(columns, items.collect()).asked(answers.asked).or_only_failure()
+        Items::new(columns, items.collect()).asked(answers.asked).single_failure()
     }
 }
 
@@ -183,7 +183,7 @@ impl PortSignal {
             Level::Signal(on) => vec![i32::from(*on).into(), "-".into()],
             Level::Port(value) => vec![(*value).into(), bits(*value).into()],
         };
-        Item::with(kind, name, more, state.map(|value| value.map(level))).labelled(label).shown(cells)
+        Item::with(kind, name, more, state.map(|value| value.map(level))).labelled(label).with_cells(cells)
     }
 }
 
@@ -220,7 +220,7 @@ one_row! {
         } else {
             format!("{place} = {} ({:08b})", self.value, self.value)
         };
-        New::of(place, self.value, words)
+        NewValue::of(place, self.value, words)
     };
 }
 

@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::{Link, Yrcx};
-use crate::command::face::shared::Alike;
+use crate::command::face::shared_commands::CommonReport;
 use crate::command::frame::dry_run::Known as _;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::procedure::Procedure;
@@ -48,7 +48,7 @@ macro_rules! procedures {
                     let old = was(context.link, [$(output::$signal)?].into_iter().next()).await?;
                     let elapsed = context.link.carry_out(Procedure::$procedure()).await?;
                     let elapsed_ms = u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX);
-                    Ok(CarriedOut { done: New::of($set, $new, $done).replaces(old), elapsed_ms })
+                    Ok(CarriedOut { done: NewValue::of($set, $new, $done).replaces(old), elapsed_ms })
                 }
             }
         )*
@@ -89,7 +89,7 @@ pub struct CarriedOut {
     elapsed_ms: u64,
 }
 
-impl Alike for CarriedOut {
+impl CommonReport for CarriedOut {
     type Core = Done;
 
     fn core(&self) -> Done {

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::link;
 use super::single::{Single, one_row};
-use crate::command::frame::orders::{Done, New, Old, number};
+use crate::command::frame::settings_report::{Done, NewValue, Old, number};
 use crate::command::robot::program as robot;
 use crate::command::yrcx::complete;
 use crate::command::{Report, commands};
@@ -93,13 +93,13 @@ fn describe(program: Option<&String>, name: Option<&String>, task: Option<&Strin
 }
 
 /// Report with the program selection.
-fn named(new: New, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> New {
+fn named(new: NewValue, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> NewValue {
     let numeric = |text: Option<&String>| text.map_or(serde_json::Value::Null, |text| number(text));
     new.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
 }
 
 impl Which {
-    fn named(&self, new: New) -> New {
+    fn named(&self, new: NewValue) -> NewValue {
         named(new, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 
@@ -121,7 +121,7 @@ impl WhichOrAll {
         self.name.as_ref().or_else(|| self.what.as_ref().filter(|what| !is_number(what)))
     }
 
-    fn named(&self, new: New) -> New {
+    fn named(&self, new: NewValue) -> NewValue {
         let new = named(new, self.program(), self.name(), self.task.as_ref());
         if self.all_programs { new.with("all_programs", true) } else { new }
     }
@@ -173,7 +173,7 @@ one_row! {
         let program = describe(self.program.program.as_ref(), self.program.name.as_ref(), None);
         let task = self.task.map_or_else(|| "the lowest vacant task".to_owned(), |task| format!("task {task}"));
         let words = format!("registered {program} in {task} with priority {}", self.priority);
-        let new = New::of("program_state", "registered", words);
+        let new = NewValue::of("program_state", "registered", words);
         let new = named(new, self.program.program.as_ref(), self.program.name.as_ref(), None);
         new.with("task", self.task).with("priority", number(&self.priority))
     };
@@ -207,7 +207,7 @@ macro_rules! starts {
                 }
 
                 fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-                    let new = New::of("program_state", $new, format!($done, self.which.describe()));
+                    let new = NewValue::of("program_state", $new, format!($done, self.which.describe()));
                     Ok(self.which.named(new).replaces(Old::UNREAD))
                 }
             }

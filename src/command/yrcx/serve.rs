@@ -81,7 +81,7 @@ impl serve::Serve for ServeArgs {
         }
         let server = serve.serve(wanted, start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref())?;
         Ok(Started {
-            reach: serve::reach("yrcx", &server.target),
+            reach: serve::connect_hint("yrcx", &server.target),
             report: Serving { family: "yrcx", target: server.target.clone() },
             address: server.address,
             server,
@@ -91,7 +91,7 @@ impl serve::Serve for ServeArgs {
 }
 
 impl serve::Server for Served {
-    async fn turn(&mut self) -> io::Result<()> {
+    async fn run_until_change(&mut self) -> io::Result<()> {
         std::future::pending().await
     }
 

@@ -3,7 +3,7 @@
 use super::link::Done;
 use super::link::Yrcx;
 use super::overwrite::{self, Stored};
-use crate::command::frame::orders;
+use crate::command::frame::settings_report;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Draft;
@@ -72,8 +72,8 @@ impl<R: Report> Said<R> for R {
     }
 }
 
-impl Said<orders::Done> for orders::New {
-    fn report(self, done: &Done) -> orders::Done {
+impl Said<settings_report::Done> for settings_report::NewValue {
+    fn report(self, done: &Done) -> settings_report::Done {
         self.replaces(done.old.clone())
     }
 }

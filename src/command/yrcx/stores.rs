@@ -13,7 +13,7 @@ use super::numbers::{Numbers, named, runs};
 use super::several::{ask_each, is_undefined};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::store::{self, Answers, Differing, Field, Ids, Single, Store, Words, Writable};
+use crate::command::frame::store::{self, Answers, Differing, Field, Ids, Single, Store, TableWords, Writable};
 use crate::command::robot::item::Plain;
 use crate::controller::Risk;
 use crate::controller::names::Kind as Label;
@@ -27,7 +27,7 @@ pub trait Kind: Debug + Send + Sync + 'static {
     /// Value of a row in reports.
     type Value: Debug + Clone + Serialize + JsonSchema;
     /// Texts of the table.
-    const WORDS: Words;
+    const WORDS: TableWords;
     /// Names of the reports.
     const IDS: Ids;
     /// Commands and fields of a row, shared with backups.
@@ -112,7 +112,7 @@ impl<K: Kind> Store for Numbered<K> {
     type More = Plain;
     type Options = Single;
 
-    const WORDS: Words = K::WORDS;
+    const WORDS: TableWords = K::WORDS;
     const IDS: Ids = K::IDS;
     const LABELS: Option<Label> = K::LABELS;
     const COMPLETE: ValueKind = K::COMPLETE;
@@ -209,7 +209,7 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(draft)
     }
 
-    fn whole(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
+    fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
         // Axes in another unit are not kept.
         let unit = K::RECORDS.columns[1..].iter().position(|(_, key)| *key == Key::Unit);
         let has_unit = |old: &&Row| unit.is_none_or(|at| draft[at].as_ref().is_none_or(|unit| *unit == old.texts[at]));

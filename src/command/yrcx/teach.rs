@@ -6,7 +6,7 @@ use super::link::{Link, Yrcx};
 use super::overwrite::{self, confirmation, there};
 use super::position::{Unit, group, position};
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::teach::{Taught, mismatch, not_read_back};
+use crate::command::frame::teach::{Taught, mismatch, unverified};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
@@ -70,7 +70,7 @@ impl Command for Teach {
             return Err(unknown());
         }
         let name = self.number();
-        let unread = |failure| not_read_back(&format!("point {name}"), failure, &format!("yrcx point get {name}"));
+        let unread = |failure| unverified(&format!("point {name}"), failure, &format!("yrcx point get {name}"));
         let held = there(link, &read, "").await.map_err(unread)?;
         let held =
             held.ok_or_else(|| unread(Failure::new(Kind::Refused, "the point is not defined on the controller")))?;

@@ -10,10 +10,10 @@ use serde_json::Value;
 use super::link::{Link, Yrcx};
 use super::unit::Unit;
 use crate::cli::{Cli, FamilyWord, Top};
-use crate::command::face::words::{Typed, Wish};
+use crate::command::face::family_command::{FamilyLine, ParsedCommand};
 use crate::command::frame::testing;
 use crate::command::frame::testing::{context, planned};
-use crate::command::{Access, AnyCommand, ConnectMode, Family as _, Own};
+use crate::command::{Access, AnyCommand, ConnectMode, Family as _, FamilyArguments};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
@@ -435,7 +435,9 @@ pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn A
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);
     match cli.command {
-        Top::Family(FamilyWord { typed: Typed { wish: Wish::Command(command), .. }, .. }) => Ok((robot, command)),
+        Top::Family(FamilyWord { typed: FamilyLine { command: ParsedCommand::Command(command), .. }, .. }) => {
+            Ok((robot, command))
+        }
         _ => unreachable!("the words follow yrcx"),
     }
 }
@@ -446,10 +448,10 @@ fn unit(words: &[&str]) -> u8 {
 }
 
 /// Family arguments before the command.
-fn own(words: &[&str]) -> Own {
+fn own(words: &[&str]) -> FamilyArguments {
     match parsed(DRY, words).map(|cli| cli.command) {
-        Ok(Top::Family(FamilyWord { typed, .. })) => typed.own,
-        _ => Own::default(),
+        Ok(Top::Family(FamilyWord { typed, .. })) => typed.arguments,
+        _ => FamilyArguments::default(),
     }
 }
 

@@ -12,7 +12,7 @@ use super::info::servos;
 use super::link::{Link, Yrcx};
 use super::overview::{alarm, latest, not_asked, report};
 use super::position::mm;
-use crate::command::face::declared;
+use crate::command::face::registration;
 use crate::command::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole};
 use crate::command::robot::alarm::Alarm;
 use crate::command::robot::state::PositionMm;
@@ -58,14 +58,14 @@ const TURNS: Duration = Duration::from_millis(500);
 const FIRST: u16 = 20;
 const GROUPS: u16 = 4;
 
-impl declared::Poller for Poller {
+impl registration::Poller for Poller {
     type Family = Yrcx;
 
     /// Opens the poller. It only sends reads, and opens no connection whose end affects the controller.
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         let mut robot = robot.clone();
         if let Place::Bus(bus) = &mut robot.target.value.place {
-            bus.calm = LOOKS;
+            bus.listen_before = LOOKS;
         }
         let link = Yrcx::connect(&robot, access, screen).await?;
         Ok(Self { link, told: Told::default(), next: 0, asked: None })
@@ -83,7 +83,7 @@ impl declared::Poller for Poller {
         let position = self.told.position_mm.map(PositionMm::of_axes);
         let line = report(&self.link, &image, self.told.alarm.as_ref(), position, not_asked);
         let whole = (detail >= Detail::Axes).then(|| self.whole(detail, &image, not_asked));
-        Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), whole })
+        Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), full: whole })
     }
 
     fn link(&mut self) -> &mut Link {
@@ -187,12 +187,12 @@ fn indicators(image: &Image) -> Vec<Indicator> {
         Indicator::new("servo", is_on(output::SERVO_ON), Tone::Good),
         Indicator::new("program", is_on(output::PROGRAM_RUNNING), Tone::Good),
         Indicator::new("sequence", is_on(output::SEQUENCE_RUNNING), Tone::Good),
-        Indicator::should("origin", is_on(output::ORIGIN_COMPLETE), Tone::Warning),
+        Indicator::expected("origin", is_on(output::ORIGIN_COMPLETE), Tone::Warning),
         Indicator::new("emergency", is_on(output::EMERGENCY_STOP), Tone::Bad),
         Indicator::new("alarm", is_on(output::ALARM), Tone::Bad),
         Indicator::new("warning", is_on(output::WARNING), Tone::Warning),
-        Indicator::should("CPU OK", is_on(output::CPU_OK), Tone::Bad),
-        Indicator::should("MP ready", is_on(output::MP_READY), Tone::Warning),
+        Indicator::expected("CPU OK", is_on(output::CPU_OK), Tone::Bad),
+        Indicator::expected("MP ready", is_on(output::MP_READY), Tone::Warning),
         Indicator::new("at start", is_on(output::PROGRAM_RESET), Tone::Plain),
         Indicator::new("command", Status::from_word(image.0[0]) == Status::Running, Tone::Good),
     ]

@@ -173,10 +173,10 @@ impl Recorder {
     pub fn finish(self) -> Result<(), Failure> {
         // If the writer has ended, its error appears when it is joined.
         let _ = self.packets.send(None);
-        self.writer.join().unwrap_or_else(|_| Err(trace::not_whole("the writer failed")))?;
+        self.writer.join().unwrap_or_else(|_| Err(trace::incomplete("the writer failed")))?;
         match self.lost.load(Ordering::Relaxed) {
             0 => Ok(()),
-            lost => Err(trace::not_whole(&format!("the disk was too slow for {lost} packets"))),
+            lost => Err(trace::incomplete(&format!("the disk was too slow for {lost} packets"))),
         }
     }
 }

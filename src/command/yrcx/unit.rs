@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::command::OwnArguments;
+use crate::command::AnyFamilyArguments;
 use crate::gate::Intent;
 
 /// Robot selection.
@@ -22,7 +22,7 @@ impl Unit {
     }
 }
 
-impl OwnArguments for Unit {
+impl AnyFamilyArguments for Unit {
     fn complete(&self, mut intent: Intent) -> Intent {
         let robot = format!("robot {}", self.unit);
         if self.unit > 0 && !intent.text.is_empty() && !intent.text.contains(&robot) {

@@ -11,8 +11,8 @@ use super::numbers::{named, single};
 use super::single::Single;
 use super::stores::{Kind, Numbered};
 use crate::command::frame::names as labels;
-use crate::command::frame::orders;
-use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::settings_report;
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, TableWords, ids};
 use crate::command::frame::watch::Watch;
 use crate::command::robot::item::{Item, Written, WrittenItems};
 use crate::command::yrcx::complete;
@@ -58,7 +58,7 @@ pub struct Variables;
 
 impl Kind for Variables {
     type Value = Number;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["variable", "variables"],
         placeholder: "VARIABLE",
         range: "SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real numbers; SGI0..SGI5 is a range",
@@ -114,7 +114,7 @@ enum Operand {
 }
 
 fn variable(text: &str) -> Result<i32, String> {
-    labels::read(&[names::Kind::Variable], "SGI0", text, variable_by_address)
+    labels::parse_or_name(&[names::Kind::Variable], "SGI0", text, variable_by_address)
 }
 
 fn variable_by_address(text: &str) -> Result<i32, String> {
@@ -150,13 +150,13 @@ impl Operand {
     /// Report of an assignment or a calculation.
     fn report(&self, variable: String, operation: &'static str, words: String, done: &link::Done) -> Changed {
         let operand = match self {
-            Self::Number(text) => orders::number(text),
+            Self::Number(text) => settings_report::number(text),
             Self::Variable(number) => name(*number).into(),
         };
         // The result of a calculation is not read back.
         let new = Some(operand.clone()).filter(|_| operation == "set" && matches!(self, Self::Number(_)));
         let item = Item::with("variable", variable, Operation { operation, operand }, Ok(new));
-        WrittenItems::said(words, vec![Written::new(item, done.old.value(), true)])
+        WrittenItems::describe(words, vec![Written::new(item, done.old.value(), true)])
     }
 
     fn describe(&self) -> String {

@@ -61,7 +61,7 @@ impl Host {
     }
 
     /// Whether both are the same host. Names are resolved only if necessary.
-    fn meets(&self, other: &Self, port: u16) -> bool {
+    fn matches(&self, other: &Self, port: u16) -> bool {
         if let (Self::Address(one), Self::Address(other)) = (self, other) {
             return one == other;
         }
@@ -118,7 +118,7 @@ impl Address {
             (
                 Self::Network { scheme, host, port },
                 Self::Network { scheme: other_scheme, host: other_host, port: other_port },
-            ) => scheme == other_scheme && port == other_port && host.meets(other_host, *port),
+            ) => scheme == other_scheme && port == other_port && host.matches(other_host, *port),
             (Self::Device(path), Self::Device(other)) => path == other,
             (Self::Named { .. }, Self::Named { .. }) => self == other,
             (Self::Station { line, number }, Self::Station { line: other_line, number: other }) => {
@@ -129,7 +129,7 @@ impl Address {
     }
 
     /// Whether both can be the same controller although they do not meet; only their network can decide.
-    pub fn may_meet(&self, other: &Self) -> bool {
+    pub fn may_match(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Named { network, kind, .. }, Self::Named { network: other_network, kind: other_kind, .. }) => {
                 network == other_network && kind != other_kind
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn spellings_of_one_address_are_one_controller() {
+    fn spellings_of_one_address_match() {
         for (one, other) in [
             ("udp://192.168.1.31", "udp://192.168.1.31:10040?model=fs100"),
             ("udp://127.0.0.1", "udp://localhost"),
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn other_controllers_are_others() {
+    fn different_controllers_do_not_match() {
         for (one, other) in [
             ("udp://10.0.0.1", "udp://10.0.0.2"),
             ("udp://10.0.0.1", "udp://10.0.0.1:10050"),
@@ -191,7 +191,7 @@ mod tests {
             ("can://can0?mac=5", "can://can1?mac=5"),
         ] {
             assert!(!address(one).meets(&address(other)), "{one} {other}");
-            assert!(!address(one).may_meet(&address(other)), "{one} {other}");
+            assert!(!address(one).may_match(&address(other)), "{one} {other}");
         }
     }
 }

@@ -9,24 +9,24 @@ use crate::failure::Failure;
 
 /// A given target: a URL, or a network address or serial port whose scheme depends on the family.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Given {
+pub enum TargetArgument {
     /// A URL.
     Url(Target),
     /// `192.168.1.31`, `192.168.1.31:10040`, `COM3`, `/dev/ttyUSB0`.
     Bare(String),
 }
 
-impl Given {
+impl TargetArgument {
     /// Target for a family.
     ///
     /// # Errors
     /// The family is unknown, or does not use this kind of address.
-    pub fn of(&self, family: Option<Family>) -> Result<Target, Failure> {
+    pub fn resolve(&self, family: Option<Family>) -> Result<Target, Failure> {
         let bare = match self {
             Self::Url(target) => return Ok(target.clone()),
             Self::Bare(bare) => bare,
         };
-        let wrong = |why: &str, hint: String| Err(Failure::usage(format!("target '{bare}': {why}")).hint(hint));
+        let incomplete = |why: &str, hint: String| Err(Failure::usage(format!("target '{bare}': {why}")).hint(hint));
         let host = bare.parse::<IpAddr>().map_or_else(
             |_| bare.clone(),
             |ip| match ip {
@@ -41,25 +41,25 @@ impl Given {
             (Some(Family::Toyo), false) if has_port => format!("tcp://{host}"),
             (Some(Family::Toyo), true) => format!("serial://{bare}"),
             (Some(Family::Toyo), false) => {
-                return wrong(
+                return incomplete(
                     "the port is missing; device servers have no default port",
                     format!("write tcp://{host}:PORT"),
                 );
             }
             (Some(Family::Yerc), true) => {
-                return wrong("a yerc robot has no serial port", "write udp://HOST".into());
+                return incomplete("a yerc robot has no serial port", "write udp://HOST".into());
             }
             (Some(Family::Yrcx), true) => {
                 let ways = format!("write slcan://{bare}?mac=N (DeviceNet) or profibus://{bare}?station=N");
-                return wrong("armctl cannot infer the fieldbus from this port", ways);
+                return incomplete("armctl cannot infer the fieldbus from this port", ways);
             }
             (None, false) => {
                 let port = if has_port { "" } else { ":PORT" };
                 let ways = format!("write udp://{host} (yerc), eip://{host} (yrcx) or tcp://{host}{port} (toyo)");
-                return wrong("armctl cannot infer the family from this address", ways);
+                return incomplete("armctl cannot infer the family from this address", ways);
             }
             (None, true) => {
-                return wrong(
+                return incomplete(
                     "armctl cannot infer the family from this address",
                     format!("write serial://{bare} for a toyo controller"),
                 );
@@ -74,7 +74,7 @@ impl Given {
     }
 }
 
-impl FromStr for Given {
+impl FromStr for TargetArgument {
     type Err = Failure;
 
     fn from_str(text: &str) -> Result<Self, Failure> {
@@ -82,7 +82,7 @@ impl FromStr for Given {
     }
 }
 
-impl fmt::Display for Given {
+impl fmt::Display for TargetArgument {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Url(target) => target.fmt(f),
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_family_tells_what_a_bare_address_is() {
+    fn family_completes_a_bare_address() {
         for (text, family, expected) in [
             ("127.0.0.1", Some(Family::Yerc), "udp://127.0.0.1"),
             ("127.0.0.1:10050", Some(Family::Yerc), "udp://127.0.0.1:10050"),
@@ -113,14 +113,14 @@ mod tests {
             ("/dev/ttyUSB0", Some(Family::Toyo), "serial:///dev/ttyUSB0"),
             ("udp://127.0.0.1", None, "udp://127.0.0.1"),
         ] {
-            let target = text.parse::<Given>().unwrap().of(family).unwrap();
+            let target = text.parse::<TargetArgument>().unwrap().resolve(family).unwrap();
             assert_eq!(target.url(), expected, "{text}");
             assert!(family.is_none_or(|family| target.check(family).is_ok()), "{text}");
         }
     }
 
     #[test]
-    fn what_a_bare_address_does_not_tell_is_asked_for() {
+    fn asks_for_missing_parts_of_a_bare_address() {
         for (text, family, hint) in [
             ("127.0.0.1", None, "udp://127.0.0.1 (yerc)"),
             ("127.0.0.1", Some(Family::Toyo), "tcp://127.0.0.1:PORT"),
@@ -128,11 +128,11 @@ mod tests {
             ("/dev/ttyUSB0", Some(Family::Yrcx), "profibus:///dev/ttyUSB0"),
             ("/dev/ttyUSB0", None, "serial:///dev/ttyUSB0"),
         ] {
-            let failure = text.parse::<Given>().unwrap().of(family).unwrap_err();
+            let failure = text.parse::<TargetArgument>().unwrap().resolve(family).unwrap_err();
             assert!(failure.hint.as_ref().is_some_and(|it| it.contains(hint)), "{text}: {failure:?}");
         }
         for text in ["robot", "COMET", "com", "cell3:10040"] {
-            assert!(text.parse::<Given>().is_err(), "{text}");
+            assert!(text.parse::<TargetArgument>().is_err(), "{text}");
         }
     }
 }

@@ -67,7 +67,7 @@ pub struct Bus {
     /// Whether a connection controls the robot; if not, it only reads.
     pub is_owner: bool,
     /// Minimum interval of images for a caller that reads rarely.
-    pub calm: Duration,
+    pub listen_before: Duration,
     address: Address,
     short_name: String,
     options: Arc<dyn Any + Send + Sync>,
@@ -79,7 +79,7 @@ impl Bus {
     pub(super) fn parse(scheme: &'static Scheme, place: &str, query: &mut Query) -> Result<Self, String> {
         let text = format!("{place}?{query}");
         let Place { address, short_name, is_owner, options } = (scheme.parse)(place, query)?;
-        Ok(Self { scheme, is_owner, calm: Duration::ZERO, address, short_name, options, text })
+        Ok(Self { scheme, is_owner, listen_before: Duration::ZERO, address, short_name, options, text })
     }
 
     /// Address of the controller.
@@ -106,7 +106,7 @@ impl fmt::Debug for Bus {
 
 impl PartialEq for Bus {
     fn eq(&self, other: &Self) -> bool {
-        (self.scheme.name, &self.text, self.calm) == (other.scheme.name, &other.text, other.calm)
+        (self.scheme.name, &self.text, self.listen_before) == (other.scheme.name, &other.text, other.listen_before)
     }
 }
 
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_scheme_says_how_its_urls_look() {
+    fn every_scheme_describes_its_urls() {
         for scheme in BUSES {
             assert!(scheme.shortest.starts_with(&format!("{}:", scheme.name)), "{scheme:?}");
             assert!(scheme.form.starts_with(&format!("{}:", scheme.name)), "{scheme:?}");

@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn urls_lead_to_adapters() {
+    fn parses_urls_of_adapters() {
         let usual = DeviceNet {
             place: network::Place::Serial { path: "/dev/ttyACM0".to_owned(), baud: 115_200 },
             mac: Mac::new(5).unwrap(),
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_named() {
+    fn names_mistakes_in_urls() {
         for (url, part) in [
             ("slcan:/dev/ttyACM0?mac=5", "slashes"),
             ("slcan:///dev/ttyACM0", "mac is missing"),

@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_a_url_can_say() {
+    fn parses_every_part_of_a_url() {
         let url = "eip://10.0.0.2:1?in=101&out=151&config=none&in_size=50&out_size=64&rpi=5ms&multiplier=4\
                    &multicast=yes&role=input_only&key=636:43:5:1.2";
         let key = EipKey { vendor: 636, device_type: 43, product: 5, major: 1, minor: 2 };
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_named() {
+    fn names_mistakes_in_urls() {
         for (url, part) in [
             ("eip:h", "slashes"),
             ("eip://", "host is missing"),

@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_a_url_can_say() {
+    fn parses_every_part_of_a_url() {
         let usual = profibus("profibus:///dev/ttyUSB0?station=5").unwrap();
         assert_eq!((usual.port.as_str(), usual.station, usual.master), ("/dev/ttyUSB0", 5, 2));
         assert_eq!((usual.baud, usual.is_owner, usual.is_big_endian), (500_000, true, false));
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_named() {
+    fn names_mistakes_in_urls() {
         for (url, part) in [
             ("profibus:COM3?station=5", "slashes"),
             ("profibus://?station=5", "adapter is missing"),
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn stations_of_one_line_are_different_controllers() {
+    fn stations_on_one_line_are_different_controllers() {
         let address = |url: &str| Address::of(&url.parse().unwrap());
         let five = address("profibus:///dev/null?station=5");
         assert!(five.meets(&address("profibus:///dev/../dev/null?station=5&baud=9.6k")));

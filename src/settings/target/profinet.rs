@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_a_url_can_say() {
+    fn parses_every_part_of_a_url() {
         let ms = Duration::from_millis;
         let usual = profinet("profinet://Robot-7@eth0").unwrap();
         assert_eq!((&usual.station, usual.interface.as_str()), (&Station::Name("robot-7".to_owned()), "eth0"));
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_named() {
+    fn names_mistakes_in_urls() {
         for (url, part) in [
             ("profinet:robot@eth0", "slashes"),
             ("profinet://robot", "the interface is missing"),
@@ -249,16 +249,16 @@ mod tests {
     }
 
     #[test]
-    fn one_station_is_one_controller_however_it_is_written() {
+    fn spellings_of_one_station_match() {
         let address = |url: &str| Address::of(&url.parse().unwrap());
         let robot = address("profinet://robot-7@eth0?cycle=8ms");
         assert!(robot.meets(&address("profinet://ROBOT-7@eth0")));
         for other in ["profinet://robot-8@eth0", "profinet://robot-7@eth1"].map(address) {
-            assert!(!robot.meets(&other) && !robot.may_meet(&other), "{other:?}");
+            assert!(!robot.meets(&other) && !robot.may_match(&other), "{other:?}");
         }
         let card = address("profinet://02:00:00:00:00:AB@eth0");
-        assert!(!robot.meets(&card) && robot.may_meet(&card), "only the network knows whether it is the same");
+        assert!(!robot.meets(&card) && robot.may_match(&card), "only the network knows whether it is the same");
         assert!(card.meets(&address("profinet://02:00:00:00:00:ab@eth0?cycle=8ms")));
-        assert!(!robot.may_meet(&address("profinet://02:00:00:00:00:AB@eth1")), "another network");
+        assert!(!robot.may_match(&address("profinet://02:00:00:00:00:AB@eth1")), "another network");
     }
 }

@@ -17,8 +17,8 @@ pub fn authority<'a>(scheme: &str, place: &'a str) -> Result<&'a str, String> {
 /// Takes an option with fixed values; the first is the default.
 pub fn choice<T: Copy, const N: usize>(query: &mut Query, key: &str, known: [(&str, T); N]) -> Result<T, String> {
     let Some(given) = query.take(key) else { return Ok(known[0].1) };
-    let found = known.iter().find(|(word, _)| *word == given);
-    found.map(|(_, value)| *value).ok_or_else(|| {
+    let value = known.iter().find(|(word, _)| *word == given);
+    value.map(|(_, value)| *value).ok_or_else(|| {
         let words = known.map(|(word, _)| word).join(" or ");
         format!("{key} must be {words}, not '{given}'")
     })
@@ -123,7 +123,7 @@ impl Query {
 
 /// Decodes percent escapes.
 pub fn percent_decoded(text: &str) -> Result<String, String> {
-    let wrong = || format!("'{text}' has an invalid % escape");
+    let invalid = || format!("'{text}' has an invalid % escape");
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.bytes();
     while let Some(byte) = rest.next() {
@@ -131,9 +131,9 @@ pub fn percent_decoded(text: &str) -> Result<String, String> {
             bytes.push(byte);
             continue;
         }
-        let mut digit = || rest.next().and_then(|byte| char::from(byte).to_digit(16)).ok_or_else(wrong);
+        let mut digit = || rest.next().and_then(|byte| char::from(byte).to_digit(16)).ok_or_else(invalid);
         let value = digit()? * 16 + digit()?;
-        bytes.push(u8::try_from(value).map_err(|_| wrong())?);
+        bytes.push(u8::try_from(value).map_err(|_| invalid())?);
     }
-    String::from_utf8(bytes).map_err(|_| wrong())
+    String::from_utf8(bytes).map_err(|_| invalid())
 }

@@ -1,5 +1,5 @@
-//! Every line of the help against a controller that records what reaches it: on a read-only robot, without a yes, and in a
-//! dry run nothing dangerous is sent, on any link, directly or through a session.
+//! Every example line of the help against a controller that records requests: on a read-only robot, without
+//! confirmation, and in a dry run, nothing dangerous is sent, on any link, directly or through a session.
 
 #[cfg(target_os = "linux")]
 mod network;
@@ -9,41 +9,41 @@ mod yrcx;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use armctl::command::leaves::leaves;
+use armctl::command::leaf_commands::leaves;
 use armctl::controller::Risk;
 
 use super::desk::{Came, Desk, came};
 use crate::support::terminal::Terminal;
 
-/// What reached a controller, by the most that it does.
+/// Effect of the recorded requests: the most severe one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
-    /// A link comes or goes, and nothing is asked: the holder of a session does so by itself.
+    /// A link opens or closes, without a request: a session process does so by itself.
     Link,
     /// Nothing changes.
     Read,
     /// The robot stops.
     Stop,
-    /// Something changes that can be set again.
+    /// A setting changes that can be set again.
     Write,
-    /// What a person wrote is overwritten or deleted, or something moves.
+    /// User data is overwritten or deleted, or something moves.
     Danger,
 }
 
-/// A controller that records what reaches it.
+/// A controller that records requests.
 pub trait Recorder {
-    /// The family of its lines.
+    /// Family of its lines.
     fn family(&self) -> &'static str;
     /// Its target URL.
     fn url(&self) -> &str;
-    /// What reached it since the last call.
+    /// Effect of the requests since the last call.
     fn take(&mut self) -> Vec<(Effect, String)>;
 }
 
 const STOPS: [&str; 7] =
     ["stop", "yerc hold on", "yerc job stop", "yerc stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
 
-/// A line of the help as it is run here.
+/// A help line as run here.
 #[derive(Debug)]
 struct Line {
     words: Vec<String>,
@@ -51,8 +51,8 @@ struct Line {
     is_stop: bool,
 }
 
-/// The lines for a family, with an end for those that have none, and without their own robots and formats: all that change
-/// something, and one of each command that reads. Stops come last, because much is refused behind them.
+/// Lines of a family, with a limit for endless ones, and without their robots and formats: all lines that change
+/// something, and one of each read command. Stops are last, because the controller refuses much after them.
 fn lines(family: &str) -> Vec<Line> {
     let mut seen = BTreeSet::new();
     let mut lines = Vec::new();
@@ -71,7 +71,7 @@ fn lines(family: &str) -> Vec<Line> {
     lines
 }
 
-/// The words of a line, some in quotes.
+/// Words of a line, with quotes.
 fn split(line: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut is_quoted = false;
@@ -85,7 +85,7 @@ fn split(line: &str) -> Vec<String> {
     words
 }
 
-/// Without `-r`, `-t`, `--all` and `--dry-run`, and ended by time or count where it would go on.
+/// Without `-r`, `-t`, `--all` and `--dry-run`, and limited by time or count if endless.
 fn bounded(words: &[String]) -> Vec<String> {
     let mut bounded: Vec<String> = Vec::new();
     let mut rest = words.iter();
@@ -106,7 +106,7 @@ fn bounded(words: &[String]) -> Vec<String> {
     bounded
 }
 
-/// How the robot of a pass is, and how it is talked to.
+/// State of the robot, and kind of connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Pass {
     ReadOnly,
@@ -123,14 +123,13 @@ impl Pass {
         }
     }
 
-    /// Whether a line says something here that it does not say in another pass. A station that takes another name or
-    /// address without a yes is not found again.
+    /// Whether a line is skipped in this run. A station that gets another name or address would not be found again.
     fn has(self, line: &Line) -> bool {
         let is_renamed = || line.words.iter().any(|word| word == "--temporary");
         self != Self::WithoutYes || line.risk > Risk::Read && !is_renamed()
     }
 
-    /// The most that a line may do.
+    /// The highest risk that a line may have.
     fn most(self, line: &Line, in_session: bool) -> Option<Effect> {
         match self {
             Self::DryRun => in_session.then_some(Effect::Link),
@@ -142,7 +141,7 @@ impl Pass {
     }
 }
 
-/// A robot at a desk whose full backup `press` differs from what the controller has.
+/// An environment with a robot whose complete backup `press` differs from the controller.
 pub struct Bench<'a> {
     desk: Desk,
     recorder: &'a mut dyn Recorder,
@@ -165,12 +164,12 @@ impl<'a> Bench<'a> {
 
     fn run(&self, words: &[&str]) -> Came {
         let mut command = self.desk.command("-r cell --timeout 500ms");
-        // What edits gets its file back as it was.
+        // Restores the file after an edit command.
         command.env("EDITOR", "true");
         came(&command.args(words).output().expect("armctl starts"))
     }
 
-    /// Does what must succeed before a test begins.
+    /// Runs a command that must succeed before the test.
     #[track_caller]
     pub fn prepare(&mut self, line: &str) {
         let came = self.run(&line.split(' ').collect::<Vec<_>>());
@@ -178,12 +177,12 @@ impl<'a> Bench<'a> {
         self.recorder.take();
     }
 
-    /// A file that lines name.
+    /// Creates a file that lines use.
     pub fn write(&self, name: &str, text: &str) {
         std::fs::write(self.desk.folder.path().join(name), text).expect("the file is written");
     }
 
-    /// All lines in one pass; `by` says how the robot is reached.
+    /// Runs all lines in one mode; `by` selects the robot.
     fn pass(&mut self, pass: Pass, by: &str, in_session: bool) {
         self.is_read_only(pass == Pass::ReadOnly);
         for line in lines(self.recorder.family()).iter().filter(|line| pass.has(line)) {
@@ -197,7 +196,7 @@ impl<'a> Bench<'a> {
         self.is_read_only(false);
     }
 
-    /// What is wrong with what a line has sent.
+    /// Checks the recorded effect of a line.
     fn judge(&mut self, most: Option<Effect>, came: &Came) -> Option<String> {
         let sent = self.recorder.take();
         let is_known = came.exit.is_some_and(|exit| (0..=9).contains(&exit));
@@ -207,7 +206,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// `setup` and `teach`, which ask at a terminal.
+    /// Runs `setup` and `teach`, which ask at a terminal.
     fn panels(&mut self, by: &str) {
         let url = self.recorder.url().to_owned();
         for pass in [Pass::ReadOnly, Pass::WithoutYes, Pass::DryRun] {
@@ -240,10 +239,10 @@ impl<'a> Bench<'a> {
         setup.press("\r");
         setup.says("a URL:");
         setup.press(&format!("{url}\r"));
-        // A layer that fails, as beside a session that has the port, is asked about.
+        // A failed layer, for example because a session holds the port, causes a question.
         for _ in 0..8 {
             match setup.says_one_of(&["What now?", "Name [", "Which controller"]) {
-                // The third of the list, which each key draws anew.
+                // The third entry of the list; each key draws it again.
                 0 => {
                     setup.press("\x1b[B\x1b[B\r");
                     setup.says("What now?: continue anyway");
@@ -267,12 +266,12 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// All passes, directly and through a session.
+    /// Runs all modes, directly and through a session.
     pub fn hold_all(mut self) {
         for by in ["directly", "in a session"] {
             let in_session = by == "in a session";
             if in_session {
-                // A watch has opened one by itself where the link takes one client.
+                // A watch has opened a session by itself, if the link accepts one client.
                 self.desk.run("session close --all");
                 self.prepare("session open --background --yes");
                 // By then its first image has arrived.
@@ -292,10 +291,10 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// What is wrong with how a line was refused: what changes a read-only robot, or moves one, ends with 7. A command of
-/// another fieldbus is a mistake, and so is a file that is not there.
+/// Checks the refusal of a line: a change of a read-only robot, or a motion, ends with exit code 7. A command of
+/// another fieldbus is a usage error, and so is a missing file.
 fn refusal(pass: Pass, line: &Line, came: &Came) -> Option<String> {
-    // What depends on the robot reads of a read-only one what reading alone can reach.
+    // On a read-only robot, such commands read only what needs no selection.
     let depends = line.words.iter().any(|word| ["backup", "diff"].contains(&word.as_str()));
     let must = match pass {
         Pass::ReadOnly => line.risk > Risk::Read && !line.is_stop && !depends,

@@ -1,18 +1,19 @@
-//! PROFINET: the same between two network namespaces.
+//! PROFINET: the same test between two network namespaces.
 
 use std::process::Command;
 
 use super::yrcx::{Controller, hold_all};
 use crate::support::namespaces::{SKIPPED, run};
 
-/// What the second network card runs.
+/// Command in the second network namespace.
 const THERE: &str = "THERE";
 
 #[test]
-fn profinet_brings_nothing_dangerous() {
+fn profinet_commands_send_only_authorized_frames() {
     let program = std::env::current_exe().expect("this test has a file");
     let program = program.to_str().expect("its path is UTF-8");
-    let inside = "exec \"$PROGRAM\" --exact gate::recorder::network::between_two_cards --ignored --nocapture 2>&1";
+    let inside =
+        "exec \"$PROGRAM\" --exact gate::recorder::network::runs_between_two_network_cards --ignored --nocapture 2>&1";
     match run(inside, &[("PROGRAM", program)]) {
         None => println!("{SKIPPED}"),
         Some(text) => assert!(text.contains("test result: ok. 1 passed"), "{text}"),
@@ -21,7 +22,7 @@ fn profinet_brings_nothing_dangerous() {
 
 #[test]
 #[ignore = "the test above runs it in its namespaces"]
-fn between_two_cards() {
+fn runs_between_two_network_cards() {
     let there = std::env::var(THERE).expect("the other namespace");
     let mut words = there.split(' ');
     let mut armctl = Command::new(words.next().expect("a program"));

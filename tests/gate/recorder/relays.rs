@@ -1,4 +1,4 @@
-//! Yaskawa and Toyo controllers: a relay before a simulated one, which records what clients send.
+//! Yaskawa and Toyo controllers: a relay for a simulated one that records requests.
 
 use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};
@@ -35,14 +35,14 @@ impl Recorder for Relay {
         let effect = |bytes: &[u8]| match ((self.is_harmless)(bytes), (self.is_stop)(bytes)) {
             (_, true) => Effect::Stop,
             (true, false) => Effect::Read,
-            // Which of the two is for the tests of the family.
+            // The tests of the family distinguish these two.
             (false, false) => Effect::Write,
         };
         sent.iter().map(|bytes| (effect(bytes), String::from_utf8_lossy(bytes).into_owned())).collect()
     }
 }
 
-/// Takes datagrams to a port, and answers back to whoever sent the last one.
+/// Relays datagrams to a port, and answers to the last sender.
 fn datagrams(to: SocketAddr, sent: &Sent) -> SocketAddr {
     let bind = || UdpSocket::bind("127.0.0.1:0").expect("a port");
     let (front, back) = (bind(), bind());
@@ -57,7 +57,7 @@ fn datagrams(to: SocketAddr, sent: &Sent) -> SocketAddr {
         while let Ok((len, from)) = front.recv_from(&mut buffer) {
             *client.lock().expect("no relay panics") = Some(from);
             sent.lock().expect("no relay panics").push(buffer[..len].to_vec());
-            // A controller that has ended takes nothing.
+            // The controller may have ended.
             let _ = back.send(&buffer[..len]);
         }
     });
@@ -72,7 +72,7 @@ fn datagrams(to: SocketAddr, sent: &Sent) -> SocketAddr {
     address
 }
 
-/// Takes connections, and records what comes in whole lines.
+/// Relays connections, and records complete lines.
 fn lines(to: SocketAddr, sent: &Sent) -> SocketAddr {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = listener.local_addr().expect("an address");
@@ -109,7 +109,7 @@ fn lines(to: SocketAddr, sent: &Sent) -> SocketAddr {
 const JOB: &str = "/JOB\r\n//NAME WELD\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n";
 
 #[test]
-fn yaskawa_brings_nothing_dangerous() {
+fn yerc_commands_send_only_authorized_frames() {
     let controller = Simulator::start("yerc");
     let (address, settings) = controller.place();
     let (port, rest) = settings.strip_prefix("file_port=").and_then(|rest| rest.split_once('&')).expect("two ports");
@@ -138,7 +138,7 @@ fn yaskawa_brings_nothing_dangerous() {
 }
 
 #[test]
-fn toyo_brings_nothing_dangerous() {
+fn toyo_commands_send_only_authorized_lines() {
     let controller = Simulator::start("toyo");
     let (address, _) = controller.place();
     let sent = Sent::default();
@@ -148,7 +148,7 @@ fn toyo_brings_nothing_dangerous() {
         url,
         sent,
         is_harmless: toyo::passing::only_reads_or_stops,
-        // To end a jog takes the host.
+        // The end of a jog needs host control.
         is_stop: |bytes| {
             [&b"@STOP"[..], b"@HSON", b"@HSOF", b"@JGST X=SP Y=SP Z=SP R=SP"].iter().any(|stop| bytes.starts_with(stop))
         },

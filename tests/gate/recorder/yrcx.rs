@@ -1,4 +1,4 @@
-//! YRCX controllers: the images that the simulated controller says it was shown.
+//! YRCX controllers: the images that the simulated controller reports.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStderr, Command, Stdio};
@@ -11,7 +11,7 @@ use armctl::settings::target::bus::simulators;
 
 use super::{Bench, Effect, Recorder};
 
-/// What the lines overwrite is there, and else little, so that a full backup is soon made.
+/// Only the data that the lines overwrite, so that a complete backup is fast.
 const STATE: &str = r#"
 stock = false
 [points]
@@ -43,7 +43,7 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// Starts one; `armctl` begins the command line.
+    /// Starts a controller; `armctl` begins the command line.
     pub fn start(mut armctl: Command, bus: &str, more: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let state = folder.path().join("state.toml");
@@ -77,10 +77,10 @@ impl Controller {
         line.trim_end().to_owned()
     }
 
-    /// The effect of an image behind the last one.
+    /// Effect of an image after the previous one.
     fn effect(&mut self, entry: &str) -> Effect {
         let Some((command, signals)) = entry.strip_prefix("WI ").and_then(|entry| entry.split_once(" SI ")) else {
-            // The next master begins at rest.
+            // The next master begins with a resting image.
             self.shown = resting();
             return Effect::Link;
         };
@@ -150,7 +150,7 @@ impl Drop for Controller {
     }
 }
 
-/// All lines on a controller.
+/// Runs all lines with a controller.
 pub fn hold_all(mut controller: Controller) {
     let mut bench = Bench::new(&mut controller);
     bench.prepare("session open --background --yes");
@@ -168,21 +168,21 @@ fn armctl() -> Command {
 }
 
 #[test]
-fn ethernet_ip_brings_nothing_dangerous() {
+fn ethernet_ip_commands_send_only_authorized_frames() {
     hold_all(Controller::start(armctl(), "eip", &["--bind", "127.0.0.1:0"]));
 }
 
 #[test]
-fn devicenet_brings_nothing_dangerous() {
+fn devicenet_commands_send_only_authorized_frames() {
     hold_all(Controller::start(armctl(), "devicenet", &[]));
 }
 
 #[test]
-fn profibus_brings_nothing_dangerous() {
+fn profibus_commands_send_only_authorized_frames() {
     hold_all(Controller::start(armctl(), "profibus", &[]));
 }
 
-/// A new fieldbus is missed here.
+/// Add a test for each new fieldbus here.
 #[test]
 fn every_fieldbus_has_its_recorder() {
     let buses: std::collections::BTreeSet<&str> = simulators().map(|(_, bus)| bus).collect();

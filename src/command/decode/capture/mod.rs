@@ -17,7 +17,7 @@ use jiff::Timestamp;
 use serde::Serialize;
 
 pub use self::report::Capture;
-use self::report::{FULL, Links, Problems, counted};
+use self::report::{FULL, Links, Problems, count_text};
 use super::Field;
 use crate::command::Report as _;
 use crate::command::frame::run::{Run, RunError};
@@ -182,7 +182,7 @@ struct MessageBuffer<F> {
 }
 
 /// Memory limit for messages if they can be streamed instead.
-const FEW: usize = 16 << 20;
+const NOTES_LIMIT: usize = 16 << 20;
 /// Memory limit if all messages are needed as one value, for a filter.
 const ROOM: usize = 256 << 20;
 
@@ -236,7 +236,7 @@ pub fn print<D: CaptureDecoder>(
     let name = input.name();
     let source = Source { name: &name, open: || input.open(), selection };
     let (is_streamed, without_fields) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
-    let room = if is_streamed { FEW } else { ROOM };
+    let room = if is_streamed { NOTES_LIMIT } else { ROOM };
     let (capture, decoder) = {
         let _busy = busy();
         source.capture(decoder, room, without_fields)?
@@ -254,7 +254,7 @@ pub fn print<D: CaptureDecoder>(
         let failure = capture.failure();
         let whole = ReportEnvelope::new(run, id, &capture, failure.as_ref());
         run.screen.json(&whole)?;
-        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }));
     }
     run.local(id, &capture)
 }
@@ -332,10 +332,10 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
     /// Report without messages.
     fn about<F>(&self, summary: &Summary, packets: u64, mut notes: Vec<String>) -> Capture<F> {
         if summary.fragments > 0 {
-            notes.push(format!("{} left out", counted(summary.fragments, "IP fragment")));
+            notes.push(format!("{} left out", count_text(summary.fragments, "IP fragment")));
         }
         if summary.repeated > 0 {
-            notes.push(format!("{} left out", counted(summary.repeated, "repeated TCP segment")));
+            notes.push(format!("{} left out", count_text(summary.repeated, "repeated TCP segment")));
         }
         Capture {
             file: self.name.to_owned(),
@@ -357,17 +357,17 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         decoder: &mut D,
         mut each: impl FnMut(DecodedMessage<D::Field>) -> bool,
     ) -> Result<Summary, Failure> {
-        let mut hand_on = |decoder: &mut D| decoder.decoded().messages.drain(..).all(&mut each);
+        let mut pass_on = |decoder: &mut D| decoder.decoded().messages.drain(..).all(&mut each);
         let mut is_wanted = true;
         let summary = self.read(|message| {
             if is_wanted && self.selection.admits(&message.carrier) {
                 decoder.take(message);
-                is_wanted = hand_on(decoder);
+                is_wanted = pass_on(decoder);
             }
         })?;
         decoder.finish();
         if is_wanted {
-            hand_on(decoder);
+            pass_on(decoder);
         }
         Ok(summary)
     }

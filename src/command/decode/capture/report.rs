@@ -115,11 +115,11 @@ impl<F: Field> Capture<F> {
 
     /// Summary of the number of messages and their links.
     pub(super) fn head(&self) -> String {
-        let told = self.packets.saturating_sub(self.other_packets);
+        let with_link = self.packets.saturating_sub(self.other_packets);
         let what = if self.is_filtered { "selected and of this family" } else { "of this family" };
-        let mut head = format!("{}, {told} of them {what}", counted(self.packets, "packet"));
+        let mut head = format!("{}, {with_link} of them {what}", count_text(self.packets, "packet"));
         for Link { link, client, controller, messages } in &self.links {
-            head.push_str(&format!("\nlink {link}: {client} -> {controller}, {}", counted(*messages, "message")));
+            head.push_str(&format!("\nlink {link}: {client} -> {controller}, {}", count_text(*messages, "message")));
         }
         head
     }
@@ -185,7 +185,7 @@ pub struct Links {
 
 impl Links {
     /// Index of a link.
-    fn at(&mut self, link: &(String, String)) -> usize {
+    fn index(&mut self, link: &(String, String)) -> usize {
         if let Some(at) = self.numbers.get(link) {
             return *at;
         }
@@ -197,7 +197,7 @@ impl Links {
     }
 
     pub(super) fn count(&mut self, link: &(String, String)) {
-        let at = self.at(link);
+        let at = self.index(link);
         self.list[at].messages += 1;
     }
 
@@ -206,7 +206,7 @@ impl Links {
         if !self.are_counted {
             self.count(&message.link);
         }
-        let at = self.at(&message.link);
+        let at = self.index(&message.link);
         let link = &self.list[at];
         let (from, to, sender) = match message.direction {
             Direction::Sent => (&link.client, &link.controller, "client"),
@@ -257,6 +257,6 @@ fn seconds(time: Duration, first: Duration) -> f64 {
 }
 
 /// Count with singular or plural noun.
-pub fn counted(count: u64, what: &str) -> String {
+pub fn count_text(count: u64, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }

@@ -54,7 +54,7 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
         let (packets, other_packets) = (*packets, *other_packets);
         let data = Written { file, packets, other_packets, links, messages, notes, damage };
         run.screen.json_as_it_comes(&ReportEnvelope::new(run, id, data, failure.as_ref()))?;
-        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }));
     }
     if run.screen.format == Format::Csv {
         second_pass.csv(run, decoder.restart())?;

@@ -5,14 +5,18 @@ const VLAN: &[u8] = include_bytes!("../../../../tests/cli/files/vlan.pcap");
 const LINES: &[u8] = include_bytes!("../../../../tests/cli/files/lines.pcapng");
 const SPEED: &[u8] = include_bytes!("../../../../tests/cli/files/speed.pcapng");
 
-fn whole<D: CaptureDecoder>(file: &[u8], selection: &Selection, decoder: D) -> Result<Capture<D::Field>, Failure> {
+fn complete_capture<D: CaptureDecoder>(
+    file: &[u8],
+    selection: &Selection,
+    decoder: D,
+) -> Result<Capture<D::Field>, Failure> {
     let source = Source { name: "file", open: || Ok(file), selection };
     let (capture, _) = source.capture(decoder, ROOM, false)?;
     Ok(capture.expect("there is room"))
 }
 
 /// Number of messages and of packets without a message, for each family.
-fn counts(file: &[u8], selection: &Selection) -> [Option<(usize, u64)>; 3] {
+fn message_counts(file: &[u8], selection: &Selection) -> [Option<(usize, u64)>; 3] {
     fn count<F: Field>(capture: Result<Capture<F>, Failure>) -> Option<(usize, u64)> {
         let capture = capture.ok()?;
         // Views must accept any content.
@@ -21,37 +25,37 @@ fn counts(file: &[u8], selection: &Selection) -> [Option<(usize, u64)>; 3] {
         Some((capture.messages.len(), capture.other_packets))
     }
     [
-        count(whole(file, selection, yerc::decode::FrameDecoder::default())),
-        count(whole(file, selection, toyo::decode::LineDecoder::default())),
-        count(whole(file, selection, yrcx::decode::ImageDecoder::new(true))),
+        count(complete_capture(file, selection, yerc::decode::FrameDecoder::default())),
+        count(complete_capture(file, selection, toyo::decode::LineDecoder::default())),
+        count(complete_capture(file, selection, yrcx::decode::ImageDecoder::new(true))),
     ]
 }
 
 #[test]
-fn each_family_finds_its_own() {
+fn finds_the_messages_of_each_family() {
     let all = Selection::default();
-    assert_eq!(counts(VLAN, &all), [Some((3, 2)), Some((0, 5)), Some((0, 5))]);
-    assert_eq!(counts(LINES, &all), [Some((0, 11)), Some((6, 3)), Some((0, 11))]);
-    assert_eq!(counts(SPEED, &all), [Some((0, 18)), Some((0, 18)), Some((24, 0))]);
+    assert_eq!(message_counts(VLAN, &all), [Some((3, 2)), Some((0, 5)), Some((0, 5))]);
+    assert_eq!(message_counts(LINES, &all), [Some((0, 11)), Some((6, 3)), Some((0, 11))]);
+    assert_eq!(message_counts(SPEED, &all), [Some((0, 18)), Some((0, 18)), Some((24, 0))]);
 }
 
 #[test]
-fn hosts_and_ports_leave_out_the_rest() {
+fn selects_hosts_and_ports() {
     let selection = |host: &str, port| Selection { frame: None, host: host.parse().ok(), port };
-    assert_eq!(counts(VLAN, &selection("192.168.255.1", Some(10040)))[0], Some((3, 2)));
-    assert_eq!(counts(VLAN, &selection("192.168.255.3", None))[0], Some((0, 5)));
-    assert_eq!(counts(VLAN, &selection("", Some(10041)))[0], Some((0, 5)));
+    assert_eq!(message_counts(VLAN, &selection("192.168.255.1", Some(10040)))[0], Some((3, 2)));
+    assert_eq!(message_counts(VLAN, &selection("192.168.255.3", None))[0], Some((0, 5)));
+    assert_eq!(message_counts(VLAN, &selection("", Some(10041)))[0], Some((0, 5)));
 }
 
 #[test]
-fn files_cut_or_damaged_anywhere_are_told() {
+fn reports_cut_and_damaged_files() {
     let all = Selection::default();
     for file in [VLAN, LINES, SPEED] {
         for end in 0..file.len() {
-            counts(&file[..end], &all);
+            message_counts(&file[..end], &all);
             let mut damaged = file.to_vec();
             damaged[end] = !damaged[end];
-            counts(&damaged, &all);
+            message_counts(&damaged, &all);
         }
     }
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::page::labels;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::sample::{Axis, Traffic};
-use crate::command::fleet::poll::{Event, Look, RobotId};
+use crate::command::fleet::poll::{Event, PollResult, RobotId};
 use crate::command::fleet::service::kind;
 
 /// Upper limits of the histogram buckets for poll times, in seconds. Longer times are only in the last bucket (`+Inf`).
@@ -17,18 +17,18 @@ const RANGES: [f64; 9] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5];
 #[derive(Debug, Default)]
 pub struct Board {
     /// Polled robots by id.
-    pub robots: BTreeMap<RobotId, Seen>,
+    pub robots: BTreeMap<RobotId, RobotMetrics>,
     /// Whether the last changed inventory could not be read.
     pub is_inventory_broken: bool,
 }
 
 /// Data of one robot.
 #[derive(Debug, Default)]
-pub struct Seen {
+pub struct RobotMetrics {
     /// Encoded labels.
     pub labels: String,
     /// Newest sample, while the robot answers.
-    pub look: Option<Arc<Look>>,
+    pub last_poll: Option<Arc<PollResult>>,
     /// Whether the robot has been polled yet.
     pub is_known: bool,
     /// Time of the last answer, in seconds since 1970.
@@ -38,7 +38,7 @@ pub struct Seen {
     /// Failed polls by kind of failure.
     pub failures: BTreeMap<String, u64>,
     /// Polls omitted because the previous one took too long.
-    pub missed: u64,
+    pub missed_polls: u64,
     /// Number of times that the backoff became longer.
     pub backoffs: u64,
     /// Current backoff; `None` while the robot answers.
@@ -77,50 +77,51 @@ impl Times {
 
 impl Board {
     /// Applies an event; `now` is in seconds since 1970.
-    pub fn take(&mut self, event: &Event, now: f64) {
+    pub fn record_event(&mut self, event: &Event, now: f64) {
         match event {
             Event::Appeared(robot) => {
                 let id = [("robot", robot.name.as_str()), ("family", robot.family.name())];
                 let failures = ["no_answer", "refused", "malformed"].map(|kind| (kind.to_owned(), 0));
-                let seen = Seen { labels: labels("", &id), failures: failures.into(), ..Seen::default() };
-                self.robots.insert(RobotId::of(robot), seen);
+                let seen =
+                    RobotMetrics { labels: labels("", &id), failures: failures.into(), ..RobotMetrics::default() };
+                self.robots.insert(RobotId::for_robot(robot), seen);
             }
-            Event::Gone(robot) => _ = self.robots.remove(&RobotId::of(robot)),
-            Event::Looked(look) => {
-                let Some(seen) = self.robots.get_mut(&RobotId::of(&look.robot)) else { return };
+            Event::Gone(robot) => _ = self.robots.remove(&RobotId::for_robot(robot)),
+            Event::Polled(look) => {
+                let Some(seen) = self.robots.get_mut(&RobotId::for_robot(&look.robot)) else { return };
                 seen.is_known = true;
                 seen.polls += 1;
-                seen.missed += look.missed;
+                seen.missed_polls += look.missed;
                 seen.times.add(look.took);
                 seen.traffic.add(look.traffic);
                 seen.answered = Some(now);
                 seen.pause = None;
-                seen.look = Some(Arc::clone(look));
+                seen.last_poll = Some(Arc::clone(look));
             }
             Event::Failed { robot, failure, pause, traffic } => {
-                let Some(seen) = self.robots.get_mut(&RobotId::of(robot)) else { return };
+                let Some(seen) = self.robots.get_mut(&RobotId::for_robot(robot)) else { return };
                 seen.is_known = true;
                 seen.polls += 1;
                 *seen.failures.entry(kind(failure)).or_default() += 1;
                 seen.backoffs += u64::from(seen.pause.is_some_and(|last| *pause > last));
                 seen.pause = Some(*pause);
                 seen.traffic.add(*traffic);
-                seen.look = None;
+                seen.last_poll = None;
             }
             Event::Inventory(read) => self.is_inventory_broken = read.is_err(),
         }
     }
 }
 
-impl Seen {
+impl RobotMetrics {
     /// Overview of the newest sample, if the robot is reachable.
     pub fn line(&self) -> Option<&OverviewReport> {
-        self.look.as_ref().map(|look| &look.sample.line).filter(|line| line.state.reachable)
+        self.last_poll.as_ref().map(|look| &look.sample.line).filter(|line| line.state.reachable)
     }
 
     /// Axes measured in `unit`, each with a unique label.
     pub fn axes(&self, unit: &str) -> Vec<(String, &Axis)> {
-        let whole = self.look.as_ref().and_then(|look| look.sample.whole.as_ref());
+        let whole = self.last_poll.as_ref().and_then(|look| look.sample.full.as_ref());
         let mut named: Vec<(String, &Axis)> = Vec::new();
         for axis in whole.into_iter().flat_map(|whole| &whole.axes).filter(|axis| axis.unit == unit) {
             let mut name = axis.name.clone();

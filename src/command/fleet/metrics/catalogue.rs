@@ -1,7 +1,7 @@
 //! Catalogue of the metrics: name, type, unit, help text, source of the value. `docs/monitoring/README.md` explains
 //! each; a test compares both.
 
-use super::board::{Board, Seen};
+use super::board::{Board, RobotMetrics};
 use super::page::{Form, Kind, Page, Samples, labels};
 use crate::controller::units::{DEGREE, MILLIMETRE, PULSE};
 
@@ -36,16 +36,16 @@ use Kind::{Counter, Gauge, Histogram, Info};
 pub const METRICS: &[Metric] = &[
     metric("armctl_build", Info, "", "Version of the armctl that serves these metrics.", |_, samples| {
         let build = [("version", env!("CARGO_PKG_VERSION")), ("revision", env!("BUILT_COMMIT"))];
-        samples.put(&labels("", &build), 1);
+        samples.write_sample(&labels("", &build), 1);
     }),
     metric("armctl_robots", Gauge, "", "Number of polled robots.", |board, samples| {
-        samples.put("", board.robots.len());
+        samples.write_sample("", board.robots.len());
     }),
     metric("armctl_inventory_last_reload_successful", Gauge, "",
         "Whether armctl could read robots.toml after its last change.",
-        |board, samples| samples.put("", u8::from(!board.is_inventory_broken))),
+        |board, samples| samples.write_sample("", u8::from(!board.is_inventory_broken))),
     metric("armctl_robot_up", Gauge, "", "Whether the robot answered the latest poll.",
-        |board, samples| each(board, samples, |seen| seen.is_known.then(|| u8::from(seen.look.is_some())))),
+        |board, samples| each(board, samples, |seen| seen.is_known.then(|| u8::from(seen.last_poll.is_some())))),
     metric("armctl_robot_servo_on", Gauge, "", "Whether the servo power is on.",
         |board, samples| each(board, samples, |seen| flag(seen.line()?.state.servo_on))),
     metric("armctl_robot_running", Gauge, "", "Whether a job or program runs, or an axis moves.",
@@ -69,7 +69,7 @@ pub const METRICS: &[Metric] = &[
     metric("armctl_axis_torque_raw", Gauge, "raw", "Torque of an axis in the unit of the controller (not known).",
         |board, samples| torques(board, samples, "raw", 1.0)),
     metric("armctl_session_open", Gauge, "", "Whether the polls go through a session.",
-        |board, samples| each(board, samples, |seen| flag(Some(seen.look.as_ref()?.through_session)))),
+        |board, samples| each(board, samples, |seen| flag(Some(seen.last_poll.as_ref()?.through_session)))),
     metric("armctl_robot_last_answer_timestamp_seconds", Gauge, "seconds", "Time of the last answer of the robot.",
         |board, samples| each(board, samples, |seen| seen.answered)),
     metric("armctl_poll_duration_seconds", Histogram, "seconds", "Duration of answered polls.", times),
@@ -78,7 +78,7 @@ pub const METRICS: &[Metric] = &[
     }),
     metric("armctl_poll_failures", Counter, "", "Failed polls, by error kind.", failures),
     metric("armctl_polls_missed", Counter, "", "Polls that were skipped because the poll before took too long.",
-        |board, samples| each(board, samples, |seen| Some(seen.missed))),
+        |board, samples| each(board, samples, |seen| Some(seen.missed_polls))),
     metric("armctl_poll_backoffs", Counter, "", "How often armctl increased the pause before the next try.",
         |board, samples| each(board, samples, |seen| Some(seen.backoffs))),
     metric("armctl_poll_pause_seconds", Gauge, "seconds", "The pause before the next try; 0 while the robot answers.",
@@ -106,10 +106,10 @@ fn flag(is_so: Option<bool>) -> Option<u8> {
 }
 
 /// Writes a sample for each robot with a known value.
-fn each<V: std::fmt::Display>(board: &Board, samples: &mut Samples<'_>, value: impl Fn(&Seen) -> Option<V>) {
+fn each<V: std::fmt::Display>(board: &Board, samples: &mut Samples<'_>, value: impl Fn(&RobotMetrics) -> Option<V>) {
     for seen in board.robots.values() {
         if let Some(value) = value(seen) {
-            samples.put(&seen.labels, value);
+            samples.write_sample(&seen.labels, value);
         }
     }
 }
@@ -119,7 +119,7 @@ fn faults(board: &Board, samples: &mut Samples<'_>) {
         let fault = seen.line().map(|line| &line.state.fault).filter(|fault| fault.faulted == Some(true));
         if let Some(fault) = fault {
             let [code, text] = [&fault.fault_code, &fault.fault_text].map(|told| told.as_deref().unwrap_or_default());
-            samples.put(&labels(&seen.labels, &[("code", code), ("text", text)]), 1);
+            samples.write_sample(&labels(&seen.labels, &[("code", code), ("text", text)]), 1);
         }
     }
 }
@@ -127,7 +127,7 @@ fn faults(board: &Board, samples: &mut Samples<'_>) {
 fn modes(board: &Board, samples: &mut Samples<'_>) {
     for seen in board.robots.values() {
         if let Some(mode) = seen.line().and_then(|line| line.state.mode) {
-            samples.put(&labels(&seen.labels, &[("mode", mode.name())]), 1);
+            samples.write_sample(&labels(&seen.labels, &[("mode", mode.name())]), 1);
         }
     }
 }
@@ -135,21 +135,21 @@ fn modes(board: &Board, samples: &mut Samples<'_>) {
 fn axes(board: &Board, samples: &mut Samples<'_>, unit: &str, divisor: f64) {
     for seen in board.robots.values() {
         for (labels, axis) in seen.axes(unit) {
-            samples.put(&labels, axis.position / divisor);
+            samples.write_sample(&labels, axis.position / divisor);
         }
     }
 }
 
 fn torques(board: &Board, samples: &mut Samples<'_>, torque_unit: &str, divisor: f64) {
     for seen in board.robots.values() {
-        let whole = seen.look.as_ref().and_then(|look| look.sample.whole.as_ref());
+        let whole = seen.last_poll.as_ref().and_then(|look| look.sample.full.as_ref());
         if whole.is_none_or(|whole| whole.torque_unit != Some(torque_unit)) {
             continue;
         }
         for unit in [PULSE.symbol, MILLIMETRE.symbol, DEGREE.symbol] {
             for (labels, axis) in seen.axes(unit) {
                 if let Some(torque) = axis.torque {
-                    samples.put(&labels, torque / divisor);
+                    samples.write_sample(&labels, torque / divisor);
                 }
             }
         }
@@ -165,7 +165,7 @@ fn times(board: &Board, samples: &mut Samples<'_>) {
 fn failures(board: &Board, samples: &mut Samples<'_>) {
     for seen in board.robots.values() {
         for (kind, count) in &seen.failures {
-            samples.put(&labels(&seen.labels, &[("kind", kind)]), count);
+            samples.write_sample(&labels(&seen.labels, &[("kind", kind)]), count);
         }
     }
 }

@@ -24,8 +24,8 @@ use tokio::time::timeout;
 
 use self::board::Board;
 use self::page::Form;
-use super::poll::{Poll, Subscription, Wish};
-use super::service::{END, Service};
+use super::poll::{Poll, PollRequest, Subscription};
+use super::service::{END_TIMEOUT, Service};
 use crate::command::Report;
 use crate::command::face::sample::Detail;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
@@ -46,15 +46,15 @@ use crate::transport::http::{Answer, Request, Server, Status};
 )]
 pub struct Metrics {
     /// Address to listen on
-    #[arg(long, alias = "bind", value_name = "ADDRESS", default_value_t = USUAL, value_parser = address)]
+    #[arg(long, alias = "bind", value_name = "ADDRESS", default_value_t = DEFAULT_ADDRESS, value_parser = address)]
     listen: SocketAddr,
 }
 
 /// Default address. The port is one of the usual exporter ports.
-const USUAL: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 9464);
+const DEFAULT_ADDRESS: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 9464);
 /// Default and minimum polling interval.
-const EVERY: Duration = Duration::from_secs(1);
-const LEAST: Duration = Duration::from_millis(50);
+const DEFAULT_INTERVAL: Duration = Duration::from_secs(1);
+const MIN_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Address of the metrics server.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -77,13 +77,13 @@ impl Report for Listening {
 impl Metrics {
     /// Runs the command.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
-        let every = run.repeat.every.unwrap_or(EVERY);
-        fits(run, every)?;
+        let every = run.repeat.every.unwrap_or(DEFAULT_INTERVAL);
+        check_globals(run, every)?;
         let service = Service::begin(run.screen)?;
         // Links do not print their own messages; the service reports changes.
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let robots = poll.robots().len();
-        let server = Server::bind(self.listen).await.map_err(|error| cannot_listen(self.listen, &error))?;
+        let server = Server::bind(self.listen).await.map_err(|error| bind_failure(self.listen, &error))?;
         let local = server.local().map_err(|error| Failure::io("listen", &error))?;
         catch_interrupts();
         let listening = Listening {
@@ -93,10 +93,10 @@ impl Metrics {
         };
         run.local("serve.metrics", &listening)?;
         self.warn(&service);
-        let mut events = poll.subscribe(Wish { detail: Detail::Axes, ..Wish::every(every) });
+        let mut events = poll.subscribe(PollRequest { detail: Detail::Axes, ..PollRequest::every(every) });
         let mut polled = Box::pin(poll.run());
         let board = RefCell::new(Board::default());
-        service.ready(robots)?;
+        service.notify_ready(robots)?;
         let ended = interruptible(async {
             tokio::select! {
                 () = &mut polled => Err(Failure::local("internal error: polling has ended")),
@@ -104,13 +104,13 @@ impl Metrics {
                 ended = server.run(|request| answer(request, &board)) => {
                     ended.map_err(|error| Failure::io("metrics", &error))
                 }
-                () = service.pulses(|| service.robots()) => Ok(()),
+                () = service.watchdog_interval(|| service.robots()) => Ok(()),
             }
         })
         .await;
-        service.stopping();
+        service.notify_stopping();
         drop(events);
-        let _in_time = timeout(END, polled).await;
+        let _in_time = timeout(END_TIMEOUT, polled).await;
         match ended {
             Ok(ended) => Ok(ended?),
             // Ctrl-C or SIGTERM is the normal end of a server.
@@ -123,7 +123,7 @@ impl Metrics {
         if !self.listen.ip().is_loopback() {
             let text = "everyone on the network can read the positions and alarms of these robots; there is no \
                         password";
-            service.say(Level::Warning, text, &[("listen", &self.listen.to_string())]);
+            service.log_line(Level::Warning, text, &[("listen", &self.listen.to_string())]);
         }
     }
 }
@@ -132,7 +132,7 @@ impl Metrics {
 async fn listen(events: &mut Subscription, service: &Service, board: &RefCell<Board>) {
     while let Some(event) = events.next().await {
         service.note(&event);
-        board.borrow_mut().take(&event, now());
+        board.borrow_mut().record_event(&event, now());
     }
 }
 
@@ -144,7 +144,7 @@ fn now() -> f64 {
 fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
     match request.path {
         "/metrics" => {
-            let form = Form::wanted(request.accept);
+            let form = Form::preferred_form(request.accept);
             Answer { status: Status::Ok, kind: form.content_type(), body: catalogue::page(&board.borrow(), form) }
         }
         "/healthz" => Answer::text(Status::Ok, "ok"),
@@ -153,27 +153,28 @@ fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
 }
 
 /// Rejects options that make no sense here.
-fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
-    let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("serve metrics {what}")).hint(hint));
+fn check_globals(run: &Run, every: Duration) -> Result<(), Failure> {
+    let invalid = |what: &str, hint: &str| Err(Failure::usage(format!("serve metrics {what}")).hint(hint));
     if run.repeat.count.is_some() || run.repeat.until.is_some() {
-        return wrong("runs until Ctrl-C or SIGTERM", "`armctl status --until FILTER` waits for a condition");
+        return invalid("runs until Ctrl-C or SIGTERM", "`armctl status --until FILTER` waits for a condition");
     }
     if run.trace.is_some() {
-        return wrong("does not record its traffic", "use --trace with `armctl status --watch`");
+        return invalid("does not record its traffic", "use --trace with `armctl status --watch`");
     }
-    if every < LEAST {
-        return wrong("polls at most every 50ms", "use --watch 50ms or more");
+    if every < MIN_INTERVAL {
+        return invalid("polls at most every 50ms", "use --watch 50ms or more");
     }
     Ok(())
 }
 
 /// Parses an address with or without a port.
 fn address(text: &str) -> Result<SocketAddr, String> {
-    let address = text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, USUAL.port())));
-    address.map_err(|_| format!("'{text}' is not a valid address, such as {USUAL}"))
+    let address =
+        text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, DEFAULT_ADDRESS.port())));
+    address.map_err(|_| format!("'{text}' is not a valid address, such as {DEFAULT_ADDRESS}"))
 }
 
-fn cannot_listen(on: SocketAddr, error: &io::Error) -> Failure {
+fn bind_failure(on: SocketAddr, error: &io::Error) -> Failure {
     let hint = match error.kind() {
         io::ErrorKind::AddrInUse => "another program uses this port; set another one with --listen 127.0.0.1:9465",
         io::ErrorKind::PermissionDenied => "ports below 1024 need special rights; set a higher one with --listen",

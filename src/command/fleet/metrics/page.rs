@@ -31,7 +31,7 @@ const LONGEST: usize = 120;
 
 impl Form {
     /// Selects the format for an `Accept` header; the text format by default.
-    pub fn wanted(accept: Option<&str>) -> Self {
+    pub fn preferred_form(accept: Option<&str>) -> Self {
         let mut best = [0.0_f64; 2];
         for wanted in accept.unwrap_or_default().split(',') {
             let mut parts = wanted.split(';').map(str::trim);
@@ -96,7 +96,7 @@ impl Page {
             self.line(format_args!("# UNIT {family} {unit}"));
         }
         let empty = self.text.len();
-        samples(&mut Samples { page: self, name, ending });
+        samples(&mut Samples { page: self, name, suffix: ending });
         if self.text.len() == empty {
             self.text.truncate(start);
         }
@@ -121,14 +121,14 @@ impl Page {
 pub struct Samples<'a> {
     page: &'a mut Page,
     name: &'a str,
-    ending: &'static str,
+    suffix: &'static str,
 }
 
 impl Samples<'_> {
     /// Writes a sample; `labels` are encoded by [`labels`].
-    pub fn put(&mut self, labels: &str, value: impl Display) {
-        let (name, ending) = (self.name, self.ending);
-        self.page.line(format_args!("{name}{ending}{} {value}", braced(labels)));
+    pub fn write_sample(&mut self, labels: &str, value: impl Display) {
+        let (name, ending) = (self.name, self.suffix);
+        self.page.line(format_args!("{name}{ending}{} {value}", with_braces(labels)));
     }
 
     /// Writes a histogram: cumulative counts with upper limits, sum of all values, number of values.
@@ -140,12 +140,12 @@ impl Samples<'_> {
             self.page.line(format_args!("{name}_bucket{{{labels}{comma}le=\"{up_to:?}\"}} {count}"));
         }
         self.page.line(format_args!("{name}_bucket{{{labels}{comma}le=\"+Inf\"}} {count}"));
-        self.page.line(format_args!("{name}_sum{} {sum}", braced(labels)));
-        self.page.line(format_args!("{name}_count{} {count}", braced(labels)));
+        self.page.line(format_args!("{name}_sum{} {sum}", with_braces(labels)));
+        self.page.line(format_args!("{name}_count{} {count}", with_braces(labels)));
     }
 }
 
-fn braced(labels: &str) -> String {
+fn with_braces(labels: &str) -> String {
     if labels.is_empty() { String::new() } else { format!("{{{labels}}}") }
 }
 
@@ -154,13 +154,13 @@ pub fn labels(first: &str, more: &[(&str, &str)]) -> String {
     let mut all = first.to_owned();
     for (name, value) in more {
         let comma = if all.is_empty() { "" } else { "," };
-        let _never_fails = write!(all, "{comma}{name}=\"{}\"", escaped(value));
+        let _never_fails = write!(all, "{comma}{name}=\"{}\"", escape(value));
     }
     all
 }
 
 /// Escapes and shortens a label value.
-fn escaped(value: &str) -> String {
+fn escape(value: &str) -> String {
     let value: String = value.chars().take(LONGEST).collect();
     escape::line(&value).replace('\\', "\\\\").replace('"', "\\\"")
 }
@@ -170,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_form_is_the_one_that_is_wanted_most() {
+    fn selects_the_preferred_form() {
         for (accept, form) in [
             (None, Form::Text),
             (Some(""), Form::Text),
@@ -198,7 +198,7 @@ mod tests {
             ),
             (Some(";;q,=,;q=x"), Form::Text),
         ] {
-            assert_eq!(Form::wanted(accept), form, "{accept:?}");
+            assert_eq!(Form::preferred_form(accept), form, "{accept:?}");
         }
     }
 
@@ -207,14 +207,14 @@ mod tests {
         page.metric("x_seconds", Kind::Histogram, "seconds", "How long.", |samples| {
             samples.histogram("a=\"b\"", &[(0.5, 1), (1.0, 3)], 2.5, 4);
         });
-        page.metric("x_polls", Kind::Counter, "", "How often.", |samples| samples.put("", 7));
-        page.metric("x_build", Kind::Info, "", "Which.", |samples| samples.put(&labels("", &[("v", "1")]), 1));
+        page.metric("x_polls", Kind::Counter, "", "How often.", |samples| samples.write_sample("", 7));
+        page.metric("x_build", Kind::Info, "", "Which.", |samples| samples.write_sample(&labels("", &[("v", "1")]), 1));
         page.metric("x_none", Kind::Gauge, "", "Nothing.", |_| {});
         page.end()
     }
 
     #[test]
-    fn each_form_is_written_as_it_is_read() {
+    fn writes_each_form_in_its_syntax() {
         let lines = "x_seconds_bucket{a=\"b\",le=\"0.5\"} 1\nx_seconds_bucket{a=\"b\",le=\"1.0\"} 3\n\
                      x_seconds_bucket{a=\"b\",le=\"+Inf\"} 4\nx_seconds_sum{a=\"b\"} 2.5\nx_seconds_count{a=\"b\"} 4\n";
         assert_eq!(
@@ -236,9 +236,9 @@ mod tests {
     }
 
     #[test]
-    fn what_a_controller_says_cannot_leave_its_label() {
-        let evil = "a\"} 1\narmctl_robot_up{robot=\"b\\\u{1b}[2J";
-        let escaped = labels("x=\"y\"", &[("text", evil)]);
+    fn controller_text_stays_inside_its_label() {
+        let injection = "a\"} 1\narmctl_robot_up{robot=\"b\\\u{1b}[2J";
+        let escaped = labels("x=\"y\"", &[("text", injection)]);
         assert_eq!(escaped.lines().count(), 1);
         assert_eq!(escaped, r#"x="y",text="a\"} 1\\narmctl_robot_up{robot=\"b\\\\x1b[2J""#);
         assert_eq!(labels("", &[("long", &"x".repeat(999))]).len(), LONGEST + "long=\"\"".len());

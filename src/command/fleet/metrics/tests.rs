@@ -7,31 +7,31 @@ use super::board::Board;
 use super::catalogue::{METRICS, page};
 use super::page::{Form, Kind};
 use crate::command::face::sample::{Sample, Traffic};
-use crate::command::fleet::poll::{Event, Look};
-use crate::command::fleet::top::testing::{alarmed, fleet, sample, silence};
+use crate::command::fleet::poll::{Event, PollResult};
+use crate::command::fleet::top::testing::{fail, fleet, sample, with_alarm};
 use crate::command::robot::alarm::Alarm;
 use crate::command::robot::state::Fault;
 use crate::settings::Robot;
 
-fn looked(robot: &Arc<Robot>, sample: Sample) -> Event {
+fn poll_event(robot: &Arc<Robot>, sample: Sample) -> Event {
     let traffic = Traffic { sent: 5, received: 4, disturbances: 1 };
-    let look = Look::new(Arc::clone(robot), sample);
-    Event::Looked(Arc::new(Look { took: Duration::from_millis(30), missed: 2, traffic, ..look }))
+    let look = PollResult::new(Arc::clone(robot), sample);
+    Event::Polled(Arc::new(PollResult { took: Duration::from_millis(30), missed: 2, traffic, ..look }))
 }
 
-fn failed(robot: &Arc<Robot>, pause: u64) -> Event {
+fn failure_event(robot: &Arc<Robot>, pause: u64) -> Event {
     let traffic = Traffic { sent: 3, received: 0, disturbances: 2 };
-    Event::Failed { robot: Arc::clone(robot), failure: silence(), pause: Duration::from_secs(pause), traffic }
+    Event::Failed { robot: Arc::clone(robot), failure: fail(), pause: Duration::from_secs(pause), traffic }
 }
 
 fn robots(count: usize) -> Vec<Arc<Robot>> {
     fleet(count).into_iter().map(Arc::new).collect()
 }
 
-fn told(events: &[Event]) -> Board {
+fn page_after(events: &[Event]) -> Board {
     let mut board = Board::default();
     for event in events {
-        board.take(event, 1000.5);
+        board.record_event(event, 1000.5);
     }
     board
 }
@@ -46,12 +46,12 @@ fn samples(board: &Board, name: &str) -> Vec<String> {
 const CELL1: &str = "robot=\"cell1\",family=\"yerc\"";
 
 #[test]
-fn a_robot_is_told_as_it_is_and_not_as_it_was() {
+fn shows_the_current_state_of_a_robot() {
     let robots = robots(1);
-    let mut board = told(&[Event::Appeared(Arc::clone(&robots[0]))]);
+    let mut board = page_after(&[Event::Appeared(Arc::clone(&robots[0]))]);
     assert_eq!(samples(&board, "armctl_robot_up"), Vec::<String>::new(), "nobody knows yet");
     assert_eq!(samples(&board, "armctl_polls_total"), [format!("{{{CELL1}}} 0")]);
-    board.take(&looked(&robots[0], sample(-400.0)), 1000.5);
+    board.record_event(&poll_event(&robots[0], sample(-400.0)), 1000.5);
     for (name, value) in [
         ("armctl_robot_up", "} 1"),
         ("armctl_robot_servo_on", "} 1"),
@@ -73,93 +73,93 @@ fn a_robot_is_told_as_it_is_and_not_as_it_was() {
     assert_eq!(samples(&board, "armctl_axis_position_meters"), [of("X", "1.0005"), of("Y", "-0.02025")]);
     assert_eq!(samples(&board, "armctl_axis_torque_raw"), [of("S", "12"), of("L", "-3")]);
     assert_eq!(samples(&board, "armctl_axis_torque_ratio"), Vec::<String>::new());
-    board.take(&failed(&robots[0], 1), 1001.0);
+    board.record_event(&failure_event(&robots[0], 1), 1001.0);
     assert_eq!(samples(&board, "armctl_robot_up"), [format!("{{{CELL1}}} 0")]);
     for name in ["armctl_robot_servo_on", "armctl_axis_position_pulses", "armctl_robot_mode_info"] {
         assert_eq!(samples(&board, name), Vec::<String>::new(), "{name} is not known of one that is silent");
     }
     assert_eq!(samples(&board, "armctl_robot_last_answer_timestamp_seconds"), [format!("{{{CELL1}}} 1000.5")]);
-    board.take(&Event::Gone(Arc::clone(&robots[0])), 1002.0);
+    board.record_event(&Event::Gone(Arc::clone(&robots[0])), 1002.0);
     assert!(!page(&board, Form::Text).contains("cell1"));
 }
 
 #[test]
-fn pauses_failures_and_times_are_counted() {
+fn counts_backoffs_failures_and_times() {
     let robots = robots(1);
     let appeared = Event::Appeared(Arc::clone(&robots[0]));
-    let failures: Vec<Event> = [1, 2, 4, 4].into_iter().map(|pause| failed(&robots[0], pause)).collect();
-    let board = told(&[&[appeared][..], &failures].concat());
+    let failures: Vec<Event> = [1, 2, 4, 4].into_iter().map(|pause| failure_event(&robots[0], pause)).collect();
+    let board = page_after(&[&[appeared][..], &failures].concat());
     assert_eq!(samples(&board, "armctl_poll_backoffs_total"), [format!("{{{CELL1}}} 2")]);
     assert_eq!(samples(&board, "armctl_poll_pause_seconds"), [format!("{{{CELL1}}} 4")]);
     let of = |kind: &str, count: u64| format!("{{{CELL1},kind=\"{kind}\"}} {count}");
     let counts = [of("malformed", 0), of("no_answer", 4), of("refused", 0)];
     assert_eq!(samples(&board, "armctl_poll_failures_total"), counts);
     assert_eq!(samples(&board, "armctl_polls_total"), [format!("{{{CELL1}}} 4")]);
-    let board = told(&[Event::Appeared(Arc::clone(&robots[0])), looked(&robots[0], sample(0.0))]);
+    let board = page_after(&[Event::Appeared(Arc::clone(&robots[0])), poll_event(&robots[0], sample(0.0))]);
     let buckets = samples(&board, "armctl_poll_duration_seconds_bucket");
     let counts: Vec<&str> = buckets.iter().filter_map(|line| line.rsplit(' ').next()).collect();
     assert_eq!(counts, ["0", "0", "0", "1", "1", "1", "1", "1", "1", "1"], "30 ms are in 0.05 and above");
 }
 
 #[test]
-fn what_goes_over_a_link_adds_up_whether_the_robot_answers_or_not() {
+fn sums_traffic_of_successful_and_failed_polls() {
     let robots = robots(1);
     let appeared = Event::Appeared(Arc::clone(&robots[0]));
-    let board = told(&[appeared, looked(&robots[0], sample(0.0)), failed(&robots[0], 1)]);
+    let board = page_after(&[appeared, poll_event(&robots[0], sample(0.0)), failure_event(&robots[0], 1)]);
     for (name, sum) in [("sent", 8), ("received", 4), ("disturbances", 3)] {
         assert_eq!(samples(&board, &format!("armctl_link_{name}_total")), [format!("{{{CELL1}}} {sum}")]);
     }
 }
 
 #[test]
-fn a_fault_has_its_code_and_a_text_that_spoils_nothing() {
+fn escapes_the_text_of_a_fault() {
     let robots = robots(2);
-    let mut evil = alarmed();
+    let mut injection = with_alarm();
     let text = format!("\"}} 1\n{}", "x".repeat(5000));
     let alarm = Alarm { code: Some("\\".to_owned()), text: Some(text), ..Alarm::default() };
-    evil.line.state.fault = Fault::new(true, Some(&alarm));
+    injection.line.state.fault = Fault::new(true, Some(&alarm));
     let appeared = robots.iter().map(|robot| Event::Appeared(Arc::clone(robot)));
-    let looks = [looked(&robots[0], alarmed()), looked(&robots[1], evil)];
-    let board = told(&appeared.chain(looks).collect::<Vec<_>>());
+    let looks = [poll_event(&robots[0], with_alarm()), poll_event(&robots[1], injection)];
+    let board = page_after(&appeared.chain(looks).collect::<Vec<_>>());
     let [plain, evil] = &samples(&board, "armctl_robot_fault_info")[..] else { panic!("one each") };
     assert_eq!(plain, &format!("{{{CELL1},code=\"4315\",text=\"COLLISION DETECT [SLURBT]\"}} 1"));
     assert!(evil.contains("code=\"\\\\\"") && evil.ends_with("xxx\"} 1") && evil.len() < 250, "{evil}");
 }
 
 #[test]
-fn axes_of_one_name_do_not_spoil_the_page() {
+fn handles_axes_with_the_same_name() {
     let robots = robots(1);
     let mut twice = sample(1.0);
-    if let Some(whole) = &mut twice.whole {
+    if let Some(whole) = &mut twice.full {
         whole.axes.iter_mut().for_each(|axis| axis.name = "A".to_owned());
     }
-    let board = told(&[Event::Appeared(Arc::clone(&robots[0])), looked(&robots[0], twice)]);
+    let board = page_after(&[Event::Appeared(Arc::clone(&robots[0])), poll_event(&robots[0], twice)]);
     let lines = samples(&board, "armctl_axis_position_pulses");
     assert!(lines[0].contains("axis=\"A\"") && lines[1].contains("axis=\"A'\""), "{lines:?}");
 }
 
 #[test]
-fn an_inventory_that_is_broken_is_told() {
-    let broken = told(&[Event::Inventory(Err(silence()))]);
+fn reports_a_broken_inventory() {
+    let broken = page_after(&[Event::Inventory(Err(fail()))]);
     assert_eq!(samples(&broken, "armctl_inventory_last_reload_successful"), [" 0"]);
-    let mended = told(&[Event::Inventory(Err(silence())), Event::Inventory(Ok(()))]);
-    assert_eq!(samples(&mended, "armctl_inventory_last_reload_successful"), [" 1"]);
+    let repaired = page_after(&[Event::Inventory(Err(fail())), Event::Inventory(Ok(()))]);
+    assert_eq!(samples(&repaired, "armctl_inventory_last_reload_successful"), [" 1"]);
 }
 
 /// The limit that `docs/monitoring/README.md` states.
 #[test]
-fn a_robot_has_no_more_series_than_is_promised() {
+fn limits_the_series_of_a_robot() {
     let robots = robots(3);
-    let looks = robots.iter().map(|robot| looked(robot, alarmed()));
+    let looks = robots.iter().map(|robot| poll_event(robot, with_alarm()));
     let appeared = robots.iter().map(|robot| Event::Appeared(Arc::clone(robot)));
-    let board = told(&appeared.chain(looks).collect::<Vec<_>>());
+    let board = page_after(&appeared.chain(looks).collect::<Vec<_>>());
     let page = page(&board, Form::Text);
     let without_axes = page.lines().filter(|line| line.contains("robot=\"cell1\"") && !line.contains("axis="));
     assert!(without_axes.count() <= 35);
 }
 
 #[test]
-fn the_documentation_has_each_metric() {
+fn documents_each_metric() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/monitoring/README.md");
     let page = std::fs::read_to_string(path).unwrap();
     let rows = page.lines().filter_map(|line| line.strip_prefix("| `armctl_")?.split('`').next());
@@ -176,7 +176,7 @@ fn the_documentation_has_each_metric() {
 }
 
 #[test]
-fn names_are_as_conventions_want_them() {
+fn metric_names_follow_the_conventions() {
     for metric in METRICS {
         let name = metric.name;
         assert!(name.starts_with("armctl_") && name.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_'));

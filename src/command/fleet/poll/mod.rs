@@ -13,12 +13,12 @@
 //! The poller only reads, through links in [`ConnectMode::Monitor`](crate::command::ConnectMode). It opens no control
 //! connection to a YRCX. If a session has the link, it polls through the session.
 
-mod extra;
-mod follow;
+mod extra_command;
+mod poll_request;
+mod robot_loop;
 mod roster;
 #[cfg(test)]
 mod tests;
-mod wish;
 
 use std::collections::{BTreeMap, HashMap};
 use std::future::pending;
@@ -34,11 +34,11 @@ use serde_json::Value;
 use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
-pub use self::extra::Extra;
-use self::follow::{Follower, follow};
+pub use self::extra_command::Extra;
+use self::poll_request::MergedRequests;
+pub use self::poll_request::PollRequest;
+use self::robot_loop::{RobotTask, follow};
 use self::roster::Roster;
-use self::wish::Wants;
-pub use self::wish::Wish;
 use crate::command::face::sample::{Sample, Traffic};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -56,7 +56,7 @@ pub struct RobotId {
 
 impl RobotId {
     /// Id of a robot.
-    pub fn of(robot: &Robot) -> Self {
+    pub fn for_robot(robot: &Robot) -> Self {
         Self { name: robot.name.clone(), family: robot.family }
     }
 }
@@ -68,7 +68,7 @@ pub enum Event {
     /// following [`Event::Gone`].
     Appeared(Arc<Robot>),
     /// A poll succeeded.
-    Looked(Arc<Look>),
+    Polled(Arc<PollResult>),
     /// A poll failed: no answer, or an invalid one.
     Failed {
         /// The robot.
@@ -90,7 +90,7 @@ pub enum Event {
 
 /// Result of a successful poll.
 #[derive(Debug)]
-pub struct Look {
+pub struct PollResult {
     /// The robot.
     pub robot: Arc<Robot>,
     /// The data.
@@ -109,7 +109,7 @@ pub struct Look {
     pub unexplained: Option<Failure>,
 }
 
-impl Look {
+impl PollResult {
     /// A result with this data only.
     pub fn new(robot: Arc<Robot>, sample: Sample) -> Self {
         Self {
@@ -129,7 +129,7 @@ impl Look {
 #[derive(Debug)]
 pub struct Subscription {
     events: mpsc::Receiver<Event>,
-    wish: watch::Sender<Wish>,
+    wish: watch::Sender<PollRequest>,
 }
 
 impl Subscription {
@@ -139,7 +139,7 @@ impl Subscription {
     }
 
     /// Replaces the wish.
-    pub fn wish(&self, wish: Wish) {
+    pub fn wish(&self, wish: PollRequest) {
         self.wish.send_if_modified(|last| {
             let is_new = *last != wish;
             *last = wish;
@@ -151,7 +151,7 @@ impl Subscription {
 /// Queue size per consumer. When it is full, the polling tasks wait.
 const EVENTS: usize = 64;
 /// Time limit for closing links.
-const LEAVE_WITHIN: Duration = Duration::from_secs(1);
+const CLOSE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// The poller. It runs while [`Poll::run`] is awaited.
 #[derive(Debug)]
@@ -159,7 +159,7 @@ pub struct Poll {
     roster: Roster,
     /// Screen for messages of links while they open.
     screen: Screen,
-    consumers: Vec<(watch::Receiver<Wish>, mpsc::Sender<Event>)>,
+    consumers: Vec<(watch::Receiver<PollRequest>, mpsc::Sender<Event>)>,
 }
 
 impl Poll {
@@ -171,7 +171,7 @@ impl Poll {
 
     /// Creates a poller for one fixed robot.
     pub fn of(robot: Robot, screen: Screen) -> Self {
-        Self { roster: Roster::fixed(vec![robot]), screen, consumers: Vec::new() }
+        Self { roster: Roster::from_robots(vec![robot]), screen, consumers: Vec::new() }
     }
 
     /// The robots at the start.
@@ -180,7 +180,7 @@ impl Poll {
     }
 
     /// Adds a consumer.
-    pub fn subscribe(&mut self, wish: Wish) -> Subscription {
+    pub fn subscribe(&mut self, wish: PollRequest) -> Subscription {
         let (wish, wishes) = watch::channel(wish);
         let (tell, events) = mpsc::channel(EVENTS);
         self.consumers.push((wishes, tell));
@@ -191,11 +191,11 @@ impl Poll {
     pub async fn run(self) {
         let Self { roster, screen, consumers } = self;
         let (mut wishes, tellers): (Vec<_>, Vec<_>) = consumers.into_iter().unzip();
-        let tell = Teller(tellers.into());
-        let (wants, _) = watch::channel(Wants::of(&wishes));
+        let tell = EventSender(tellers.into());
+        let (wants, _) = watch::channel(MergedRequests::merge_all(&wishes));
         let mut fleet =
             Fleet { roster, screen, tell, wants, active: BTreeMap::new(), followers: FuturesUnordered::new() };
-        fleet.settle(true).await;
+        fleet.match_roster(true).await;
         loop {
             tokio::select! {
                 () = changed(&mut wishes) => {
@@ -203,29 +203,29 @@ impl Poll {
                         break;
                     }
                     fleet.wants.send_if_modified(|last| {
-                        let now = Wants::of(&wishes);
+                        let now = MergedRequests::merge_all(&wishes);
                         let is_new = *last != now;
                         *last = now;
                         is_new
                     });
                 }
-                Some(id) = fleet.followers.next() => fleet.ended(&id).await,
+                Some(id) = fleet.followers.next() => fleet.remove_robot(&id).await,
                 read = fleet.roster.changed() => {
-                    fleet.tell.tell(Event::Inventory(read)).await;
-                    fleet.settle(false).await;
+                    fleet.tell.send(Event::Inventory(read)).await;
+                    fleet.match_roster(false).await;
                 }
             }
         }
-        fleet.end().await;
+        fleet.stop_all().await;
     }
 }
 
 /// Sends events to all consumers.
 #[derive(Debug, Clone)]
-struct Teller(Rc<[mpsc::Sender<Event>]>);
+struct EventSender(Rc<[mpsc::Sender<Event>]>);
 
-impl Teller {
-    async fn tell(&self, event: Event) {
+impl EventSender {
+    async fn send(&self, event: Event) {
         for consumer in &*self.0 {
             // A consumer can be gone. When all are gone, the poller stops.
             let _gone = consumer.send(event.clone()).await;
@@ -234,7 +234,7 @@ impl Teller {
 }
 
 /// Waits for a changed wish. Removes the wishes of consumers that are gone.
-async fn changed(wishes: &mut Vec<watch::Receiver<Wish>>) {
+async fn changed(wishes: &mut Vec<watch::Receiver<PollRequest>>) {
     if wishes.is_empty() {
         return;
     }
@@ -248,15 +248,15 @@ async fn changed(wishes: &mut Vec<watch::Receiver<Wish>>) {
 struct Fleet {
     roster: Roster,
     screen: Screen,
-    tell: Teller,
-    wants: watch::Sender<Wants>,
+    tell: EventSender,
+    wants: watch::Sender<MergedRequests>,
     active: BTreeMap<RobotId, Active>,
     followers: FuturesUnordered<LocalBoxFuture<'static, RobotId>>,
 }
 
 struct Active {
     /// The robot of the inventory.
-    given: Robot,
+    entry: Robot,
     robot: Arc<Robot>,
     /// Stops the task; `None` after the stop.
     stop: Option<watch::Sender<bool>>,
@@ -265,11 +265,11 @@ struct Active {
 impl Fleet {
     /// Starts and stops tasks to match the roster. A new robot waits until the removed ones have closed their links,
     /// because it can be the same controller with another name.
-    async fn settle(&mut self, is_start: bool) {
+    async fn match_roster(&mut self, is_start: bool) {
         let wanted: BTreeMap<RobotId, &Robot> =
-            self.roster.robots().iter().map(|robot| (RobotId::of(robot), robot)).collect();
+            self.roster.robots().iter().map(|robot| (RobotId::for_robot(robot), robot)).collect();
         for (id, active) in &mut self.active {
-            if wanted.get(id).is_none_or(|robot| **robot != active.given)
+            if wanted.get(id).is_none_or(|robot| **robot != active.entry)
                 && let Some(stop) = active.stop.take()
             {
                 stop.send_replace(true);
@@ -282,26 +282,26 @@ impl Fleet {
             .roster
             .robots()
             .iter()
-            .filter(|robot| !self.active.contains_key(&RobotId::of(robot)))
+            .filter(|robot| !self.active.contains_key(&RobotId::for_robot(robot)))
             .cloned()
             .collect();
         // Spread the robots over the interval. Ticks have no drift, so they stay spread.
         let share = self.wants.borrow().every / u32::try_from(new.len().max(1)).unwrap_or(u32::MAX);
         for (at, given) in (0_u32..).zip(new) {
-            let id = RobotId::of(&given);
-            let robot = Arc::new(self.roster.identified(&given));
+            let id = RobotId::for_robot(&given);
+            let robot = Arc::new(self.roster.identify(&given));
             let (stop, stopped) = watch::channel(false);
-            let follower = Follower {
+            let follower = RobotTask {
                 robot: Arc::clone(&robot),
                 screen: self.screen,
                 delay: if is_start { share * at } else { Duration::ZERO },
                 wants: self.wants.subscribe(),
-                stopped,
-                tell: self.tell.clone(),
-                asked: HashMap::new(),
+                stop: stopped,
+                events: self.tell.clone(),
+                extra_commands: HashMap::new(),
             };
-            self.active.insert(id.clone(), Active { given, robot: Arc::clone(&robot), stop: Some(stop) });
-            self.tell.tell(Event::Appeared(robot)).await;
+            self.active.insert(id.clone(), Active { entry: given, robot: Arc::clone(&robot), stop: Some(stop) });
+            self.tell.send(Event::Appeared(robot)).await;
             self.followers.push(
                 async move {
                     follow(follower).await;
@@ -312,26 +312,26 @@ impl Fleet {
         }
     }
 
-    async fn ended(&mut self, id: &RobotId) {
+    async fn remove_robot(&mut self, id: &RobotId) {
         if let Some(active) = self.active.remove(id) {
-            self.tell.tell(Event::Gone(active.robot)).await;
+            self.tell.send(Event::Gone(active.robot)).await;
         }
-        self.settle(false).await;
+        self.match_roster(false).await;
     }
 
-    async fn end(mut self) {
+    async fn stop_all(mut self) {
         for active in self.active.values_mut() {
             if let Some(stop) = active.stop.take() {
                 stop.send_replace(true);
             }
         }
         let followers = async { while self.followers.next().await.is_some() {} };
-        let _left = timeout(LEAVE_WITHIN, followers).await;
+        let _left = timeout(CLOSE_TIMEOUT, followers).await;
     }
 }
 
 /// Waits until the task is stopped.
-async fn over(stopped: &mut watch::Receiver<bool>) {
+async fn wait_for_stop(stopped: &mut watch::Receiver<bool>) {
     if stopped.wait_for(|is_over| *is_over).await.is_err() {
         // The sender was dropped, so this task is dropped as well.
         pending::<()>().await;

@@ -13,7 +13,7 @@ use crate::settings::inventory::{Inventory, Location};
 use crate::settings::{Robot, Sources};
 
 /// Interval of the file check. A changed file is read after two equal checks, so that it is complete.
-const LOOK: Duration = Duration::from_secs(1);
+const CHECK_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Robots to poll: fixed, or read again when their inventory file changes.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ pub(super) struct Roster {
     file: Option<PathBuf>,
     /// File state at the last read and at the last check.
     read: Option<Stamp>,
-    seen: Option<Stamp>,
+    last_stamp: Option<Stamp>,
     next: Instant,
 }
 
@@ -36,12 +36,12 @@ impl Roster {
         let file = file.map(Path::to_owned);
         let stamp = file.as_deref().and_then(Stamp::of);
         let robots = sources.robots(None)?;
-        Ok(Self { sources: Some(sources), file, read: stamp.clone(), seen: stamp, ..Self::fixed(robots) })
+        Ok(Self { sources: Some(sources), file, read: stamp.clone(), last_stamp: stamp, ..Self::from_robots(robots) })
     }
 
     /// A fixed list of robots.
-    pub fn fixed(robots: Vec<Robot>) -> Self {
-        Self { robots, sources: None, file: None, read: None, seen: None, next: Instant::now() + LOOK }
+    pub fn from_robots(robots: Vec<Robot>) -> Self {
+        Self { robots, sources: None, file: None, read: None, last_stamp: None, next: Instant::now() + CHECK_INTERVAL }
     }
 
     /// Current robots.
@@ -50,7 +50,7 @@ impl Roster {
     }
 
     /// Adds other addresses of the robot, because a session can use one of them.
-    pub fn identified(&self, robot: &Robot) -> Robot {
+    pub fn identify(&self, robot: &Robot) -> Robot {
         let mut robot = robot.clone();
         if let Some(sources) = &self.sources {
             // A robot that does not answer is polled without them, and the poll reports the failure.
@@ -64,15 +64,15 @@ impl Roster {
         loop {
             let Some(path) = self.file.clone() else { return pending().await };
             sleep_until(self.next).await;
-            self.next = Instant::now() + LOOK;
+            self.next = Instant::now() + CHECK_INTERVAL;
             let now = Stamp::of(&path);
             if now == self.read {
-                self.seen = now;
-            } else if now == self.seen {
+                self.last_stamp = now;
+            } else if now == self.last_stamp {
                 self.read = now;
                 return self.read(&path);
             } else {
-                self.seen = now;
+                self.last_stamp = now;
             }
         }
     }
@@ -81,7 +81,7 @@ impl Roster {
         let inventory = Inventory::load(&Location::Named(path.to_owned()))?;
         if let Some(sources) = &mut self.sources {
             let now = Sources { inventory, ..sources.clone() };
-            self.robots = now.robots_left()?;
+            self.robots = now.remaining_robots()?;
             *sources = now;
         }
         Ok(())

@@ -10,7 +10,7 @@ use futures_util::future::join;
 use tempfile::TempDir;
 use tokio::time::Instant;
 
-use super::{Event, Extra, Poll, RobotId, Subscription, Wish};
+use super::{Event, Extra, Poll, PollRequest, RobotId, Subscription};
 use crate::command::face::sample::{Detail, Sample, Traffic};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -62,24 +62,24 @@ fn fleet() -> Plant {
 }
 
 /// Runs a poller for one consumer until `consume` returns.
-async fn watched<T>(mut poll: Poll, wish: Wish, consume: impl AsyncFnOnce(&mut Subscription) -> T) -> T {
+async fn subscription<T>(mut poll: Poll, wish: PollRequest, consume: impl AsyncFnOnce(&mut Subscription) -> T) -> T {
     let mut events = poll.subscribe(wish);
-    let consumed = async {
+    let received_events = async {
         let seen = consume(&mut events).await;
         drop(events);
         seen
     };
-    join(poll.run(), consumed).await.1
+    join(poll.run(), received_events).await.1
 }
 
 /// Names of the next `count` events, with or without polls.
-async fn told(events: &mut Subscription, count: usize, looks: bool) -> Vec<String> {
+async fn received(events: &mut Subscription, count: usize, looks: bool) -> Vec<String> {
     let mut all = Vec::new();
     while all.len() < count {
         match events.next().await.expect("it goes on") {
             Event::Appeared(robot) => all.push(format!("appeared {}", robot.name)),
-            Event::Looked(look) if looks => all.push(format!("looked {}", look.robot.name)),
-            Event::Looked(_) => {}
+            Event::Polled(look) if looks => all.push(format!("looked {}", look.robot.name)),
+            Event::Polled(_) => {}
             Event::Failed { robot, pause, .. } => all.push(format!("failed {} {}", robot.name, pause.as_secs())),
             Event::Gone(robot) => all.push(format!("gone {}", robot.name)),
             Event::Inventory(read) => all.push(match read {
@@ -92,7 +92,7 @@ async fn told(events: &mut Subscription, count: usize, looks: bool) -> Vec<Strin
 }
 
 #[tokio::test(start_paused = true)]
-async fn every_family_is_looked_at_in_a_line_with_its_axes_and_in_full() {
+async fn polls_every_family_in_each_detail() {
     let ids = ["a", "b", "c"];
     for (detail, whole) in [(Detail::Summary, None), (Detail::Axes, None), (Detail::Full, None)]
         .into_iter()
@@ -100,12 +100,12 @@ async fn every_family_is_looked_at_in_a_line_with_its_axes_and_in_full() {
     {
         let plant = fleet();
         let poll = plant.all();
-        let id = whole.map(|at: usize| RobotId::of(&poll.robots()[at]));
-        let wish = Wish { detail, whole: id, ..Wish::every(EVERY) };
-        let samples = watched(poll, wish, async |events: &mut Subscription| {
+        let id = whole.map(|at: usize| RobotId::for_robot(&poll.robots()[at]));
+        let wish = PollRequest { detail, whole: id, ..PollRequest::every(EVERY) };
+        let samples = subscription(poll, wish, async |events: &mut Subscription| {
             let mut samples: BTreeMap<String, Vec<Sample>> = BTreeMap::new();
             while samples.len() < 3 || samples.values().any(|samples| samples.len() < 3) {
-                if let Event::Looked(look) = events.next().await.expect("it goes on") {
+                if let Event::Polled(look) = events.next().await.expect("it goes on") {
                     samples.entry(look.robot.name.clone()).or_default().push(look.sample.clone());
                 }
             }
@@ -116,8 +116,8 @@ async fn every_family_is_looked_at_in_a_line_with_its_axes_and_in_full() {
             let sample = samples[*name].last().unwrap();
             assert!(sample.line.state.mode.is_some() && sample.line.state.position.is_some());
             let full = detail == Detail::Full || whole == Some(at);
-            assert_eq!(sample.whole.is_some(), detail > Detail::Summary || full, "{name} {detail:?}");
-            if let Some(found) = &sample.whole {
+            assert_eq!(sample.full.is_some(), detail > Detail::Summary || full, "{name} {detail:?}");
+            if let Some(found) = &sample.full {
                 assert!(found.indicators.len() > 8 && found.axes.len() >= 4, "{found:?}");
                 assert_eq!(found.axes.iter().any(|axis| axis.torque.is_some()), *name != "c", "{name}: {found:?}");
                 assert_eq!(found.banks.len(), if full { 2 } else { 0 }, "{name}: {found:?}");
@@ -128,7 +128,7 @@ async fn every_family_is_looked_at_in_a_line_with_its_axes_and_in_full() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_robot_that_is_gone_holds_up_no_other() {
+async fn unreachable_robot_does_not_delay_others() {
     let plant = Plant::new(&[
         ("a", "yerc", "sim:"),
         ("b", "yrcx", "sim:"),
@@ -137,11 +137,11 @@ async fn a_robot_that_is_gone_holds_up_no_other() {
         ("d", "yerc", "sim:?fault=drop%3D100%25"),
     ]);
     let began = Instant::now();
-    let counts = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
+    let counts = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
         let mut counts = BTreeMap::new();
         loop {
             match events.next().await.expect("it goes on") {
-                Event::Looked(look) => {
+                Event::Polled(look) => {
                     *counts.entry(look.robot.name.clone()).or_insert(0_u128) += 1;
                     // An in-process YRCX has no network.
                     let Traffic { sent, received, disturbances } = look.traffic;
@@ -165,20 +165,20 @@ async fn a_robot_that_is_gone_holds_up_no_other() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn one_that_is_silent_is_left_alone_longer_each_time() {
+async fn backoff_of_a_silent_robot_grows() {
     let plant = Plant::new(&[("d", "yerc", "sim:?fault=drop%3D100%25")]);
-    let wish = Wish { longest_pause: Duration::from_secs(5), ..Wish::every(EVERY) };
-    let told = watched(plant.all(), wish, async |events: &mut Subscription| told(events, 6, true).await).await;
+    let wish = PollRequest { longest_pause: Duration::from_secs(5), ..PollRequest::every(EVERY) };
+    let told = subscription(plant.all(), wish, async |events: &mut Subscription| received(events, 6, true).await).await;
     assert_eq!(told, ["appeared d", "failed d 1", "failed d 2", "failed d 4", "failed d 5", "failed d 5"]);
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_slow_line_is_asked_at_its_own_pace() {
+async fn polls_a_slow_line_at_its_own_pace() {
     let plant = Plant::new(&[("slow", "yerc", "sim:?fault=delay%3D150ms"), ("fast", "yerc", "sim:")]);
-    let looks = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
+    let looks = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
         let mut looks = Vec::new();
         while looks.len() < 3 {
-            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+            if let Event::Polled(look) = events.next().await.expect("it goes on") {
                 if look.robot.name == "slow" {
                     looks.push((look.took, look.missed));
                 } else {
@@ -196,19 +196,19 @@ async fn a_slow_line_is_asked_at_its_own_pace() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn who_wants_to_know_is_told_of_the_same_look_and_the_shortest_interval_counts() {
+async fn consumers_share_polls_at_the_shortest_interval() {
     let plant = fleet();
     let mut poll = plant.all();
-    let mut one = poll.subscribe(Wish { detail: Detail::Axes, ..Wish::every(Duration::from_secs(10)) });
-    let mut other = poll.subscribe(Wish::every(EVERY));
+    let mut one = poll.subscribe(PollRequest { detail: Detail::Axes, ..PollRequest::every(Duration::from_secs(10)) });
+    let mut other = poll.subscribe(PollRequest::every(EVERY));
     let began = Instant::now();
     let compared = async {
         let mut looks = 0;
         while looks < 30 {
             match (one.next().await.unwrap(), other.next().await.unwrap()) {
-                (Event::Looked(one), Event::Looked(other)) => {
+                (Event::Polled(one), Event::Polled(other)) => {
                     assert!(Arc::ptr_eq(&one, &other), "asked once, for both");
-                    assert!(one.sample.whole.is_some(), "with all that any of them wants");
+                    assert!(one.sample.full.is_some(), "with all that any of them wants");
                     looks += 1;
                 }
                 (Event::Appeared(one), Event::Appeared(other)) => assert!(Arc::ptr_eq(&one, &other)),
@@ -221,7 +221,7 @@ async fn who_wants_to_know_is_told_of_the_same_look_and_the_shortest_interval_co
         drop(other);
         let mut last = BTreeMap::new();
         for _ in 0..12 {
-            if let Event::Looked(look) = one.next().await.unwrap() {
+            if let Event::Polled(look) = one.next().await.unwrap() {
                 last.insert(look.robot.name.clone(), Instant::now());
             }
         }
@@ -232,15 +232,15 @@ async fn who_wants_to_know_is_told_of_the_same_look_and_the_shortest_interval_co
 }
 
 #[tokio::test(start_paused = true)]
-async fn command_lines_are_asked_along_with_the_looks_of_their_family() {
+async fn runs_extra_commands_with_the_polls_of_their_family() {
     let plant = fleet();
     let extras = ["yerc var get B0..B1", "toyo counter get 1", "yerc var get B0"];
     let extras: Rc<[Rc<Extra>]> = extras.iter().map(|text| Rc::new(Extra::parse(text).unwrap())).collect();
-    let wish = Wish { extras, ..Wish::every(EVERY) };
-    let extras = watched(plant.all(), wish, async |events: &mut Subscription| {
+    let wish = PollRequest { extras, ..PollRequest::every(EVERY) };
+    let extras = subscription(plant.all(), wish, async |events: &mut Subscription| {
         let mut extras = BTreeMap::new();
         while extras.len() < 3 {
-            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+            if let Event::Polled(look) = events.next().await.expect("it goes on") {
                 let told = look.extras.iter().map(|(text, told)| (text.to_string(), told.clone()));
                 extras.insert(look.robot.name.clone(), told.collect::<Vec<_>>());
             }
@@ -259,7 +259,7 @@ async fn command_lines_are_asked_along_with_the_looks_of_their_family() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_name_in_a_command_line_is_that_of_each_robot() {
+async fn resolves_names_of_extra_commands_per_robot() {
     let plant = fleet();
     let entry = |name: &str, names: &str| {
         format!("[[robot]]\nname = \"{name}\"\nfamily = \"yerc\"\ntarget = \"sim:\"\n{names}\n")
@@ -267,11 +267,11 @@ async fn a_name_in_a_command_line_is_that_of_each_robot() {
     let named = |address: &str| format!("[robot.names]\nparts = \"{address}\"");
     plant.write_text(&[entry("a", &named("B5")), entry("b", &named("B6")), entry("c", "")].concat());
     let extra = Rc::new(Extra::parse("yerc var get parts").unwrap());
-    let wish = Wish { extras: Rc::from([extra]), ..Wish::every(EVERY) };
-    let told = watched(plant.all(), wish, async |events: &mut Subscription| {
+    let wish = PollRequest { extras: Rc::from([extra]), ..PollRequest::every(EVERY) };
+    let told = subscription(plant.all(), wish, async |events: &mut Subscription| {
         let mut told = BTreeMap::new();
         while told.len() < 3 {
-            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+            if let Event::Polled(look) = events.next().await.expect("it goes on") {
                 told.insert(look.robot.name.clone(), look.extras[0].1.clone());
             }
         }
@@ -285,28 +285,28 @@ async fn a_name_in_a_command_line_is_that_of_each_robot() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn robots_come_and_go_as_the_inventory_says() {
+async fn follows_robots_of_the_inventory() {
     let plant = fleet();
-    let told = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
-        let mut all = told(events, 3, false).await;
+    let told = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
+        let mut all = received(events, 3, false).await;
         // One robot is removed, one is added, one has changed.
         plant.write(&[("a", "yerc", "sim:"), ("c", "yerc", "sim:"), ("d", "toyo", "sim:")]);
-        all.extend(told(events, 5, false).await);
+        all.extend(received(events, 5, false).await);
         // A file that cannot be read changes nothing, and is reported once.
         plant.write_text("[[robot]]\nname = ");
-        all.extend(told(events, 1, false).await);
+        all.extend(received(events, 1, false).await);
         let later = Instant::now() + Duration::from_secs(10);
         while Instant::now() < later {
-            assert!(matches!(events.next().await, Some(Event::Looked(_))), "those that are known are looked at");
+            assert!(matches!(events.next().await, Some(Event::Polled(_))), "those that are known are looked at");
         }
         plant.write(&[("a", "yerc", "sim:?fault=delay%3D1ms")]);
-        all.extend(told(events, 5, false).await);
+        all.extend(received(events, 5, false).await);
         std::fs::remove_file(plant.path()).unwrap();
-        all.extend(told(events, 1, false).await);
+        all.extend(received(events, 1, false).await);
         plant.write(&[]);
-        all.extend(told(events, 2, false).await);
+        all.extend(received(events, 2, false).await);
         plant.write(&[("e", "yrcx", "sim:")]);
-        all.extend(told(events, 2, false).await);
+        all.extend(received(events, 2, false).await);
         all
     })
     .await;
@@ -334,10 +334,10 @@ fn sorted_runs(told: &str) -> Vec<String> {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_file_that_is_being_written_is_not_read() {
+async fn ignores_an_incomplete_inventory() {
     let plant = fleet();
-    let told = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
-        let mut all = told(events, 3, false).await;
+    let told = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
+        let mut all = received(events, 3, false).await;
         // The file grows between two checks, as with a slow editor.
         let mut text = String::new();
         for number in 0..10 {
@@ -346,12 +346,12 @@ async fn a_file_that_is_being_written_is_not_read() {
             let later = Instant::now() + Duration::from_millis(700);
             while Instant::now() < later {
                 match events.next().await {
-                    Some(Event::Looked(_)) => {}
+                    Some(Event::Polled(_)) => {}
                     told => all.push(format!("{told:?}")),
                 }
             }
         }
-        all.extend(told(events, 1 + 3 + 10, false).await);
+        all.extend(received(events, 1 + 3 + 10, false).await);
         all
     })
     .await;
@@ -360,7 +360,7 @@ async fn a_file_that_is_being_written_is_not_read() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn names_and_tags_count_as_the_inventory_changes() {
+async fn follows_names_and_tags_of_the_inventory() {
     let text = |tagged: &[&str]| -> String {
         let entry = |name: &&str| {
             let tags = if tagged.contains(name) { "tags = [\"line1\"]\n" } else { "" };
@@ -382,10 +382,10 @@ async fn names_and_tags_count_as_the_inventory_changes() {
         plant.write_text(&text(&["a1"]));
         let is_by_tag = !selection.tags.is_empty();
         let poll = plant.poll(selection).unwrap();
-        let told = watched(poll, Wish::every(EVERY), async |events: &mut Subscription| {
-            let mut all = told(events, first.len(), false).await;
+        let told = subscription(poll, PollRequest::every(EVERY), async |events: &mut Subscription| {
+            let mut all = received(events, first.len(), false).await;
             plant.write_text(&if is_by_tag { text(&["b1"]) } else { String::new() });
-            all.extend(told(events, 1 + then.len(), false).await);
+            all.extend(received(events, 1 + then.len(), false).await);
             all
         })
         .await;
@@ -395,13 +395,13 @@ async fn names_and_tags_count_as_the_inventory_changes() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_robot_that_stands_by_itself_is_looked_at_until_nobody_wants_to_know() {
+async fn polls_a_fixed_robot_until_all_subscriptions_end() {
     let plant = fleet();
     let robot = plant.all().robots()[0].clone();
     let poll = Poll::of(robot, Screen::silent());
     std::fs::remove_file(plant.path()).unwrap();
-    let told = watched(poll, Wish::every(EVERY), async |events: &mut Subscription| {
-        let told = told(events, 100, true).await;
+    let told = subscription(poll, PollRequest::every(EVERY), async |events: &mut Subscription| {
+        let told = received(events, 100, true).await;
         assert!(told[1..].iter().all(|told| told == "looked a"), "{told:?}");
         told.len()
     })
@@ -410,7 +410,7 @@ async fn a_robot_that_stands_by_itself_is_looked_at_until_nobody_wants_to_know()
 }
 
 #[test]
-fn without_robots_there_is_nothing_to_poll() {
+fn rejects_an_empty_selection() {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     let _inside = runtime.enter();
     let plant = Plant::new(&[]);

@@ -10,15 +10,15 @@ use std::time::Duration;
 use anyhow::Context as _;
 use clap::{Args, ValueEnum};
 
+use super::error_text;
 use super::uplink::{Endpoint, Hello, Identity, Tls, Trust, Version, Will};
-use super::words;
 use crate::failure::Failure;
 use crate::files;
 
 /// Keepalive interval of the connection.
 const KEEP_ALIVE: Duration = Duration::from_secs(30);
 /// Size limit of password and certificate files, in bytes.
-const LARGEST_FILE: u64 = 1 << 20;
+const MAX_FILE_SIZE: u64 = 1 << 20;
 /// Environment variable with the password.
 const PASSWORD: &str = "ARMCTL_MQTT_PASSWORD";
 
@@ -167,7 +167,7 @@ impl Broker {
                 _ => None,
             };
             let tls = Tls::new(&url.host, &trust, identity.as_ref());
-            Some(Arc::new(tls.map_err(|error| words::distrust(url, &error))?))
+            Some(Arc::new(tls.map_err(|error| error_text::certificate_hint(url, &error))?))
         } else {
             None
         };
@@ -200,7 +200,7 @@ impl Broker {
     }
 
     /// CONNECT contents with this last will.
-    pub fn hello(&self, client_id: String, will: Will) -> Hello {
+    pub fn connect_packet(&self, client_id: String, will: Will) -> Hello {
         Hello {
             version: self.version,
             client_id,
@@ -241,7 +241,7 @@ fn is_this_machine(host: &str) -> bool {
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
-    Ok(files::read(path, LARGEST_FILE).with_context(|| path.display().to_string())?)
+    Ok(files::read(path, MAX_FILE_SIZE).with_context(|| path.display().to_string())?)
 }
 
 /// Password from the file without its line end, or from the environment.
@@ -270,7 +270,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn urls_are_read_and_shown() {
+    fn parses_and_formats_urls() {
         for (text, shown) in [
             ("mqtt://broker", "mqtt://broker:1883"),
             ("mqtts://broker.plant.example", "mqtts://broker.plant.example:8883"),
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_url_is_refused_without_being_shown() {
+    fn rejects_invalid_urls_without_printing_them() {
         for text in [
             "broker",
             "http://broker",
@@ -299,14 +299,14 @@ mod tests {
         ] {
             assert!(text.parse::<Url>().is_err(), "{text}");
         }
-        let told = "mqtts://me:hunter2@broker".parse::<Url>().unwrap_err();
-        assert!(told.contains("--password-file") && !told.contains("hunter2"), "{told}");
+        let message = "mqtts://me:hunter2@broker".parse::<Url>().unwrap_err();
+        assert!(message.contains("--password-file") && !message.contains("hunter2"), "{message}");
         let told = "mqtt://broker:hunter2".parse::<Url>().unwrap_err();
         assert!(!told.contains("hunter2"), "{told}");
     }
 
     #[test]
-    fn only_the_loopback_is_this_machine() {
+    fn recognizes_only_loopback_as_this_machine() {
         for host in ["127.0.0.1", "127.3.2.1", "::1", "::ffff:127.0.0.1", "localhost", "LocalHost"] {
             assert!(is_this_machine(host), "{host}");
         }
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_shown_a_password() {
+    fn hides_the_password() {
         let secret = format!("{:?}", Secret(Some(b"hunter2".to_vec())));
         assert_eq!(secret, "a password");
     }

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::pump::Listener;
+use super::delivery::Listener;
 use crate::command::fleet::service::Service;
 use crate::output::log::Level;
 
@@ -10,28 +10,28 @@ use crate::output::log::Level;
 pub struct BrokerLog<'a> {
     service: &'a Service,
     url: String,
-    is_there: Cell<bool>,
+    is_connected: Cell<bool>,
 }
 
 impl<'a> BrokerLog<'a> {
     /// Creates a log; the broker is not connected yet.
     pub fn new(service: &'a Service, url: String) -> Self {
-        Self { service, url, is_there: Cell::new(false) }
+        Self { service, url, is_connected: Cell::new(false) }
     }
 
     /// Status line: `3 robots, 2 answer; connected to mqtt://broker:1883`.
     pub fn status(&self) -> String {
-        let verb = if self.is_there.get() { "connected" } else { "not connected" };
+        let verb = if self.is_connected.get() { "connected" } else { "not connected" };
         format!("{}; {verb} to {}", self.service.robots(), self.url)
     }
 }
 
 impl Listener for BrokerLog<'_> {
-    fn say(&self, level: Level, text: &str) {
-        self.service.say(level, text, &[("broker", &self.url)]);
+    fn log(&self, level: Level, text: &str) {
+        self.service.log_line(level, text, &[("broker", &self.url)]);
     }
 
-    fn reached(&self, is_there: bool) {
-        self.is_there.set(is_there);
+    fn set_connected(&self, is_there: bool) {
+        self.is_connected.set(is_there);
     }
 }

@@ -16,20 +16,20 @@
 //! | `log` | log, and status for the service manager |
 //! | `words` | texts of broker refusals |
 
-mod also;
 mod broker;
+mod delivery;
+mod error_text;
+mod extra_topic;
 mod log;
+mod message_format;
 mod outbox;
-mod plain;
-mod pump;
+mod plain_format;
 mod sparkplug;
-mod speech;
 mod spool;
 #[cfg(test)]
 mod tests;
 mod topic;
 mod uplink;
-mod words;
 
 use std::collections::BTreeMap;
 use std::env;
@@ -44,20 +44,20 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::timeout;
 
-use self::also::Also;
 use self::broker::{Broker, Login, Url};
+use self::delivery::{Backoff, Counts, Delivery, Listener as _};
+use self::extra_topic::ExtraTopic;
 use self::log::BrokerLog;
+use self::message_format::MessageFormat;
 use self::outbox::Outbox;
-use self::plain::{Alarms, Plain, Position};
-use self::pump::{Counts, Listener as _, Pauses, Pump};
+use self::plain_format::{Alarms, PlainFormat, Position};
 use self::sparkplug::{Names, Node};
-use self::speech::Speech;
 use self::spool::Spool;
 use self::topic::Levels;
-use crate::command::fleet::poll::{Event, Poll, RobotId, Subscription, Wish};
-use crate::command::fleet::service::{END, Service};
+use crate::command::fleet::poll::{Event, Poll, PollRequest, RobotId, Subscription};
+use crate::command::fleet::service::{END_TIMEOUT, Service};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::local::state_folder;
+use crate::command::frame::local_names::state_folder;
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Report, SchemaEntry};
 use crate::failure::Failure;
@@ -136,10 +136,10 @@ struct BufferArguments {
 }
 
 /// Minimum size of a buffer in bytes, so that an envelope with a full position fits.
-const LEAST: u64 = 64 << 10;
+const MIN_SIZE: u64 = 64 << 10;
 /// Minimum and default polling interval.
-const LEAST_EVERY: Duration = Duration::from_millis(50);
-const EVERY: Duration = Duration::from_secs(1);
+const MIN_INTERVAL: Duration = Duration::from_millis(50);
+const DEFAULT_INTERVAL: Duration = Duration::from_secs(1);
 
 fn size(text: &str) -> Result<u64, String> {
     let wrong = || format!("'{text}' is not a valid size; write 64K, 16M or 1G");
@@ -157,7 +157,7 @@ fn size(text: &str) -> Result<u64, String> {
 
 fn memory_size(text: &str) -> Result<u64, String> {
     match size(text)? {
-        bytes if bytes < LEAST => Err("the buffer needs at least 64K".to_owned()),
+        bytes if bytes < MIN_SIZE => Err("the buffer needs at least 64K".to_owned()),
         bytes => Ok(bytes),
     }
 }
@@ -248,9 +248,9 @@ impl Report for Published {
 impl Publish {
     /// Runs the command.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
-        let interval = run.repeat.every.unwrap_or(EVERY);
-        self.fits(run, interval)?;
-        let also = Also::all(&self.also)?;
+        let interval = run.repeat.every.unwrap_or(DEFAULT_INTERVAL);
+        self.check_globals(run, interval)?;
+        let also = ExtraTopic::all(&self.also)?;
         let url: Url = self.broker.parse().map_err(|why: String| {
             Failure::usage(format!("this is not the URL of a broker: {why}")).hint("example: mqtt://192.168.1.5")
         })?;
@@ -259,25 +259,26 @@ impl Publish {
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let levels = Levels::new(poll.robots());
         for robot in poll.robots() {
-            levels.of(robot)?;
+            levels.level_of(robot)?;
         }
-        let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::of).collect();
+        let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::for_robot).collect();
         let service = Service::begin(run.screen)?;
         let (outbox, folder) = self.outbox(&node)?;
-        let speech = self.speech((&node, levels), &also, folder.as_deref());
+        let speech = self.create_format((&node, levels), &also, folder.as_deref());
         let log = BrokerLog::new(&service, broker.url.to_string());
         for warning in &broker.warnings {
-            log.say(Level::Warning, warning);
+            log.log(Level::Warning, warning);
         }
         catch_interrupts();
-        let extras = also.iter().map(Also::extra).collect();
-        let mut events = poll.subscribe(Wish { extras, ..Wish::every(interval) });
+        let extras = also.iter().map(ExtraTopic::extra).collect();
+        let mut events = poll.subscribe(PollRequest { extras, ..PollRequest::every(interval) });
         let mut polled = Box::pin(poll.run());
-        let pauses = Pauses::new(fastrand::u64(..));
-        let mut pump = Pump::new((&broker, &broker.url), speech, outbox, (&log, pauses), run.repeat.count.is_some());
-        let mut looks = Looks::new(&robots, run.repeat.count);
+        let pauses = Backoff::new(fastrand::u64(..));
+        let mut pump =
+            Delivery::new((&broker, &broker.url), speech, outbox, (&log, pauses), run.repeat.count.is_some());
+        let mut looks = PollCounter::new(&robots, run.repeat.count);
         // A broker that is temporarily away must not delay services that wait for this one.
-        service.ready(robots.len())?;
+        service.notify_ready(robots.len())?;
         let ended = {
             let found = async || {
                 let event = looks.next(&mut events).await?;
@@ -286,18 +287,18 @@ impl Publish {
             };
             let stop = async {
                 let _asked = interruptible(pending::<()>()).await;
-                service.stopping();
+                service.notify_stopping();
             };
             tokio::select! {
                 ended = pump.run(found, stop) => ended,
                 () = &mut polled => Err(Failure::local("internal error: polling has ended")),
-                () = service.pulses(|| log.status()) => Err(Failure::local("internal error: no more status")),
+                () = service.watchdog_interval(|| log.status()) => Err(Failure::local("internal error: no more status")),
             }
         };
         drop(events);
         // If a run with --count found no broker, the failure is the only message.
         let has_failed = ended.is_err() && run.repeat.count.is_some();
-        let (counts, _in_time) = join(pump.end(has_failed), timeout(END, polled)).await;
+        let (counts, _in_time) = join(pump.end(has_failed), timeout(END_TIMEOUT, polled)).await;
         ended?;
         let Counts { published, refused, dropped, reconnects, undelivered } = counts;
         let broker = broker.url.to_string();
@@ -306,7 +307,7 @@ impl Publish {
     }
 
     /// Rejects options that make no sense here.
-    fn fits(&self, run: &Run, interval: Duration) -> Result<(), Failure> {
+    fn check_globals(&self, run: &Run, interval: Duration) -> Result<(), Failure> {
         let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("publish {what}")).hint(hint));
         if run.filter.is_some() || run.repeat.until.is_some() {
             return wrong(
@@ -326,7 +327,7 @@ impl Publish {
         if run.screen.format.is_rows() {
             return wrong("prints no table", "remove the format, or use --json");
         }
-        if interval < LEAST_EVERY {
+        if interval < MIN_INTERVAL {
             return wrong("polls at most every 50ms", "use --watch 50ms or more");
         }
         if run.repeat.count.is_some() && self.sparkplug.host.is_some() {
@@ -350,13 +351,13 @@ impl Publish {
             .group
             .as_ref()
             .map_or_else(|| self.prefix.replace('/', "%2F"), |group| format!("spB-{group}"));
-        let usual = || Some(state()?.join("publish").join(format!("{way}-{node}")));
+        let usual = || Some(service_state_folder()?.join("publish").join(format!("{way}-{node}")));
         let Some(folder) = path.clone().or_else(usual) else {
             return Err(Failure::usage("armctl finds no folder for the buffer on disk")
                 .hint("set one with --buffer-dir, or use no disk: --buffer-disk 0"));
         };
         let spool = Spool::open(&folder, *disk).map_err(|error| {
-            if spool::is_taken(&error) {
+            if spool::is_locked(&error) {
                 return Failure::usage(format!("{}: another armctl publishes as '{node}'", folder.display()))
                     .hint("set a different name with --node, or a different folder with --buffer-dir");
             }
@@ -366,11 +367,18 @@ impl Publish {
         Ok((Outbox::new(memory, Some(spool)), Some(folder)))
     }
 
-    fn speech(&self, (node, levels): (&str, Levels), also: &Rc<[Also]>, folder: Option<&Path>) -> Box<dyn Speech> {
+    fn create_format(
+        &self,
+        (node, levels): (&str, Levels),
+        also: &Rc<[ExtraTopic]>,
+        folder: Option<&Path>,
+    ) -> Box<dyn MessageFormat> {
         let every_ms = u64::try_from(self.every.as_millis()).unwrap_or(u64::MAX);
         let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| self.kinds.contains(kind)).collect();
         match &self.sparkplug.group {
-            None => Box::new(Plain::new((&self.prefix, node.to_owned(), levels), &kinds, Rc::clone(also), every_ms)),
+            None => {
+                Box::new(PlainFormat::new((&self.prefix, node.to_owned(), levels), &kinds, Rc::clone(also), every_ms))
+            }
             Some(group) => {
                 let names =
                     Names { group: group.clone(), node: node.to_owned(), host: self.sparkplug.host.clone(), levels };
@@ -390,9 +398,9 @@ impl Publish {
 }
 
 /// State folder of the service or of the user.
-fn state() -> Option<PathBuf> {
-    let of_service = env::var_os("STATE_DIRECTORY").filter(|folder| !folder.is_empty());
-    of_service.and_then(|folders| env::split_paths(&folders).next()).or_else(state_folder)
+fn service_state_folder() -> Option<PathBuf> {
+    let service_folder = env::var_os("STATE_DIRECTORY").filter(|folder| !folder.is_empty());
+    service_folder.and_then(|folders| env::split_paths(&folders).next()).or_else(state_folder)
 }
 
 /// Host name.
@@ -409,12 +417,12 @@ fn this_machine() -> String {
 
 /// Events of the poller, up to a number of polls per robot.
 #[derive(Debug)]
-struct Looks {
+struct PollCounter {
     left: BTreeMap<RobotId, u64>,
     is_bounded: bool,
 }
 
-impl Looks {
+impl PollCounter {
     fn new(robots: &[RobotId], count: Option<u64>) -> Self {
         let left = count.map(|count| robots.iter().map(|id| (id.clone(), count)).collect()).unwrap_or_default();
         Self { left, is_bounded: count.is_some() }
@@ -425,13 +433,13 @@ impl Looks {
             return None;
         }
         let event = events.next().await?;
-        let looked = match &event {
-            Event::Looked(look) => Some((RobotId::of(&look.robot), 1)),
-            Event::Failed { robot, .. } => Some((RobotId::of(robot), 1)),
-            Event::Gone(robot) => Some((RobotId::of(robot), u64::MAX)),
+        let polled_robots = match &event {
+            Event::Polled(look) => Some((RobotId::for_robot(&look.robot), 1)),
+            Event::Failed { robot, .. } => Some((RobotId::for_robot(robot), 1)),
+            Event::Gone(robot) => Some((RobotId::for_robot(robot), u64::MAX)),
             Event::Appeared(_) | Event::Inventory(_) => None,
         };
-        if let Some((id, looks)) = looked
+        if let Some((id, looks)) = polled_robots
             && let Some(left) = self.left.get_mut(&id)
         {
             *left = left.saturating_sub(looks);

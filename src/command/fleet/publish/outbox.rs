@@ -24,11 +24,11 @@ pub struct Record {
 }
 
 /// Memory overhead of a record.
-const BESIDE: usize = 128;
+const RECORD_OVERHEAD: usize = 128;
 
 impl Record {
     fn size(&self) -> usize {
-        self.key.len() + self.body.len() + BESIDE
+        self.key.len() + self.body.len() + RECORD_OVERHEAD
     }
 }
 
@@ -37,7 +37,7 @@ pub type Ticket = u64;
 
 /// A record in memory.
 #[derive(Debug)]
-struct Held {
+struct QueuedRecord {
     ticket: Ticket,
     record: Record,
     state: State,
@@ -55,7 +55,7 @@ enum State {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Dropped {
     /// Dropped because the queue was full.
-    pub for_room: u64,
+    pub overflow: u64,
     /// Damaged on disk.
     pub damaged: u64,
 }
@@ -63,66 +63,66 @@ pub struct Dropped {
 /// The queue, oldest record first.
 #[derive(Debug)]
 pub struct Outbox {
-    memory: VecDeque<Held>,
+    memory: VecDeque<QueuedRecord>,
     bytes: usize,
     /// Memory limit in bytes.
-    most: usize,
+    memory_limit: usize,
     spool: Option<Spool>,
     next: Ticket,
     dropped: Dropped,
     /// Last disk error, until it is reported.
-    trouble: Option<io::Error>,
-    is_troubled: bool,
+    disk_error: Option<io::Error>,
+    has_disk_error: bool,
 }
 
 impl Outbox {
     /// Creates a queue with a memory limit, with or without a disk spool.
-    pub fn new(most: usize, spool: Option<Spool>) -> Self {
+    pub fn new(memory_limit: usize, spool: Option<Spool>) -> Self {
         Self {
             memory: VecDeque::new(),
             bytes: 0,
-            most,
+            memory_limit,
             spool,
             next: 1,
             dropped: Dropped::default(),
-            trouble: None,
-            is_troubled: false,
+            disk_error: None,
+            has_disk_error: false,
         }
     }
 
     /// Adds a record.
     pub fn push(&mut self, record: Record) {
         let size = record.size();
-        if size > self.most {
-            self.dropped.for_room += 1;
+        if size > self.memory_limit {
+            self.dropped.overflow += 1;
             return;
         }
         loop {
-            if !self.has_more_on_disk() && self.bytes + size <= self.most {
+            if !self.has_more_on_disk() && self.bytes + size <= self.memory_limit {
                 self.hold(record, None);
                 return;
             }
             let has_room = self.spool.as_mut().map(|spool| (spool.append(&record), spool.bytes()));
             match has_room {
                 Some((Ok(()), _)) => {
-                    self.is_troubled = false;
+                    self.has_disk_error = false;
                     return;
                 }
                 Some((Err(error), bytes)) => {
                     if let SpoolError::Io(error) = error
-                        && !std::mem::replace(&mut self.is_troubled, true)
+                        && !std::mem::replace(&mut self.has_disk_error, true)
                     {
-                        self.trouble = Some(error);
+                        self.disk_error = Some(error);
                     }
                     // A segment is deleted as a whole. If that makes room, try the disk again.
                     if !self.make_room(size, bytes) {
-                        self.dropped.for_room += 1;
+                        self.dropped.overflow += 1;
                         return;
                     }
                 }
                 None => {
                     if !self.drop_oldest() {
-                        self.dropped.for_room += 1;
+                        self.dropped.overflow += 1;
                         return;
                     }
                 }
@@ -135,7 +135,7 @@ impl Outbox {
     fn make_room(&mut self, size: usize, bytes: u64) -> bool {
         loop {
             self.refill();
-            let has_room = !self.has_more_on_disk() && self.bytes + size <= self.most;
+            let has_room = !self.has_more_on_disk() && self.bytes + size <= self.memory_limit;
             if has_room || self.spool.as_ref().is_some_and(|spool| spool.bytes() < bytes) {
                 return true;
             }
@@ -154,7 +154,7 @@ impl Outbox {
     }
 
     /// Removes a record that has arrived or can never be sent.
-    pub fn done(&mut self, ticket: Ticket) {
+    pub fn acknowledge(&mut self, ticket: Ticket) {
         // Records are sorted by ticket.
         if let Ok(at) = self.memory.binary_search_by_key(&ticket, |held| held.ticket) {
             self.remove(at);
@@ -162,7 +162,7 @@ impl Outbox {
     }
 
     /// The connection is lost. Unacknowledged records are sent again.
-    pub fn lost(&mut self) {
+    pub fn requeue(&mut self) {
         for held in &mut self.memory {
             if held.state == State::Sent {
                 held.state = State::Waiting;
@@ -188,13 +188,13 @@ impl Outbox {
     }
 
     /// The last disk error; reported once until the disk works again.
-    pub fn take_trouble(&mut self) -> Option<io::Error> {
-        self.trouble.take()
+    pub fn take_disk_error(&mut self) -> Option<io::Error> {
+        self.disk_error.take()
     }
 
     /// Writes records that are only in memory to the disk, before those already there, for the next process. Returns
     /// the number of records that did not fit.
-    pub fn park(mut self) -> (u64, Option<io::Error>) {
+    pub fn save_all(mut self) -> (u64, Option<io::Error>) {
         let alone = self.memory.drain(..).filter(|held| held.segment.is_none());
         let records: Vec<Record> = alone.map(|held| held.record).collect();
         let count = u64::try_from(records.len()).unwrap_or(u64::MAX);
@@ -210,13 +210,13 @@ impl Outbox {
 
     fn hold(&mut self, record: Record, segment: Option<u64>) {
         self.bytes += record.size();
-        self.memory.push_back(Held { ticket: self.next, record, state: State::Waiting, segment });
+        self.memory.push_back(QueuedRecord { ticket: self.next, record, state: State::Waiting, segment });
         self.next += 1;
     }
 
     /// Reads records from disk while half of the memory is free.
     fn refill(&mut self) {
-        while self.bytes <= self.most / 2
+        while self.bytes <= self.memory_limit / 2
             && let Some(spool) = &mut self.spool
             && let Some((segment, record)) = spool.read()
         {
@@ -229,7 +229,7 @@ impl Outbox {
         let waiting = self.memory.iter().position(|held| held.state == State::Waiting);
         let Some(at) = waiting.or((!self.memory.is_empty()).then_some(0)) else { return false };
         self.remove(at);
-        self.dropped.for_room += 1;
+        self.dropped.overflow += 1;
         true
     }
 
@@ -268,14 +268,14 @@ mod tests {
     fn drained(outbox: &mut Outbox) -> Vec<u64> {
         std::iter::from_fn(|| {
             let (ticket, record) = outbox.take_next()?;
-            outbox.done(ticket);
+            outbox.acknowledge(ticket);
             Some(record.time_ms)
         })
         .collect()
     }
 
     #[test]
-    fn what_is_not_acknowledged_is_told_again_in_order() {
+    fn resends_unacknowledged_records_in_order() {
         let mut outbox = Outbox::new(memory(10), None);
         (1..=4).for_each(|number| outbox.push(record(number)));
         let (first, _) = outbox.take_next().unwrap();
@@ -283,35 +283,35 @@ mod tests {
         let (_, third) = outbox.take_next().unwrap();
         assert_eq!(third.time_ms, 3);
         // Acknowledgements can come in any order.
-        outbox.done(second);
+        outbox.acknowledge(second);
         assert_eq!(outbox.waiting().0, 3);
-        outbox.done(first);
+        outbox.acknowledge(first);
         assert_eq!(outbox.waiting().0, 2);
-        outbox.lost();
+        outbox.requeue();
         assert_eq!(drained(&mut outbox), [3, 4]);
         assert!(outbox.is_empty());
     }
 
     #[test]
-    fn the_oldest_goes_first_and_is_counted() {
+    fn drops_and_counts_the_oldest_record_first() {
         let mut outbox = Outbox::new(memory(3), None);
         (1..=3).for_each(|number| outbox.push(record(number)));
         let (under_way, _) = outbox.take_next().unwrap();
         outbox.push(record(4));
         outbox.push(record(5));
-        assert_eq!(outbox.take_dropped(), Dropped { for_room: 2, damaged: 0 });
+        assert_eq!(outbox.take_dropped(), Dropped { overflow: 2, damaged: 0 });
         assert_eq!(outbox.take_dropped(), Dropped::default());
-        outbox.done(under_way);
+        outbox.acknowledge(under_way);
         assert_eq!(drained(&mut outbox), [4, 5]);
         // A record that is too large does not displace others.
         outbox.push(record(6));
         outbox.push(Record { body: vec![0; memory(4)], ..record(7) });
-        assert_eq!(outbox.take_dropped().for_room, 1);
+        assert_eq!(outbox.take_dropped().overflow, 1);
         assert_eq!(drained(&mut outbox), [6]);
     }
 
     #[test]
-    fn the_disk_takes_what_memory_has_no_room_for_and_order_stays() {
+    fn spills_to_disk_in_order() {
         let folder = TempDir::new().unwrap();
         let mut outbox = on_disk(folder.path(), 10, 1 << 20);
         (1..=500).for_each(|number| outbox.push(record(number)));
@@ -323,19 +323,19 @@ mod tests {
     }
 
     #[test]
-    fn a_full_disk_drops_the_oldest() {
+    fn drops_the_oldest_record_when_the_disk_is_full() {
         let folder = TempDir::new().unwrap();
         let mut outbox = on_disk(folder.path(), 10, 8 << 10);
         (1..=500).for_each(|number| outbox.push(record(number)));
         assert!(outbox.waiting().1 <= 8 << 10, "{:?}", outbox.waiting());
-        let dropped = outbox.take_dropped().for_room;
+        let dropped = outbox.take_dropped().overflow;
         let left = drained(&mut outbox);
         assert_eq!(left, (dropped + 1..=500).collect::<Vec<_>>());
         assert!(left.len() > 40, "{}", left.len());
     }
 
     #[test]
-    fn a_process_that_dies_leaves_what_is_on_disk_and_one_that_ends_leaves_all() {
+    fn keeps_spooled_records_after_a_crash_and_all_after_an_exit() {
         let folder = TempDir::new().unwrap();
         let mut outbox = on_disk(folder.path(), 10, 1 << 20);
         (1..=50).for_each(|number| outbox.push(record(number)));
@@ -343,7 +343,7 @@ mod tests {
         let mut outbox = on_disk(folder.path(), 10, 1 << 20);
         let (ticket, first) = outbox.take_next().unwrap();
         assert_eq!(first.time_ms, 11, "ten were in memory alone");
-        outbox.done(ticket);
+        outbox.acknowledge(ticket);
         // Records that were read into memory but not sent are still on disk.
         drop(outbox);
         let mut outbox = on_disk(folder.path(), 10, 1 << 20);
@@ -356,16 +356,16 @@ mod tests {
         let mut outbox = on_disk(folder.path(), 10, 1 << 20);
         (1..=50).for_each(|number| outbox.push(record(number)));
         let (ticket, _) = outbox.take_next().unwrap();
-        outbox.done(ticket);
-        assert!(matches!(outbox.park(), (0, None)));
+        outbox.acknowledge(ticket);
+        assert!(matches!(outbox.save_all(), (0, None)));
         assert_eq!(drained(&mut on_disk(folder.path(), 10, 1 << 20)), (2..=50).collect::<Vec<_>>());
     }
 
     #[test]
-    fn without_a_disk_what_is_left_is_counted() {
+    fn counts_undelivered_records_without_a_disk() {
         let mut outbox = Outbox::new(memory(10), None);
         (1..=3).for_each(|number| outbox.push(record(number)));
-        assert!(matches!(outbox.park(), (3, None)));
+        assert!(matches!(outbox.save_all(), (3, None)));
     }
 
     #[derive(Debug, Clone)]
@@ -379,7 +379,7 @@ mod tests {
     proptest! {
         /// In any sequence of events, records arrive in order, every lost record is counted, and no record remains.
         #[test]
-        fn nothing_is_lost_uncounted(
+        fn counts_every_lost_record(
             steps in prop::collection::vec(
                 prop_oneof![
                     4 => Just(Step::Push),
@@ -405,24 +405,24 @@ mod tests {
                     Step::Send => under_way.extend(outbox.take_next()),
                     Step::Acknowledge(at) if at < under_way.len() => {
                         let (ticket, record): (Ticket, Record) = under_way.remove(at);
-                        outbox.done(ticket);
+                        outbox.acknowledge(ticket);
                         arrived.push(record.time_ms);
                     }
                     Step::Acknowledge(_) => {}
                     Step::Lose => {
                         under_way.clear();
-                        outbox.lost();
+                        outbox.requeue();
                     }
                 }
-                prop_assert!(outbox.bytes <= outbox.most);
+                prop_assert!(outbox.bytes <= outbox.memory_limit);
             }
-            outbox.lost();
+            outbox.requeue();
             let rest = drained(&mut outbox);
             prop_assert!(rest.is_sorted(), "{rest:?}");
             arrived.extend(rest);
             arrived.sort_unstable();
             arrived.dedup();
-            let dropped = outbox.take_dropped().for_room;
+            let dropped = outbox.take_dropped().overflow;
             // A dropped record that was in transit can have arrived as well.
             prop_assert!(u64::try_from(arrived.len()).unwrap() + dropped >= pushed, "{} and {dropped} of {pushed}", arrived.len());
             prop_assert!(outbox.is_empty() && outbox.waiting() == (0, 0));

@@ -24,7 +24,7 @@ const SEGMENTS: u64 = 8;
 const FIRST: u64 = 1 << 40;
 const SUFFIX: &str = "spool";
 /// Length and checksum.
-const HEAD: usize = 12;
+const HEADER_SIZE: usize = 12;
 /// Type, time, key length.
 const FIELDS: usize = 11;
 
@@ -51,7 +51,7 @@ struct Segment {
 pub struct Spool {
     folder: PathBuf,
     /// Size limit of all segments in bytes.
-    most: u64,
+    limit: u64,
     segments: VecDeque<Segment>,
     /// Number of the next segment.
     next: u64,
@@ -59,7 +59,7 @@ pub struct Spool {
     /// Records of the segment that is being read.
     read: VecDeque<Record>,
     damaged: u64,
-    _lock: files::Claim,
+    _lock: files::FolderLock,
 }
 
 impl Spool {
@@ -68,8 +68,8 @@ impl Spool {
     /// # Errors
     /// [`ErrorKind::WouldBlock`] if another process uses the folder.
     pub fn open(folder: &Path, most: u64) -> io::Result<Self> {
-        make_folder(folder)?;
-        let lock = files::claim(folder)?;
+        create_folder(folder)?;
+        let lock = files::claim_folder(folder)?;
         let mut segments = Vec::new();
         for entry in fs::read_dir(folder)? {
             let entry = entry?;
@@ -84,7 +84,7 @@ impl Spool {
         let next = segments.last().map_or(FIRST, |last| last.number.saturating_add(1));
         Ok(Self {
             folder: folder.to_owned(),
-            most,
+            limit: most,
             segments: segments.into(),
             next,
             writer: None,
@@ -116,7 +116,7 @@ impl Spool {
     pub fn append(&mut self, record: &Record) -> Result<(), SpoolError> {
         let bytes = encode(record);
         let len = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
-        if bytes.len() > LARGEST || self.bytes() + len > self.most {
+        if bytes.len() > LARGEST || self.bytes() + len > self.limit {
             return Err(SpoolError::Full);
         }
         let is_full = self.segments.back().is_some_and(|last| last.bytes + len > self.largest_segment());
@@ -198,7 +198,7 @@ impl Spool {
     /// Writes records before all others. If there is not enough room, the newest are written. Returns the number of
     /// those that were not.
     pub fn prepend(&mut self, records: &[Record]) -> (u64, Option<io::Error>) {
-        let mut room = self.most.saturating_sub(self.bytes());
+        let mut room = self.limit.saturating_sub(self.bytes());
         let mut kept = 0;
         let mut chunks: Vec<Vec<u8>> = Vec::new();
         let largest = usize::try_from(self.largest_segment()).unwrap_or(usize::MAX);
@@ -233,7 +233,7 @@ impl Spool {
     }
 
     fn largest_segment(&self) -> u64 {
-        SEGMENT.min(self.most / SEGMENTS)
+        SEGMENT.min(self.limit / SEGMENTS)
     }
 
     fn path(&self, number: u64) -> PathBuf {
@@ -255,7 +255,7 @@ impl Spool {
 }
 
 /// Robot data is private to the user of this process.
-fn make_folder(folder: &Path) -> io::Result<()> {
+fn create_folder(folder: &Path) -> io::Result<()> {
     if folder.is_dir() {
         return Ok(());
     }
@@ -281,7 +281,7 @@ fn encode(record: &Record) -> Vec<u8> {
     fields.extend(u16::try_from(key.len()).unwrap_or(u16::MAX).to_le_bytes());
     fields.extend(key.bytes());
     fields.extend(body);
-    let mut bytes = Vec::with_capacity(HEAD + fields.len());
+    let mut bytes = Vec::with_capacity(HEADER_SIZE + fields.len());
     bytes.extend(u32::try_from(fields.len()).unwrap_or(u32::MAX).to_le_bytes());
     bytes.extend(checksum(&fields));
     bytes.extend(fields);
@@ -317,7 +317,7 @@ fn decode(bytes: &[u8]) -> Option<(Record, &[u8])> {
 }
 
 /// Whether the error means that another process uses the folder.
-pub fn is_taken(error: &io::Error) -> bool {
+pub fn is_locked(error: &io::Error) -> bool {
     error.kind() == ErrorKind::WouldBlock
 }
 
@@ -349,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn a_write_that_was_cut_at_any_byte_damages_nothing_that_was_complete() {
+    fn truncated_write_keeps_complete_records() {
         let folder = TempDir::new().unwrap();
         let mut spool = Spool::open(folder.path(), 1 << 20).unwrap();
         (1..=3).for_each(|number| spool.append(&record(number)).unwrap());
@@ -370,14 +370,14 @@ mod tests {
     }
 
     #[test]
-    fn one_folder_is_for_one_process() {
+    fn locks_the_folder_for_one_process() {
         let folder = TempDir::new().unwrap();
         let _first = Spool::open(folder.path(), 1 << 20).unwrap();
-        assert!(!cfg!(unix) || is_taken(&Spool::open(folder.path(), 1 << 20).unwrap_err()));
+        assert!(!cfg!(unix) || is_locked(&Spool::open(folder.path(), 1 << 20).unwrap_err()));
     }
 
     #[test]
-    fn what_is_parked_comes_first() {
+    fn reads_prepended_records_first() {
         let folder = TempDir::new().unwrap();
         let mut spool = Spool::open(folder.path(), 64 << 10).unwrap();
         (100..=110).for_each(|number| spool.append(&record(number)).unwrap());
@@ -397,13 +397,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_make_it_panic(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        fn never_panics_on_any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
             let (records, _) = decode_all(&bytes);
             prop_assert!(records.len() <= bytes.len());
         }
 
         #[test]
-        fn records_round_trip(kind: u8, time_ms: u64, key in "\\PC{0,20}", body in prop::collection::vec(any::<u8>(), 0..99)) {
+        fn round_trips_records(kind: u8, time_ms: u64, key in "\\PC{0,20}", body in prop::collection::vec(any::<u8>(), 0..99)) {
             let record = Record { kind, time_ms, key, body, epoch: 0 };
             let bytes = encode(&record);
             let (decoded, rest) = decode(&bytes).unwrap();

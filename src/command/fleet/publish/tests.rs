@@ -11,17 +11,17 @@ use tempfile::TempDir;
 use tokio::sync::{Notify, mpsc};
 use tokio::time::{Instant, sleep};
 
+use super::delivery::{Backoff, Broker, Counts, Delivery, Listener, Uplink};
 use super::outbox::Outbox;
-use super::plain::Plain;
-use super::pump::{Broker, Counts, Listener, Pauses, Pump, Uplink};
+use super::plain_format::PlainFormat;
 use super::spool::Spool;
 use super::topic::Levels;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
-use super::{Also, Kind, Speech};
+use super::{ExtraTopic, Kind, MessageFormat};
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::sample::{Sample, Traffic};
-use crate::command::fleet::poll::{Event as Found, Look};
-use crate::command::fleet::service::END;
+use crate::command::fleet::poll::{Event as Found, PollResult};
+use crate::command::fleet::service::END_TIMEOUT;
 use crate::command::robot::alarm::Alarm;
 use crate::command::robot::state::{Mode, PositionMm, State};
 use crate::failure::{self, Failure};
@@ -50,7 +50,7 @@ pub fn look(robot: &Arc<Robot>, x_mm: f64, alarms: &[&str]) -> Found {
     };
     let line = OverviewReport { state, ..OverviewReport::default() };
     let sample = Sample { line, alarms: alarms.iter().map(alarm).collect(), ..Sample::default() };
-    Found::Looked(Arc::new(Look::new(Arc::clone(robot), sample)))
+    Found::Polled(Arc::new(PollResult::new(Arc::clone(robot), sample)))
 }
 
 pub fn silence(robot: &Arc<Robot>) -> Found {
@@ -198,9 +198,9 @@ impl Uplink for Connection<'_> {
 
 const KINDS: [Kind; 3] = [Kind::Status, Kind::Alarms, Kind::Position];
 
-fn plain() -> Box<dyn Speech> {
-    let also: Rc<[Also]> = Rc::from([]);
-    Box::new(Plain::new(("armctl", "cell7".to_owned(), Levels::default()), &KINDS, also, 60_000))
+fn plain() -> Box<dyn MessageFormat> {
+    let also: Rc<[ExtraTopic]> = Rc::from([]);
+    Box::new(PlainFormat::new(("armctl", "cell7".to_owned(), Levels::default()), &KINDS, also, 60_000))
 }
 
 /// Records log messages, except those for `-v`.
@@ -211,13 +211,13 @@ struct Notes {
 }
 
 impl Listener for Notes {
-    fn say(&self, level: Level, text: &str) {
+    fn log(&self, level: Level, text: &str) {
         if level != Level::Detail {
             self.said.borrow_mut().push(text.to_owned());
         }
     }
 
-    fn reached(&self, is_there: bool) {
+    fn set_connected(&self, is_there: bool) {
         self.is_reached.set(is_there);
     }
 }
@@ -231,7 +231,7 @@ async fn pumped(
     let notes = Notes::default();
     let url = "mqtt://broker".parse().unwrap();
     let (tell, mut found) = mpsc::unbounded_channel();
-    let mut pump = Pump::new((&fake, &url), plain(), outbox, (&notes, Pauses::new(7)), false);
+    let mut pump = Delivery::new((&fake, &url), plain(), outbox, (&notes, Backoff::new(7)), false);
     let pumped = async {
         let ended = pump.run(async || found.recv().await, pending()).await;
         let counts = pump.end(false).await;
@@ -362,7 +362,7 @@ async fn the_end_takes_less_than_a_second_in_every_state() {
         let (broker, url) = (&fake, "mqtt://broker".parse().unwrap());
         let notes = Notes::default();
         let outbox = Outbox::new(MEMORY, None);
-        let mut pump = Pump::new((&broker, &url), plain(), outbox, (&notes, Pauses::new(7)), false);
+        let mut pump = Delivery::new((&broker, &url), plain(), outbox, (&notes, Backoff::new(7)), false);
         let mut looks = [1.0, 2.0].map(|x_mm| look(&robot("press"), x_mm, &[])).into_iter();
         let found = async || match looks.next() {
             Some(look) => Some(look),
@@ -371,7 +371,7 @@ async fn the_end_takes_less_than_a_second_in_every_state() {
         pump.run(found, sleep(Duration::from_millis(200))).await.unwrap();
         let stopped = Instant::now();
         pump.end(false).await;
-        assert!(stopped.elapsed() <= END, "{mood:?}: {:?}", stopped.elapsed());
+        assert!(stopped.elapsed() <= END_TIMEOUT, "{mood:?}: {:?}", stopped.elapsed());
     }
 }
 
@@ -434,7 +434,8 @@ async fn a_bounded_run_ends_with_the_refusal() {
     for (mood, why) in REFUSALS {
         let fake = Fake::new(mood);
         let (broker, notes, url) = (&fake, Notes::default(), "mqtt://broker".parse().unwrap());
-        let mut pump = Pump::new((&broker, &url), plain(), Outbox::new(MEMORY, None), (&notes, Pauses::new(7)), true);
+        let mut pump =
+            Delivery::new((&broker, &url), plain(), Outbox::new(MEMORY, None), (&notes, Backoff::new(7)), true);
         let failure = pump.run(async || pending().await, pending()).await.unwrap_err();
         let (message, hint) = why.split_once(" (").unwrap();
         assert!(failure.message.contains(message) && failure.hint.unwrap().starts_with(hint.trim_end_matches(')')));

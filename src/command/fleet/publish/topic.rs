@@ -28,7 +28,7 @@ impl Levels {
     }
 
     /// Level of a robot.
-    pub fn of(&self, robot: &Robot) -> Result<String, Failure> {
+    pub fn level_of(&self, robot: &Robot) -> Result<String, Failure> {
         if self.shared.contains(&robot.name) {
             return level(&format!("{}-{}", robot.name, robot.family));
         }
@@ -43,7 +43,7 @@ const LONGEST: usize = 200;
 pub fn level(name: &str) -> Result<String, Failure> {
     let mut level = String::with_capacity(name.len());
     for (at, c) in name.char_indices() {
-        if matches!(c, '+' | '#' | '/' | '%') || c.is_control() || (at == 0 && c == '$') || is_nothing(c) {
+        if matches!(c, '+' | '#' | '/' | '%') || c.is_control() || (at == 0 && c == '$') || is_empty_level(c) {
             let mut bytes = [0; 4];
             level.extend(c.encode_utf8(&mut bytes).bytes().map(|byte| format!("%{byte:02X}")));
         } else {
@@ -60,7 +60,7 @@ pub fn level(name: &str) -> Result<String, Failure> {
 }
 
 /// Unicode noncharacters; the standard does not allow them in topics.
-fn is_nothing(c: char) -> bool {
+fn is_empty_level(c: char) -> bool {
     matches!(c, '\u{fdd0}'..='\u{fdef}') || u32::from(c) & 0xfffe == 0xfffe
 }
 
@@ -75,7 +75,7 @@ pub fn prefix(text: &str) -> Result<String, String> {
     if text.split('/').any(str::is_empty) {
         return Err("each level needs a name: armctl, plant/line1".to_owned());
     }
-    if text.chars().any(|c| matches!(c, '+' | '#') || c.is_control() || is_nothing(c)) {
+    if text.chars().any(|c| matches!(c, '+' | '#') || c.is_control() || is_empty_level(c)) {
         return Err("a prefix has no +, no # and no control characters".to_owned());
     }
     Ok(text.to_owned())
@@ -86,7 +86,7 @@ pub fn identifier(text: &str) -> Result<String, String> {
     if text.is_empty() || text.len() > LONGEST {
         return Err(format!("an identifier has 1 to {LONGEST} bytes"));
     }
-    if text.chars().any(|c| matches!(c, '+' | '#' | '/') || c.is_control() || is_nothing(c)) {
+    if text.chars().any(|c| matches!(c, '+' | '#' | '/') || c.is_control() || is_empty_level(c)) {
         return Err("an identifier has no +, no #, no / and no control characters".to_owned());
     }
     Ok(text.to_owned())
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn odd_names_are_written_so_that_they_can_be_read_back() {
+    fn escapes_unusual_names_reversibly() {
         for (name, expected) in [
             ("cell3", "cell3"),
             ("日本-1.b_c", "日本-1.b_c"),
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn prefixes_and_identifiers_are_checked() {
+    fn checks_prefixes_and_identifiers() {
         assert_eq!(prefix("plant/line 1"), Ok("plant/line 1".to_owned()));
         for wrong in ["", "/", "a/", "/a", "a//b", "a/+", "#", "$SYS/x", "a\0"] {
             assert!(prefix(wrong).is_err(), "{wrong:?}");
@@ -145,7 +145,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_two_names_are_one_level(text in "\\PC{1,20}|[+#/%$\0-\x1f]{1,9}") {
+        fn maps_different_names_to_different_levels(text in "\\PC{1,20}|[+#/%$\0-\x1f]{1,9}") {
             let level = level(&text).unwrap();
             prop_assert_eq!(name(&level), text);
             prop_assert!(!level.contains(['+', '#', '/', '\0']) && !level.starts_with('$'));

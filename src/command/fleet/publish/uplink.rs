@@ -3,24 +3,24 @@
 use std::time::Duration;
 
 use super::broker::Broker;
-use super::pump;
+use super::delivery;
 use crate::transport::mqtt::Client;
 pub use crate::transport::mqtt::{
     Endpoint, Event, Hello, Identity, Loss, Message, Refusal, SendError, Tls, TlsError, Trust, Version, Will,
 };
 
 /// Time limit of the whole connection procedure: TCP, TLS, answer.
-const WITHIN: Duration = Duration::from_secs(10);
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
-impl pump::Broker for Broker {
+impl delivery::Broker for Broker {
     type Uplink = Client;
 
     async fn open(&self, client_id: String, will: Will) -> Result<Client, Loss> {
-        Client::open(&self.endpoint, &self.hello(client_id, will), WITHIN).await
+        Client::open(&self.endpoint, &self.connect_packet(client_id, will), CONNECT_TIMEOUT).await
     }
 }
 
-impl pump::Uplink for Client {
+impl delivery::Uplink for Client {
     async fn next(&mut self) -> Event {
         Self::next(self).await
     }

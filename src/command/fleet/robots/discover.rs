@@ -32,18 +32,18 @@ pub struct Discover {
 }
 
 /// Longest wait.
-const LONGEST: Duration = Duration::from_secs(60);
+const MAX_WAIT: Duration = Duration::from_secs(60);
 
 fn wait(text: &str) -> Result<Duration, String> {
     match duration::parse_some(text)? {
-        wait if wait <= LONGEST => Ok(wait),
-        _ => Err(format!("{} at most", duration::display(LONGEST))),
+        wait if wait <= MAX_WAIT => Ok(wait),
+        _ => Err(format!("{} at most", duration::display(MAX_WAIT))),
     }
 }
 
 impl Discover {
     /// Default arguments.
-    pub fn usual() -> Result<Self, Failure> {
+    pub fn default_arguments() -> Result<Self, Failure> {
         let matches = Self::augment_args(clap::Command::new("discover")).get_matches_from(["discover"]);
         Self::from_arg_matches(&matches).map_err(|error| Failure::local(format!("internal error: {error}")))
     }
@@ -116,12 +116,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_argument_is_required() {
-        assert_eq!(Discover::usual().unwrap().wait, Duration::from_millis(2500));
+    fn requires_no_argument() {
+        assert_eq!(Discover::default_arguments().unwrap().wait, Duration::from_millis(2500));
     }
 
     #[test]
-    fn nobody_waits_for_ever() {
+    fn limits_the_wait() {
         assert!(wait("2m").unwrap_err().contains("at most"));
         assert!(wait("0s").is_err());
     }

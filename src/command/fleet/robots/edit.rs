@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::file;
 use crate::command::Report;
-use crate::command::frame::edited::open_editor;
+use crate::command::frame::editor_session::open_editor;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::files;
@@ -16,7 +16,7 @@ use crate::output::view::View;
 use crate::settings::inventory::Inventory;
 
 /// Content of a new file.
-const NEW: &str = "# The robots of this site. `armctl help inventory` describes this file.\n";
+const TEMPLATE: &str = "# The robots of this site. `armctl help inventory` describes this file.\n";
 
 /// Opens a copy of the file in an editor. If the copy is valid, it replaces the file.
 pub fn edit(run: &Run) -> Result<(), RunError> {
@@ -28,17 +28,17 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
     let folder = folder.canonicalize().with_context(|| folder.display().to_string())?;
     let copy = tempfile::Builder::new().prefix("robots-").suffix(".toml").tempfile_in(&folder);
     let mut copy = copy.with_context(|| folder.display().to_string())?;
-    copy.write_all(if before.is_empty() { NEW } else { &before }.as_bytes()).with_context(place)?;
+    copy.write_all(if before.is_empty() { TEMPLATE } else { &before }.as_bytes()).with_context(place)?;
     // Only the path is kept, because an editor can replace the file.
     let copy = copy.into_temp_path();
     open_editor(&copy)?;
     let after = files::text(&copy, files::SETTINGS).with_context(|| copy.display().to_string())?;
-    if after == before || before.is_empty() && after == NEW {
+    if after == before || before.is_empty() && after == TEMPLATE {
         let robots = Inventory::parse(&before, &place())?.robots.len();
         return run.local("robots.edit", &Edited { file: place(), changed: false, robots });
     }
     // With the name of the copy, so that line and column in an error belong to the file in the editor.
-    let checked = Inventory::parse(&after, &copy.display().to_string()).and_then(|_| {
+    let parsed = Inventory::parse(&after, &copy.display().to_string()).and_then(|_| {
         file::replace(path, |now| {
             if now == before {
                 Ok(after)
@@ -48,15 +48,15 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
             }
         })
     });
-    match checked {
+    match parsed {
         Ok(inventory) => {
             let robots = inventory.robots.len();
             run.local("robots.edit", &Edited { file: place(), changed: true, robots })
         }
         Err(failure) => {
-            let kept = copy.keep().map_err(|error| Failure::io(place(), &error.error))?;
+            let message = copy.keep().map_err(|error| Failure::io(place(), &error.error))?;
             let why = failure.hint.map_or_else(String::new, |hint| format!("{hint}; "));
-            let hint = format!("{why}the inventory is unchanged; your text is in {}", kept.display());
+            let hint = format!("{why}the inventory is unchanged; your text is in {}", message.display());
             Err(Failure { hint: Some(hint), ..failure }.into())
         }
     }

@@ -17,7 +17,7 @@ use crate::output::view::{self, Cell, View};
 use crate::settings::duration;
 use crate::settings::inventory::{Entry, Inventory, is_name, named};
 use crate::settings::model::ModelSetting;
-use crate::settings::target::{Family, Given, Target};
+use crate::settings::target::{Family, Target, TargetArgument};
 
 /// Arguments of `robots add`.
 #[derive(Debug, Args)]
@@ -26,7 +26,7 @@ pub struct Add {
     name: String,
     /// Its URL, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
     #[arg(add = ValueKind::Url)]
-    url: Given,
+    url: TargetArgument,
     /// Its family, if armctl cannot infer it from the URL
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
@@ -85,14 +85,14 @@ impl NewRobot {
     pub fn add(self, run: &Run, id: &'static str) -> Result<(), RunError> {
         let file = change(run, |document| document.add(self.table(), self.is_default))?;
         let target = self.target.url().to_owned();
-        told(run.local(id, &Changed { done: "added", name: self.name, target, file }))
+        changes_text(run.local(id, &Changed { done: "added", name: self.name, target, file }))
     }
 }
 
 impl Add {
     pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
         check_new(&run.sources.inventory, &self.name)?;
-        let target = self.url.of(self.family)?;
+        let target = self.url.resolve(self.family)?;
         let Some(family) = self.family.or(target.family()) else {
             let failure = Failure::usage(format!("armctl cannot infer the family from '{target}'"));
             return Err(failure.hint("add --family yerc or --family toyo").into());
@@ -115,9 +115,9 @@ pub struct Remove {
 
 impl Remove {
     pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
-        let target = known(&run.sources.inventory, &self.name)?.target.url().to_owned();
+        let target = check_known(&run.sources.inventory, &self.name)?.target.url().to_owned();
         let file = change(run, |document| document.remove(&self.name))?;
-        told(run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file }))
+        changes_text(run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file }))
     }
 }
 
@@ -141,7 +141,7 @@ type Parse = fn(&str, Family) -> Result<Value, Failure>;
 /// Settings of an entry: key, description, parser.
 const SETTINGS: [(&str, &str, Parse); 10] = [
     ("target", "target URL", |text, family| {
-        let target = text.parse::<Given>()?.of(Some(family))?;
+        let target = text.parse::<TargetArgument>()?.resolve(Some(family))?;
         Ok(target.url().into())
     }),
     ("family", "yerc, yrcx or toyo", |text, _| Ok(parsed::<Family>(text)?.name().into())),
@@ -152,19 +152,19 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
     ("hold", "on or off: open a session automatically (yrcx)", |text, _| Ok(switch(text)?.into())),
     ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),
     ("timeout", "longest wait for an answer, per try, such as 5s", |text, _| {
-        let timeout = duration::parse_some(text).map_err(|why| wrong(why, "example: timeout=5s"))?;
+        let timeout = duration::parse_some(text).map_err(|why| invalid(why, "example: timeout=5s"))?;
         Ok(duration::display(timeout).into())
     }),
     ("retries", "number of retries of a read without an answer", |text, _| {
         let retries = text.parse::<u32>();
         let why = format!("'{text}' is not a valid number of retries");
-        Ok(i64::from(retries.map_err(|_| wrong(why, "example: retries=3"))?).into())
+        Ok(i64::from(retries.map_err(|_| invalid(why, "example: retries=3"))?).into())
     }),
     ("pulses_per_degree", "pulses per degree of the axes S,L,U,R,B,T of R1 (yerc)", |text, _| {
         let values: Result<Vec<f64>, _> = text.split(',').map(|value| value.trim().parse::<f64>()).collect();
         let values = values.ok().filter(|values| values.iter().all(|value| value.is_finite() && *value > 0.0));
         let why = || {
-            wrong(
+            invalid(
                 format!("'{text}' is not a list of numbers"),
                 "example: pulses_per_degree=1360,1360,1360,1000,1000,500",
             )
@@ -177,16 +177,16 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
 ];
 
 fn candidates() -> Vec<Candidate> {
-    let keys = SETTINGS.iter().map(|(key, about, _)| Candidate::new(format!("{key}="), *about).begun());
+    let keys = SETTINGS.iter().map(|(key, about, _)| Candidate::new(format!("{key}="), *about).incomplete());
     let models = Model::ALL.map(Model::name).into_iter().chain([ModelSetting::AUTO]);
     keys.chain(models.map(|model| Candidate::new(format!("model={model}"), "model of a yerc robot"))).collect()
 }
 
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<T, Failure> {
-    text.parse::<T>().map_err(|why| wrong(why.to_string(), "see `armctl help inventory`"))
+    text.parse::<T>().map_err(|why| invalid(why.to_string(), "see `armctl help inventory`"))
 }
 
-fn wrong(why: impl Into<String>, hint: &str) -> Failure {
+fn invalid(why: impl Into<String>, hint: &str) -> Failure {
     Failure::usage(why).hint(hint)
 }
 
@@ -194,7 +194,7 @@ fn switch(text: &str) -> Result<bool, Failure> {
     match text {
         "on" | "true" | "yes" => Ok(true),
         "off" | "false" | "no" => Ok(false),
-        _ => Err(wrong(format!("'{text}' is not on or off"), "example: read_only=off")),
+        _ => Err(invalid(format!("'{text}' is not on or off"), "example: read_only=off")),
     }
 }
 
@@ -206,15 +206,15 @@ impl Set {
 
 /// Writes settings of a robot to the file.
 pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> Result<(), RunError> {
-    let entry = known(&run.sources.inventory, &robot)?;
-    let settings = settings.iter().map(|setting| assigned(setting)).collect::<Result<Vec<_>, _>>()?;
+    let entry = check_known(&run.sources.inventory, &robot)?;
+    let settings = settings.iter().map(|setting| assignments(setting)).collect::<Result<Vec<_>, _>>()?;
     // The meaning of an address without a scheme depends on the family, which can be set in the same command.
     let family = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
     let family = family.unwrap_or(entry.family);
     let values = settings.iter().map(|(key, text, parse)| {
-        let new = if text.is_empty() { None } else { Some(parse(text, family).map_err(|why| about(key, why))?) };
+        let new = if text.is_empty() { None } else { Some(parse(text, family).map_err(|why| add_context(key, why))?) };
         if let (Some(name), Some(_)) = (key.strip_prefix("names."), &new) {
-            named(family, name, text).map_err(|why| about(key, why))?;
+            named(family, name, text).map_err(|why| add_context(key, why))?;
         }
         Ok((*key, new))
     });
@@ -222,13 +222,13 @@ pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> R
     let mut changes = Vec::new();
     let file = change(run, |document| {
         for (key, new) in values {
-            let told = new.as_ref().map(json);
+            let report = new.as_ref().map(json);
             let old = document.set(&robot, key, new)?;
-            changes.push(SettingChange { setting: key.to_owned(), old: old.as_ref().map(json), new: told });
+            changes.push(SettingChange { setting: key.to_owned(), old: old.as_ref().map(json), new: report });
         }
         Ok(())
     })?;
-    told(run.local(id, &WasSet { name: robot, changes, file }))
+    changes_text(run.local(id, &WasSet { name: robot, changes, file }))
 }
 
 /// Address of a name; a number if it looks like one, as in a hand-written file.
@@ -238,7 +238,7 @@ fn address(text: &str, family: Family) -> Result<Value, Failure> {
 }
 
 /// Splits a typed setting into its key and text, and finds its parser.
-fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
+fn assignments(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     let Some((key, text)) = setting.split_once('=') else {
         return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE")).hint("examples: read_only=off, timeout=5s"));
     };
@@ -257,7 +257,7 @@ fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     })
 }
 
-fn about(key: &str, failure: Failure) -> Failure {
+fn add_context(key: &str, failure: Failure) -> Failure {
     Failure { message: format!("{key}: {}", failure.message), ..failure }
 }
 
@@ -322,7 +322,7 @@ pub struct Rename {
 impl Rename {
     pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
         let inventory = &run.sources.inventory;
-        let target = known(inventory, &self.old)?.target.url().to_owned();
+        let target = check_known(inventory, &self.old)?.target.url().to_owned();
         check_new(inventory, &self.new)?;
         let file = change(run, |document| document.rename(&self.old, &self.new))?;
         let Self { old, new } = self;
@@ -330,7 +330,7 @@ impl Rename {
             "hint: rename the folders {old} in backups of several robots. An open session keeps the old name until it \
              is closed"
         ));
-        told(run.local("robots.rename", &Renamed { old, new, target, file }))
+        changes_text(run.local("robots.rename", &Renamed { old, new, target, file }))
     }
 }
 
@@ -361,12 +361,14 @@ pub struct Default {
 impl Default {
     pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
         let inventory = &run.sources.inventory;
-        let target = known(inventory, &self.name)?.target.url().to_owned();
+        let target = check_known(inventory, &self.name)?.target.url().to_owned();
         let file = change(run, |document| {
             document.set_default(&self.name);
             Ok(())
         })?;
-        told(run.local("robots.default", &WasChosen { old: inventory.default.clone(), new: self.name, target, file }))
+        changes_text(
+            run.local("robots.default", &WasChosen { old: inventory.default.clone(), new: self.name, target, file }),
+        )
     }
 }
 
@@ -388,7 +390,7 @@ impl Report for WasChosen {
 }
 
 /// The change is done even if the report could not be written.
-fn told(reported: Result<(), RunError>) -> Result<(), RunError> {
+fn changes_text(reported: Result<(), RunError>) -> Result<(), RunError> {
     reported.map_err(|stopped| RunError { failure: after_a_change(stopped.failure), ..stopped })
 }
 
@@ -408,7 +410,7 @@ pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
 }
 
 /// Entry with this name.
-pub fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a Entry, Failure> {
+pub fn check_known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a Entry, Failure> {
     inventory.robots.iter().find(|robot| robot.name == name).ok_or_else(|| {
         let failure = Failure::usage(format!("there is no robot '{name}' in the inventory"));
         match nearest(name, inventory.robots.iter().map(|robot| robot.name.as_str())) {

@@ -8,7 +8,7 @@ use crate::command::frame::run::Run;
 use crate::failure::{Failure, Kind};
 use crate::files;
 use crate::output::busy::busy;
-use crate::settings::document::{Document, Wrong};
+use crate::settings::document::{Document, DocumentError};
 use crate::settings::inventory::Inventory;
 
 /// Path of the inventory file, whether it exists or not.
@@ -29,15 +29,15 @@ pub fn read(path: &Path) -> Result<String, Failure> {
 }
 
 /// Changes the file. A new version is written next to it and renamed. Returns the path.
-pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), Wrong>) -> Result<String, Failure> {
+pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), DocumentError>) -> Result<String, Failure> {
     let path = path(run)?;
     replace(path, |text| {
-        let wrong = |why: &dyn std::fmt::Display| {
+        let invalid = |why: &dyn std::fmt::Display| {
             Failure::usage(format!("{}: {why}", path.display()))
                 .hint("correct the file with `armctl robots edit`; see `armctl help inventory`")
         };
-        let mut document = Document::parse(text).map_err(|error| wrong(&error))?;
-        change(&mut document).map_err(|why| wrong(&why))?;
+        let mut document = Document::parse(text).map_err(|error| invalid(&error))?;
+        change(&mut document).map_err(|why| invalid(&why))?;
         Ok(document.to_string())
     })?;
     Ok(path.display().to_string())
@@ -47,7 +47,7 @@ pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), Wrong>
 pub fn replace(path: &Path, make: impl FnOnce(&str) -> Result<String, Failure>) -> Result<Inventory, Failure> {
     let _busy = busy();
     // Locks out other processes between the read and the write.
-    let _turn = files::turn(path).with_context(|| path.display().to_string())?;
+    let _turn = files::lock_file(path).with_context(|| path.display().to_string())?;
     let text = make(&read(path)?)?;
     let inventory = Inventory::parse(&text, &path.display().to_string())?;
     files::replace(path, text.as_bytes()).with_context(|| path.display().to_string())?;

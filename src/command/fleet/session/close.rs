@@ -8,9 +8,9 @@ use super::list::locations;
 use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::families;
-use crate::command::frame::asking::answered;
-use crate::command::frame::attach::{identify, no_place, refused};
+use crate::command::frame::attach::{attach_failure, folder_failure, identify};
 use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::prompt::ask;
 use crate::command::frame::run::{Run, RunError};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
@@ -62,7 +62,7 @@ async fn choose(run: &Run) -> Result<Option<String>, Failure> {
     let screen = run.screen;
     let question = "session to close (type to search, Enter selects, Esc cancels)";
     catch_interrupts();
-    let at = answered(screen, move || screen.ask_one_of(question, &options, false)).await?;
+    let at = ask(screen, move || screen.ask_one_of(question, &options, false)).await?;
     let robot = open.into_iter().nth(at).map(|info| info.robot);
     if let Some(robot) = &robot {
         screen.note(&format!("the same command without the question: armctl session close {robot}"));
@@ -86,22 +86,23 @@ impl Close {
                 .hint("name a robot, or close all with --all; `armctl session list` shows the sessions")
                 .into());
         }
-        let mut meant = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
-        for robot in &mut meant {
+        let mut selected = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
+        for robot in &mut selected {
             // A robot that does not answer is identified by the typed address.
             let _ = identify(&run.sources, families::of(robot.family).driver(), robot, false);
         }
         let is_named = |info: &Info, name: &str| {
-            let is_meant = |robot: &Robot| info.target.parse::<Target>().is_ok_and(|held| robot.is_at(&held.address()));
-            is_named(info, name) || target.as_deref() == Some(name) && meant.iter().any(is_meant)
+            let is_meant =
+                |robot: &Robot| info.target.parse::<Target>().is_ok_and(|held| robot.has_address(&held.address()));
+            is_named(info, name) || target.as_deref() == Some(name) && selected.iter().any(is_meant)
         };
         let found: Vec<(SessionPath, Info)> =
             locations()?.into_iter().filter_map(|location| Some((location.clone(), location.owner()?))).collect();
         for name in &names {
             if !found.iter().any(|(_, info)| is_named(info, name)) {
-                let known = found.iter().map(|(_, info)| info.robot.as_str());
+                let open_names = found.iter().map(|(_, info)| info.robot.as_str());
                 let failure = Failure::usage(format!("no session of '{name}' is open"));
-                return Err(match nearest(name, known) {
+                return Err(match nearest(name, open_names) {
                     Some(near) => failure.hint(format!("did you mean '{near}'?")),
                     None => failure.hint("`armctl session list` shows the open sessions"),
                 }
@@ -115,7 +116,7 @@ impl Close {
                 let became = match close(&location, self.force).await {
                     Ok(true) => "closed",
                     Ok(false) => {
-                        location.clear().map_err(|error| no_place(&error))?;
+                        location.clear().map_err(|error| folder_failure(&error))?;
                         "forgotten"
                     }
                     Err(error) => {
@@ -145,7 +146,7 @@ fn still_open(label: &str, error: &AttachError) -> Failure {
                 "wait for the end of the motion, or stop it; with --force the session closes now, and the controller \
                  stops the motion",
             ),
-        _ => refused(label, error),
+        _ => attach_failure(label, error),
     }
 }
 

@@ -15,8 +15,8 @@ use super::watched_entry::WatchedEntry;
 use crate::command::Access;
 use crate::command::face::HeldLink;
 use crate::command::families;
-use crate::command::frame::attach::{in_use, info, key_of, no_place};
-use crate::command::frame::session_manager::{By, ManagerRequest, SessionManager};
+use crate::command::frame::attach::{folder_failure, in_use, info, session_key};
+use crate::command::frame::session_manager::{HeldBy, ManagerRequest, SessionManager};
 use crate::failure::Failure;
 use crate::guardian::{self, HolderGuardian};
 use crate::output::Screen;
@@ -35,11 +35,11 @@ pub struct SessionHost {
 }
 
 /// Result of an attempt to hold a link.
-pub enum Attempt {
+pub enum OpenResult {
     /// The link is held.
     SharedLink(Box<SessionHost>),
     /// Another process has the link.
-    Taken,
+    InUse,
     /// No sessions are possible, with the reason.
     NoPlace(Failure),
 }
@@ -50,37 +50,37 @@ impl SessionHost {
         robot: &Robot,
         access: &Access,
         screen: &Screen,
-        say: impl Fn(&str) + Clone + Send + 'static,
-    ) -> Result<Attempt, Failure> {
+        log: impl Fn(&str) + Clone + Send + 'static,
+    ) -> Result<OpenResult, Failure> {
         let place = match SessionFolder::create() {
             Ok(place) => place,
-            Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
+            Err(error) => return Ok(OpenResult::NoPlace(folder_failure(&error))),
         };
-        let key = key_of(robot);
+        let key = session_key(robot);
         let location = place.location(&key);
         let claim = match location.lock_soon(&info(robot, access)).await {
             Ok(LockResult::Locked(claim)) => claim,
-            Ok(LockResult::Session) => return Ok(Attempt::Taken),
+            Ok(LockResult::Session) => return Ok(OpenResult::InUse),
             Ok(LockResult::Busy) => return Err(in_use(robot, &location)),
-            Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
+            Err(error) => return Ok(OpenResult::NoPlace(folder_failure(&error))),
         };
         let info = info(robot, access);
         let face = families::of(robot.family);
         let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
         let host =
-            Host::new(claim, key, info, held, say.clone()).with_context(|| location.socket().display().to_string())?;
-        let orphaned = robot.clone();
+            Host::new(claim, key, info, held, log.clone()).with_context(|| location.socket().display().to_string())?;
+        let on_orphan = robot.clone();
         let guardian = Rc::new(HolderGuardian::new(robot, face.stop()));
-        let guarding = Rc::clone(&guardian);
+        let guardian_result = Rc::clone(&guardian);
         let is_simulated = robot.target.value.is_simulated();
-        let host = host.with_guard(move |moves| if is_simulated { Ok(()) } else { guarding.moves(moves) });
+        let host = host.with_guard(move |moves| if is_simulated { Ok(()) } else { guardian_result.moves(moves) });
         let host = host.with_stop(move |why| {
-            say(&format!("{why}: armctl stops the robot"));
-            guardian::stop_orphan(&orphaned, face.stop(), say.clone());
+            log(&format!("{why}: armctl stops the robot"));
+            guardian::stop_orphan(&on_orphan, face.stop(), log.clone());
         });
         let mut entry = WatchedEntry::new(robot);
         let host = host.with_read_only_check(face.guard(), move || entry.is_read_only());
-        Ok(Attempt::SharedLink(Box::new(Self { host, guardian, finish, label: robot.label() })))
+        Ok(OpenResult::SharedLink(Box::new(Self { host, guardian, finish, label: robot.label() })))
     }
 
     /// Sets the idle time after which the session ends.
@@ -169,12 +169,12 @@ async fn hold(
     robot: Robot,
     access: Access,
     screen: Screen,
-    mut done: oneshot::Sender<Result<By, Failure>>,
+    mut done: oneshot::Sender<Result<HeldBy, Failure>>,
     held: Rc<RefCell<BTreeSet<String>>>,
     say: Say,
     mut ended: watch::Receiver<bool>,
 ) {
-    let key = key_of(&robot);
+    let key = session_key(&robot);
     let label = robot.label();
     let tell = {
         let (say, label) = (Arc::clone(&say), label.clone());
@@ -199,10 +199,10 @@ async fn hold(
         () = done.closed() => return,
     };
     let (by, holding) = match attempt {
-        Ok(None) => (Ok(By::This { records }), None),
-        Ok(Some(Attempt::SharedLink(holding))) => (Ok(By::This { records }), Some(holding)),
-        Ok(Some(Attempt::Taken)) => (Ok(By::Another), None),
-        Ok(Some(Attempt::NoPlace(why))) => (Ok(By::Nobody(why)), None),
+        Ok(None) => (Ok(HeldBy::ThisProcess { records }), None),
+        Ok(Some(OpenResult::SharedLink(holding))) => (Ok(HeldBy::ThisProcess { records }), Some(holding)),
+        Ok(Some(OpenResult::InUse)) => (Ok(HeldBy::OtherProcess), None),
+        Ok(Some(OpenResult::NoPlace(why))) => (Ok(HeldBy::None(why)), None),
         Err(failure) => (Err(failure), None),
     };
     // The caller can be interrupted already. The link is there for the next line.

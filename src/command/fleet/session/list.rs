@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::frame::attach::no_place;
+use crate::command::frame::attach::folder_failure;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -35,7 +35,7 @@ impl List {
 pub fn locations() -> Result<Vec<SessionPath>, Failure> {
     match SessionFolder::find().and_then(|place| place.map_or(Ok(Vec::new()), |place| place.locations())) {
         Ok(locations) => Ok(locations),
-        Err(error) => Err(no_place(&error)),
+        Err(error) => Err(folder_failure(&error)),
     }
 }
 
@@ -115,7 +115,7 @@ impl Session {
             pid: status.info.pid,
             link: if status.down.is_some() { "down" } else { "up" },
             why: status.down.or(foreign),
-            since: Some(moment(status.for_ms)),
+            since: Some(local_time(status.for_ms)),
             reopenings: status.reopenings,
             clients: status.clients.into_iter().map(Client::from).collect(),
             motion: status.motion.map(Client::from),
@@ -125,7 +125,7 @@ impl Session {
     }
 
     /// Remark in addition to the columns.
-    fn remark(&self) -> String {
+    fn remarks(&self) -> String {
         let mut remarks = Vec::new();
         remarks.extend(self.why.clone());
         if self.reopenings > 0 {
@@ -146,11 +146,11 @@ impl Session {
 
 impl From<Peer> for Client {
     fn from(peer: Peer) -> Self {
-        Self { pid: peer.pid, command: peer.command, since: moment(peer.for_ms) }
+        Self { pid: peer.pid, command: peer.command, since: local_time(peer.for_ms) }
     }
 }
 
-fn moment(for_ms: u64) -> String {
+fn local_time(for_ms: u64) -> String {
     let then = Timestamp::now().checked_sub(Duration::from_millis(for_ms)).unwrap_or(Timestamp::MIN);
     then.strftime("%Y-%m-%dT%H:%M:%SZ").to_string()
 }
@@ -170,7 +170,7 @@ impl Report for Sessions {
                 session.pid.into(),
                 session.clients.len().into(),
                 session.target.as_str().into(),
-                session.remark().into(),
+                session.remarks().into(),
             ]);
         }
         View::table(table)

@@ -10,13 +10,13 @@ use anyhow::Context as _;
 use clap::Args;
 use jiff::Timestamp;
 
-use super::host::{Attempt, SessionHost};
+use super::host::{OpenResult, SessionHost};
 use crate::command::ValueKind;
 use crate::command::families;
-use crate::command::frame::attach::{identify, key_of, no_place, since};
+use crate::command::frame::attach::{folder_failure, format_since, identify, session_key};
 use crate::command::frame::background::{self, Opened, Start};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::repeats::{Line, Repeats};
+use crate::command::frame::repeat_limiter::{Line, RepeatLimiter};
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Access, ConnectMode};
 use crate::failure::{Failure, Kind};
@@ -100,26 +100,26 @@ impl Open {
             }
             Err(failure) => {
                 run.screen.json(&Start::Failed(failure.clone()))?;
-                Err(RunError { told: true, ..failure.into() })
+                Err(RunError { is_reported: true, ..failure.into() })
             }
         }
     }
 
     /// Opens the link, and accepts clients.
     async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened), Failure> {
-        let place = SessionFolder::create().map_err(|error| no_place(&error))?;
-        let location = place.location(&key_of(robot));
+        let place = SessionFolder::create().map_err(|error| folder_failure(&error))?;
+        let location = place.location(&session_key(robot));
         let log = background.then(|| location.log());
-        let (label, repeats) = (robot.label(), Repeats::default());
+        let (label, repeats) = (robot.label(), RepeatLimiter::default());
         let log_file = SessionLog { screen: run.screen, label, file: log.clone(), repeats };
         let log_file = Arc::new(Mutex::new(log_file));
         let say = move |text: &str| log_file.lock().unwrap_or_else(PoisonError::into_inner).say(text);
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Control) };
         let opening = SessionHost::open(robot, &access, &run.screen, say.clone());
         let holding = match interruptible(opening).await?? {
-            Attempt::SharedLink(holding) => holding,
-            Attempt::Taken => return Err(taken(robot, &location).await),
-            Attempt::NoPlace(failure) => return Err(failure),
+            OpenResult::SharedLink(holding) => holding,
+            OpenResult::InUse => return Err(in_use_failure(robot, &location).await),
+            OpenResult::NoPlace(failure) => return Err(failure),
         };
         say("the connection is open");
         let opened = Opened::here(robot, background, log.as_deref());
@@ -139,9 +139,9 @@ impl Open {
 }
 
 /// Failure: another process has the link.
-async fn taken(robot: &Robot, location: &SessionPath) -> Failure {
+async fn in_use_failure(robot: &Robot, location: &SessionPath) -> Failure {
     let who = match (status(location).await, location.owner()) {
-        (Ok(Some(status)), _) => format!("process {}, since {}", status.info.pid, since(status.for_ms)),
+        (Ok(Some(status)), _) => format!("process {}, since {}", status.info.pid, format_since(status.for_ms)),
         (_, Some(owner)) => format!("process {}, which does not answer", owner.pid),
         (_, None) => "a process that does not answer".to_owned(),
     };
@@ -154,7 +154,7 @@ struct SessionLog {
     screen: Screen,
     label: String,
     file: Option<PathBuf>,
-    repeats: Repeats,
+    repeats: RepeatLimiter,
 }
 
 /// Writes the counts of repeated lines at the end.

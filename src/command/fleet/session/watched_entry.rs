@@ -37,12 +37,12 @@ impl WatchedEntry {
 
     fn update(&mut self, path: PathBuf) -> Result<(), String> {
         // A deleted file changes nothing.
-        let inventory = Inventory::load(&Location::Usual(path))
+        let inventory = Inventory::load(&Location::Default(path))
             .map_err(|failure| format!("cannot read again whether {} is read-only: {failure}", self.robot.name))?;
         let sources = Sources { inventory, ..Sources::default() };
         self.robot.read_only.value =
             sources.read_only(self.robot.family).any(|(_, entry)| entry.name == self.robot.name);
-        sources.bind(&mut self.robot);
+        sources.apply_read_only(&mut self.robot);
         Ok(())
     }
 }

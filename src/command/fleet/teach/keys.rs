@@ -43,7 +43,7 @@ pub enum KeyAction {
 }
 
 /// Action of a key; `None` if it has none. With `is_asked`, the key belongs to an answer, but a stop key always stops.
-pub fn order(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
+pub fn action(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;
     }
@@ -104,16 +104,16 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_is_one_while_a_number_is_typed() {
+    fn stop_works_while_a_number_is_typed() {
         for is_asked in [false, true] {
-            assert_eq!(order(pressed(KeyCode::Char(' ')), is_asked), Some(KeyAction::Stop));
+            assert_eq!(action(pressed(KeyCode::Char(' ')), is_asked), Some(KeyAction::Stop));
         }
     }
 
     #[test]
     fn nothing_moves_while_a_number_is_typed() {
-        assert_eq!(order(pressed(KeyCode::Right), false), Some(KeyAction::Step(true)));
-        assert_eq!(order(pressed(KeyCode::Right), true), None);
-        assert_eq!(order(pressed(KeyCode::Char('g')), true), Some(KeyAction::Type('g')));
+        assert_eq!(action(pressed(KeyCode::Right), false), Some(KeyAction::Step(true)));
+        assert_eq!(action(pressed(KeyCode::Right), true), None);
+        assert_eq!(action(pressed(KeyCode::Char('g')), true), Some(KeyAction::Type('g')));
     }
 }

@@ -9,14 +9,14 @@
 
 mod keys;
 mod model;
-mod panel;
+mod screen_loop;
 #[cfg(test)]
 mod tests;
 mod view;
 
 use clap::Args;
 
-pub use self::panel::show;
+pub use self::screen_loop::show;
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Confirmation, Intent};
@@ -35,14 +35,14 @@ pub struct Teach {
     #[arg(value_name = "FAMILY")]
     pub family: Option<Family>,
     /// Largest step of a key, in mm, degrees, or the unit of the axes
-    #[arg(long, value_name = "MM", default_value = "10", value_parser = positive)]
+    #[arg(long, value_name = "MM", default_value = "10", value_parser = parse_positive)]
     pub max_step: f64,
     /// Highest speed, in mm/s or percent
     #[arg(long, value_name = "SPEED", default_value = "10", value_parser = clap::value_parser!(u32).range(1..=250))]
     pub max_speed: u32,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+fn parse_positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
     if value.is_finite() && value > 0.0 { Ok(value) } else { Err("it must be above 0".to_owned()) }
 }
@@ -65,7 +65,7 @@ impl Teach {
 
 /// Runs command lines of the panel.
 #[expect(async_fn_in_trait, reason = "all code runs on one thread")]
-pub trait Types {
+pub trait CommandRunner {
     /// Runs a command line of the family, and returns the data of its report.
     async fn run(&self, words: &[String]) -> Result<serde_json::Value, Failure>;
 }

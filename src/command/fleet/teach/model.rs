@@ -6,11 +6,11 @@ use std::collections::VecDeque;
 use serde_json::Value;
 
 use super::keys::KeyAction;
-use crate::command::face::panel::{Panel, System};
+use crate::command::face::teach_panel::{Panel, System};
 use crate::failure::{Failure, Kind};
 
 /// Number of past commands kept.
-const PAST: usize = 20;
+const MAX_HISTORY: usize = 20;
 /// Text for a point that was never taught.
 const EMPTY: &str = "empty";
 /// Digits of a point number.
@@ -18,7 +18,7 @@ const DIGITS: usize = 5;
 
 /// Next action of the panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Wish {
+pub enum PanelCommand {
     /// Move an axis.
     Step {
         /// Axis number.
@@ -31,7 +31,7 @@ pub enum Wish {
     /// Release HOLD.
     Release,
     /// Read a point before it is stored or moved to.
-    Look(u32),
+    ReadPoint(u32),
     /// Store a point.
     Store(u32),
     /// Move to a point.
@@ -46,7 +46,7 @@ pub enum Wish {
 
 /// Use of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Use {
+pub enum PointUse {
     /// Store the current position in the point.
     Store,
     /// Move to the point.
@@ -55,18 +55,18 @@ pub enum Use {
 
 /// Open question to the user.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Asked {
+pub enum Prompt {
     /// Point number, as typed so far.
-    Point(Use, String),
+    PointNumber(PointUse, String),
     /// Confirmation with the current content of the point.
-    Sure(Use, u32, String),
+    Overwrite(PointUse, u32, String),
     /// Confirmation to release HOLD.
     Release,
 }
 
 /// A past command.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Typed {
+pub struct HistoryEntry {
     number: u64,
     /// Command line without the family.
     pub words: String,
@@ -90,11 +90,11 @@ pub struct Model {
     /// Size of the controller's small step per axis, in the unit of the axis.
     scale: Vec<f64>,
     /// Open question.
-    pub asked: Option<Asked>,
+    pub prompt: Option<Prompt>,
     /// Whether the help is open.
     pub has_help: bool,
     /// Past commands, newest last.
-    pub past: VecDeque<Typed>,
+    pub history: VecDeque<HistoryEntry>,
     /// Whether a motion is in progress.
     pub is_moving: bool,
 }
@@ -111,19 +111,19 @@ impl Model {
             step: 0,
             speed: 0,
             scale: Vec::new(),
-            asked: None,
+            prompt: None,
             has_help: false,
-            past: VecDeque::new(),
+            history: VecDeque::new(),
             is_moving: false,
         };
-        model.begin_again();
+        model.reset_steps();
         model
     }
 
     /// Sets the sizes of the controller's small steps, in the units of the axes.
     pub fn scale_by(&mut self, scale: Vec<f64>) {
         self.scale = scale;
-        self.begin_again();
+        self.reset_steps();
     }
 
     /// Selected coordinate system.
@@ -173,28 +173,28 @@ impl Model {
         !self.system().speeds.is_empty() && self.speed().is_none()
     }
 
-    fn begin_again(&mut self) {
+    fn reset_steps(&mut self) {
         self.axis = self.axis.min(self.system().axes.len().saturating_sub(1));
         self.step = 1.min(self.steps().len().saturating_sub(1));
         self.speed = 1.min(self.speeds().len().saturating_sub(1));
     }
 
     /// Handles a key. Returns the resulting action.
-    pub fn obey(&mut self, action: KeyAction) -> Option<Wish> {
+    pub fn handle_key(&mut self, action: KeyAction) -> Option<PanelCommand> {
         match action {
             KeyAction::Stop => {
-                self.asked = None;
-                return Some(Wish::Stop);
+                self.prompt = None;
+                return Some(PanelCommand::Stop);
             }
-            KeyAction::Interrupt => return Some(Wish::Interrupt),
-            KeyAction::Refresh => return Some(Wish::Refresh),
-            KeyAction::Quit => return Some(Wish::Quit),
+            KeyAction::Interrupt => return Some(PanelCommand::Interrupt),
+            KeyAction::Refresh => return Some(PanelCommand::Refresh),
+            KeyAction::Quit => return Some(PanelCommand::Quit),
             KeyAction::Escape => {
-                self.asked = None;
+                self.prompt = None;
                 self.has_help = false;
             }
             KeyAction::Help => self.has_help = !self.has_help,
-            KeyAction::Type(_) | KeyAction::Erase | KeyAction::Enter => return self.answer(action),
+            KeyAction::Type(_) | KeyAction::Erase | KeyAction::Enter => return self.answer_prompt(action),
             KeyAction::Axis(by) => {
                 self.axis = moved(self.axis, by, self.system().axes.len());
                 self.step = self.step.min(self.steps().len().saturating_sub(1));
@@ -206,59 +206,65 @@ impl Model {
             _ if self.is_moving => {}
             KeyAction::System => {
                 self.system = (self.system + 1) % self.panel.systems.len();
-                self.begin_again();
+                self.reset_steps();
             }
             KeyAction::Step(forwards) => {
                 let step = self.steps().get(self.step).copied().filter(|_| !self.is_too_fast())?;
-                return Some(Wish::Step { axis: self.axis, by: if forwards { step } else { -step } });
+                return Some(PanelCommand::Step { axis: self.axis, by: if forwards { step } else { -step } });
             }
-            KeyAction::Store => self.asked = Some(Asked::Point(Use::Store, String::new())),
-            KeyAction::Go if !self.is_too_fast() => self.asked = Some(Asked::Point(Use::Go, String::new())),
-            KeyAction::Release if self.panel.release.is_some() => self.asked = Some(Asked::Release),
+            KeyAction::Store => self.prompt = Some(Prompt::PointNumber(PointUse::Store, String::new())),
+            KeyAction::Go if !self.is_too_fast() => {
+                self.prompt = Some(Prompt::PointNumber(PointUse::Go, String::new()))
+            }
+            KeyAction::Release if self.panel.release.is_some() => self.prompt = Some(Prompt::Release),
             KeyAction::Go | KeyAction::Release => {}
         }
         None
     }
 
     /// Handles a key of an answer.
-    fn answer(&mut self, action: KeyAction) -> Option<Wish> {
-        match (self.asked.as_mut()?, action) {
-            (Asked::Point(_, typed), KeyAction::Type(digit)) if digit.is_ascii_digit() && typed.len() < DIGITS => {
+    fn answer_prompt(&mut self, action: KeyAction) -> Option<PanelCommand> {
+        match (self.prompt.as_mut()?, action) {
+            (Prompt::PointNumber(_, typed), KeyAction::Type(digit))
+                if digit.is_ascii_digit() && typed.len() < DIGITS =>
+            {
                 typed.push(digit);
             }
-            (Asked::Point(_, typed), KeyAction::Erase) => _ = typed.pop(),
-            (Asked::Point(_, typed), KeyAction::Enter) => return typed.parse().ok().map(Wish::Look),
-            (Asked::Sure(what, point, _), KeyAction::Type('y' | 'Y')) => {
+            (Prompt::PointNumber(_, typed), KeyAction::Erase) => _ = typed.pop(),
+            (Prompt::PointNumber(_, typed), KeyAction::Enter) => {
+                return typed.parse().ok().map(PanelCommand::ReadPoint);
+            }
+            (Prompt::Overwrite(what, point, _), KeyAction::Type('y' | 'Y')) => {
                 let wish = match what {
-                    Use::Store => Wish::Store(*point),
-                    Use::Go => Wish::Go(*point),
+                    PointUse::Store => PanelCommand::Store(*point),
+                    PointUse::Go => PanelCommand::Go(*point),
                 };
-                self.asked = None;
+                self.prompt = None;
                 return Some(wish);
             }
-            (Asked::Release, KeyAction::Type('y' | 'Y')) => {
-                self.asked = None;
-                return Some(Wish::Release);
+            (Prompt::Release, KeyAction::Type('y' | 'Y')) => {
+                self.prompt = None;
+                return Some(PanelCommand::Release);
             }
             // Only "y" confirms.
-            (Asked::Sure(..) | Asked::Release, KeyAction::Type(_) | KeyAction::Enter) => self.asked = None,
+            (Prompt::Overwrite(..) | Prompt::Release, KeyAction::Type(_) | KeyAction::Enter) => self.prompt = None,
             _ => {}
         }
         None
     }
 
     /// Handles the content of a point: asks for confirmation.
-    pub fn found(&mut self, point: u32, content: Result<Value, Failure>) {
+    pub fn point_read(&mut self, point: u32, content: Result<Value, Failure>) {
         // The user can have closed the question.
-        let Some(Asked::Point(what, _)) = self.asked else { return };
+        let Some(Prompt::PointNumber(what, _)) = self.prompt else { return };
         match content {
-            Ok(data) => self.asked = Some(Asked::Sure(what, point, content_of(&data))),
+            Ok(data) => self.prompt = Some(Prompt::Overwrite(what, point, content_of(&data))),
             // The point was never taught.
-            Err(failure) if what == Use::Store && failure.kind == Kind::Refused => {
-                self.asked = Some(Asked::Sure(what, point, EMPTY.to_owned()));
+            Err(failure) if what == PointUse::Store && failure.kind == Kind::Refused => {
+                self.prompt = Some(Prompt::Overwrite(what, point, EMPTY.to_owned()));
             }
             Err(failure) => {
-                self.asked = None;
+                self.prompt = None;
                 let number = self.begin(&(self.panel.stored)(point));
                 self.end(number, Err(failure));
             }
@@ -267,24 +273,24 @@ impl Model {
 
     /// Adds a command in progress. Returns its number.
     pub fn begin(&mut self, words: &[String]) -> u64 {
-        if self.past.len() == PAST {
-            self.past.pop_front();
+        if self.history.len() == MAX_HISTORY {
+            self.history.pop_front();
         }
-        let number = self.past.back().map_or(0, |last| last.number + 1);
-        self.past.push_back(Typed { number, words: words.join(" "), outcome: None });
+        let number = self.history.back().map_or(0, |last| last.number + 1);
+        self.history.push_back(HistoryEntry { number, words: words.join(" "), outcome: None });
         number
     }
 
     /// Replaces the text of a command by the actual command line.
-    pub fn was(&mut self, number: u64, words: &[String]) {
-        if let Some(typed) = self.past.iter_mut().find(|typed| typed.number == number) {
+    pub fn set_outcome(&mut self, number: u64, words: &[String]) {
+        if let Some(typed) = self.history.iter_mut().find(|typed| typed.number == number) {
             typed.words = words.join(" ");
         }
     }
 
     /// Sets the result of a command.
     pub fn end(&mut self, number: u64, outcome: Result<(), Failure>) {
-        if let Some(typed) = self.past.iter_mut().find(|typed| typed.number == number) {
+        if let Some(typed) = self.history.iter_mut().find(|typed| typed.number == number) {
             typed.outcome = Some(outcome);
         }
     }

@@ -9,7 +9,7 @@ use ratatui::style::{Color, Modifier};
 use serde_json::json;
 
 use super::keys::KeyAction;
-use super::model::{Asked, Model, Use, Wish};
+use super::model::{Model, PanelCommand, PointUse, Prompt};
 use super::view::{Robot, render};
 use crate::command::families;
 use crate::command::fleet::top;
@@ -22,80 +22,83 @@ fn model(family: Family) -> Model {
     Model::new(families::of(family).panel(), 10.0, 10)
 }
 
-fn typed(model: &mut Model, keys: &str) -> Option<Wish> {
-    keys.chars().fold(None, |_, key| model.obey(KeyAction::Type(key)))
+fn typed(model: &mut Model, keys: &str) -> Option<PanelCommand> {
+    keys.chars().fold(None, |_, key| model.handle_key(KeyAction::Type(key)))
 }
 
 #[test]
-fn a_key_is_one_step_and_the_next_one_waits() {
+fn one_key_is_one_step_and_further_keys_wait() {
     let mut model = model(Family::Yerc);
-    assert_eq!(model.obey(KeyAction::Step(false)), Some(Wish::Step { axis: 0, by: -0.1 }));
+    assert_eq!(model.handle_key(KeyAction::Step(false)), Some(PanelCommand::Step { axis: 0, by: -0.1 }));
     model.is_moving = true;
-    assert_eq!(model.obey(KeyAction::Step(true)), None);
-    assert_eq!(model.obey(KeyAction::Store), None);
-    assert_eq!(model.asked, None);
-    assert_eq!(model.obey(KeyAction::Stop), Some(Wish::Stop));
+    assert_eq!(model.handle_key(KeyAction::Step(true)), None);
+    assert_eq!(model.handle_key(KeyAction::Store), None);
+    assert_eq!(model.prompt, None);
+    assert_eq!(model.handle_key(KeyAction::Stop), Some(PanelCommand::Stop));
 }
 
 #[test]
-fn steps_are_no_larger_than_is_allowed() {
+fn limits_the_step_size() {
     let mut yerc = Model::new(families::of(Family::Yerc).panel(), 1.0, 10);
     for _ in 0..9 {
-        yerc.obey(KeyAction::StepSize(1));
+        yerc.handle_key(KeyAction::StepSize(1));
     }
     assert_eq!(yerc.step(), Some(1.0));
     // The controller's small step is 0.05 mm, so a hundred of them are 5 mm.
     let mut toyo = Model::new(families::of(Family::Toyo).panel(), 1.0, 10);
     toyo.scale_by(vec![0.05; 4]);
     for _ in 0..9 {
-        toyo.obey(KeyAction::StepSize(1));
+        toyo.handle_key(KeyAction::StepSize(1));
     }
-    assert_eq!((toyo.step(), toyo.obey(KeyAction::Step(true))), (Some(0.5), Some(Wish::Step { axis: 0, by: 10.0 })));
+    assert_eq!(
+        (toyo.step(), toyo.handle_key(KeyAction::Step(true))),
+        (Some(0.5), Some(PanelCommand::Step { axis: 0, by: 10.0 }))
+    );
     // All steps are above the limit, so nothing moves.
     let mut none = Model::new(families::of(Family::Yerc).panel(), 0.001, 10);
-    assert_eq!((none.step(), none.obey(KeyAction::Step(true))), (None, None));
+    assert_eq!((none.step(), none.handle_key(KeyAction::Step(true))), (None, None));
 }
 
 #[test]
-fn a_point_is_stored_after_a_look_and_a_y() {
+fn stores_a_point_after_a_read_and_a_yes() {
     let mut model = model(Family::Yerc);
-    model.obey(KeyAction::Store);
+    model.handle_key(KeyAction::Store);
     assert_eq!(typed(&mut model, "5x"), None);
-    assert_eq!(model.obey(KeyAction::Enter), Some(Wish::Look(5)));
-    model.found(5, Ok(json!({"items": [{"name": "P5", "value": {"text": "pulse:s=1"}}]})));
-    assert_eq!(model.asked, Some(Asked::Sure(Use::Store, 5, "pulse:s=1".to_owned())));
-    assert_eq!(typed(&mut model, "y"), Some(Wish::Store(5)));
+    assert_eq!(model.handle_key(KeyAction::Enter), Some(PanelCommand::ReadPoint(5)));
+    model.point_read(5, Ok(json!({"items": [{"name": "P5", "value": {"text": "pulse:s=1"}}]})));
+    assert_eq!(model.prompt, Some(Prompt::Overwrite(PointUse::Store, 5, "pulse:s=1".to_owned())));
+    assert_eq!(typed(&mut model, "y"), Some(PanelCommand::Store(5)));
 
     // Any other key is a no.
-    model.obey(KeyAction::Go);
+    model.handle_key(KeyAction::Go);
     typed(&mut model, "7");
-    model.found(7, Ok(json!({"points": [{"point": 7, "x_mm": 1.5, "y_mm": null, "ok": true}]})));
-    assert_eq!(model.asked, Some(Asked::Sure(Use::Go, 7, "x_mm 1.5".to_owned())));
-    assert_eq!((typed(&mut model, "n"), &model.asked), (None, &None));
+    model.point_read(7, Ok(json!({"points": [{"point": 7, "x_mm": 1.5, "y_mm": null, "ok": true}]})));
+    assert_eq!(model.prompt, Some(Prompt::Overwrite(PointUse::Go, 7, "x_mm 1.5".to_owned())));
+    assert_eq!((typed(&mut model, "n"), &model.prompt), (None, &None));
 }
 
 #[test]
-fn a_point_that_is_empty_can_be_stored_and_not_gone_to() {
+fn stores_but_does_not_approach_an_empty_point() {
     let empty = || Err(Failure::new(Kind::Refused, "data undefined"));
     for (action, asked) in
-        [(KeyAction::Store, Some(Asked::Sure(Use::Store, 5, "empty".to_owned()))), (KeyAction::Go, None)]
+        [(KeyAction::Store, Some(Prompt::Overwrite(PointUse::Store, 5, "empty".to_owned()))), (KeyAction::Go, None)]
     {
         let mut model = model(Family::Yerc);
-        model.obey(action);
+        model.handle_key(action);
         typed(&mut model, "5");
-        model.found(5, empty());
-        assert_eq!(model.asked, asked);
+        model.point_read(5, empty());
+        assert_eq!(model.prompt, asked);
     }
 }
 
 /// A panel with commands in progress.
-fn at_work() -> Buffer {
+fn moving_model() -> Buffer {
     let mut seen = top::Model::new(&fleet(1), Duration::from_millis(250)).without_signals();
     seen.take(Duration::from_secs(1), 0, Ok(sample(1200.0)));
     let mut model = model(Family::Yerc);
-    model.obey(KeyAction::Axis(1));
-    model.obey(KeyAction::StepSize(1));
-    seen.choose_axis(model.axis_name());
+    model.handle_key(KeyAction::Axis(1));
+    model.handle_key(KeyAction::StepSize(1));
+    seen.select_axis(model.axis_name());
     for (words, outcome) in [
         ("move relative --y 1 --coordinate base --speed 5mm/s", Some(Ok(()))),
         ("teach P5", Some(Ok(()))),
@@ -115,9 +118,9 @@ fn at_work() -> Buffer {
 }
 
 #[test]
-fn the_picture_is_current() {
+fn screen_picture_is_current() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures/teach.svg");
-    let drawn = drawn(&at_work());
+    let drawn = drawn(&moving_model());
     if std::env::var_os("ARMCTL_BLESS").is_some() {
         std::fs::write(&path, drawn).unwrap();
     } else {

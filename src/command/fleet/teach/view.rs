@@ -6,14 +6,14 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::keys::KEYS;
-use super::model::{Asked, Model, Typed, Use};
+use super::model::{HistoryEntry, Model, PointUse, Prompt};
 use crate::command::fleet::top;
 use crate::output::painter::{Painter, Palette, after, line_of, to_ascii, wrapped};
 use crate::output::view::Tone;
 
 /// Lines of the panel, and the limit of lines for past commands.
 const PANEL: u16 = 3;
-const PAST: u16 = 6;
+const HISTORY_LINES: u16 = 6;
 
 /// State of the robot.
 pub struct Robot<'a> {
@@ -33,13 +33,13 @@ pub fn draw(frame: &mut Frame<'_>, model: &Model, robot: &Robot<'_>, palette: Pa
 
 pub(super) fn render(buffer: &mut Buffer, area: Rect, model: &Model, robot: &Robot<'_>, palette: Palette) {
     let mut painter = Painter { buffer, palette };
-    let past = PAST.min(area.height / 4);
-    let below = (PANEL + past + 1).min(area.height);
+    let history = HISTORY_LINES.min(area.height / 4);
+    let rest = (PANEL + history + 1).min(area.height);
     let foot = line_of(area, area.height.saturating_sub(1));
     let head = line_of(area, 0);
-    let body = Rect { y: area.y + head.height, height: area.height.saturating_sub(below + 1), ..area };
+    let body = Rect { y: area.y + head.height, height: area.height.saturating_sub(rest + 1), ..area };
     top::robot(&mut painter, [head, body], robot.seen, robot.now);
-    let panel = Rect { y: area.y + area.height.saturating_sub(below), height: below.saturating_sub(1), ..area };
+    let panel = Rect { y: area.y + area.height.saturating_sub(rest), height: rest.saturating_sub(1), ..area };
     painter.paint(line_of(panel, 0), palette.heading());
     controls(&mut painter, panel, model, robot.is_real);
     lines(&mut painter, Rect { y: panel.y + PANEL, height: panel.height.saturating_sub(PANEL), ..panel }, model);
@@ -56,10 +56,10 @@ pub(super) fn render(buffer: &mut Buffer, area: Rect, model: &Model, robot: &Rob
 /// Draws axis, step, speed, and the open question.
 fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool) {
     let (accent, quiet) = (painter.palette.accent(), painter.palette.quiet());
-    let who = if is_real { "REAL CONTROLLER" } else { "simulator" };
+    let robot_text = if is_real { "REAL CONTROLLER" } else { "simulator" };
     let tone = painter.palette.tone(if is_real { Tone::Bad } else { Tone::Good });
     painter.left(after(line_of(area, 0), 1), "teach", accent);
-    painter.right(line_of(area, 0), &format!("{who} "), tone);
+    painter.right(line_of(area, 0), &format!("{robot_text} "), tone);
     let step = model.step().map_or("not allowed".to_owned(), |step| format!("{step} {}", model.unit()));
     let speed = model.speed().map(|speed| format!("{speed} {}", model.system().speed_unit));
     let speed = speed.unwrap_or_else(|| "the controller's".to_owned());
@@ -79,32 +79,34 @@ fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool)
         ],
     );
     let line = after(line_of(area, 2), 1);
-    let question = model.asked.as_ref().map(|asked| question(model, asked));
+    let question = model.prompt.as_ref().map(|asked| question(model, asked));
     if let Some(question) = question {
         painter.left(line, &question, painter.palette.tone(Tone::Warning));
     }
 }
 
 /// Text of the open question.
-fn question(model: &Model, asked: &Asked) -> String {
+fn question(model: &Model, asked: &Prompt) -> String {
     let point = model.panel.point;
     match asked {
-        Asked::Point(Use::Store, typed) => format!("Store the current position as: {typed}_  (number, Enter; Esc)"),
-        Asked::Point(Use::Go, typed) => format!("Move to: {typed}_  (number, Enter; Esc)"),
-        Asked::Sure(Use::Store, number, old) => {
+        Prompt::PointNumber(PointUse::Store, typed) => {
+            format!("Store the current position as: {typed}_  (number, Enter; Esc)")
+        }
+        Prompt::PointNumber(PointUse::Go, typed) => format!("Move to: {typed}_  (number, Enter; Esc)"),
+        Prompt::Overwrite(PointUse::Store, number, old) => {
             format!("y stores it as {}, Esc cancels; now: {old}", point(*number))
         }
-        Asked::Sure(Use::Go, number, place) => {
+        Prompt::Overwrite(PointUse::Go, number, place) => {
             format!("y moves to {} in one motion, Esc cancels; it is {place}", point(*number))
         }
-        Asked::Release => "y releases the hold, Esc cancels; a stopped motion may continue".to_owned(),
+        Prompt::Release => "y releases the hold, Esc cancels; a stopped motion may continue".to_owned(),
     }
 }
 
 /// Draws past commands, newest at the bottom, with the full error of the newest.
 fn lines(painter: &mut Painter<'_>, area: Rect, model: &Model) {
     let mut bottom = area.height;
-    for (age, Typed { words, outcome, .. }) in model.past.iter().rev().enumerate() {
+    for (age, HistoryEntry { words, outcome, .. }) in model.history.iter().rev().enumerate() {
         let (sign, tone) = match outcome {
             None => ("…", Tone::Plain),
             Some(Ok(())) => ("ok", Tone::Good),

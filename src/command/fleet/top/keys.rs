@@ -35,9 +35,9 @@ pub enum KeyAction {
     /// Remove the last character of the filter.
     Erase,
     /// Confirm the filter.
-    Keep,
+    ApplyFilter,
     /// Cancel the filter.
-    Discard,
+    CancelFilter,
     /// Quit.
     Quit,
     /// Quit as with Ctrl-C.
@@ -52,7 +52,7 @@ pub enum KeyAction {
 const PAGE: usize = 10;
 
 /// Action of a key; `None` if it has none. With `is_typing`, the key belongs to the filter.
-pub fn order(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
+pub fn action(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;
     }
@@ -67,8 +67,8 @@ pub fn order(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
     }
     if is_typing {
         return match key.code {
-            KeyCode::Enter => Some(KeyAction::Keep),
-            KeyCode::Esc => Some(KeyAction::Discard),
+            KeyCode::Enter => Some(KeyAction::ApplyFilter),
+            KeyCode::Esc => Some(KeyAction::CancelFilter),
             KeyCode::Backspace => Some(KeyAction::Erase),
             KeyCode::Char(character) => Some(KeyAction::Type(character)),
             _ => None,
@@ -116,12 +116,12 @@ pub const KEYS: [((bool, bool), Explained); 15] = [
 ];
 
 const fn explained(
-    counts: (bool, bool),
+    is_relevant: (bool, bool),
     key: &'static str,
     short: &'static str,
     full: &'static str,
 ) -> ((bool, bool), Explained) {
-    (counts, Explained { key, short, full })
+    (is_relevant, Explained { key, short, full })
 }
 
 #[cfg(test)]
@@ -137,26 +137,26 @@ mod tests {
     }
 
     #[test]
-    fn letters_are_keys_or_a_filter() {
-        assert_eq!(order(pressed(KeyCode::Char('q')), false), Some(KeyAction::Quit));
-        assert_eq!(order(pressed(KeyCode::Char('q')), true), Some(KeyAction::Type('q')));
-        assert_eq!(order(pressed(KeyCode::Esc), false), Some(KeyAction::Back));
-        assert_eq!(order(pressed(KeyCode::Esc), true), Some(KeyAction::Discard));
-        assert_eq!(order(pressed(KeyCode::Char('x')), false), None);
+    fn letters_are_commands_or_filter_text() {
+        assert_eq!(action(pressed(KeyCode::Char('q')), false), Some(KeyAction::Quit));
+        assert_eq!(action(pressed(KeyCode::Char('q')), true), Some(KeyAction::Type('q')));
+        assert_eq!(action(pressed(KeyCode::Esc), false), Some(KeyAction::Back));
+        assert_eq!(action(pressed(KeyCode::Esc), true), Some(KeyAction::CancelFilter));
+        assert_eq!(action(pressed(KeyCode::Char('x')), false), None);
     }
 
     #[test]
-    fn control_keys_count_everywhere() {
+    fn control_keys_work_everywhere() {
         for is_typing in [false, true] {
-            assert_eq!(order(with_control('c'), is_typing), Some(KeyAction::Interrupt));
-            assert_eq!(order(with_control('z'), is_typing), Some(KeyAction::Suspend));
-            assert_eq!(order(with_control('q'), is_typing), None);
+            assert_eq!(action(with_control('c'), is_typing), Some(KeyAction::Interrupt));
+            assert_eq!(action(with_control('z'), is_typing), Some(KeyAction::Suspend));
+            assert_eq!(action(with_control('q'), is_typing), None);
         }
     }
 
     #[test]
-    fn a_key_counts_once() {
+    fn ignores_key_releases() {
         let released = KeyEvent { kind: KeyEventKind::Release, ..pressed(KeyCode::Enter) };
-        assert_eq!(order(released, false), None);
+        assert_eq!(action(released, false), None);
     }
 }

@@ -20,11 +20,11 @@ use clap::Args;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 
-use self::keys::{KeyAction, order};
+use self::keys::{KeyAction, action};
 pub use self::model::Model;
 use self::view::Palette;
 pub use self::view::robot;
-use crate::command::fleet::poll::{self, Poll, RobotId, Subscription, Wish};
+use crate::command::fleet::poll::{self, Poll, PollRequest, RobotId, Subscription};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, Kind};
@@ -42,19 +42,19 @@ use crate::output::fullscreen::{Event, Fullscreen, Keys};
 pub struct Top {}
 
 /// Default and minimum polling interval.
-const EVERY: Duration = Duration::from_millis(500);
-const LEAST: Duration = Duration::from_millis(50);
+const DEFAULT_INTERVAL: Duration = Duration::from_millis(500);
+const MIN_INTERVAL: Duration = Duration::from_millis(50);
 /// Minimum and maximum time between two screen updates. Elapsed times are shown as well.
-const PICTURE: Duration = Duration::from_millis(100);
+const FRAME_INTERVAL: Duration = Duration::from_millis(100);
 const TICK: Duration = Duration::from_secs(1);
 /// Longest backoff of a robot that does not answer. It is short, because a user is waiting.
-const LONGEST_PAUSE: Duration = Duration::from_secs(4);
+const MAX_BACKOFF: Duration = Duration::from_secs(4);
 
 impl Top {
     /// Runs the command.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
-        let every = run.repeat.every.unwrap_or(EVERY);
-        fits(run, every)?;
+        let every = run.repeat.every.unwrap_or(DEFAULT_INTERVAL);
+        check_globals(run, every)?;
         // Messages of links would damage the screen.
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let screen = run.screen;
@@ -64,7 +64,7 @@ impl Top {
                 .into());
         }
         let model = Model::new(poll.robots(), every);
-        let mut updates = poll.subscribe(wish_of(&model));
+        let mut updates = poll.subscribe(poll_request(&model));
         let mut polled = Box::pin(poll.run());
         // From here on, the process must restore the terminal before it ends.
         catch_interrupts();
@@ -89,31 +89,31 @@ impl Top {
 }
 
 /// Rejects options that make no sense on a screen.
-fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
-    let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("top {what}")).hint(hint));
+fn check_globals(run: &Run, every: Duration) -> Result<(), Failure> {
+    let invalid = |what: &str, hint: &str| Err(Failure::usage(format!("top {what}")).hint(hint));
     if run.screen.format != Format::Table || run.filter.is_some() {
-        return wrong("is interactive and prints no data", "in programs, use `armctl status --watch -o jsonl`");
+        return invalid("is interactive and prints no data", "in programs, use `armctl status --watch -o jsonl`");
     }
     if run.repeat.count.is_some() || run.repeat.until.is_some() {
-        return wrong(
+        return invalid(
             "runs until `q`, and cannot wait for a condition",
             "wait with `armctl status --until FILTER`, or end after N polls with --watch and --count N",
         );
     }
     if run.gate.dry_run {
-        return wrong("has no dry run: it only reads", "see some of its reads: `armctl status --dry-run`");
+        return invalid("has no dry run: it only reads", "see some of its reads: `armctl status --dry-run`");
     }
     if run.trace.is_some() {
-        return wrong("does not record its traffic", "use --trace with `armctl status --watch`");
+        return invalid("does not record its traffic", "use --trace with `armctl status --watch`");
     }
-    if every < LEAST {
-        return wrong("polls at most every 50ms", "use --watch 50ms or more");
+    if every < MIN_INTERVAL {
+        return invalid("polls at most every 50ms", "use --watch 50ms or more");
     }
     Ok(())
 }
 
-fn wish_of(model: &Model) -> Wish {
-    Wish { whole: model.open(), longest_pause: LONGEST_PAUSE, ..Wish::every(model.every) }
+fn poll_request(model: &Model) -> PollRequest {
+    PollRequest { whole: model.open(), longest_pause: MAX_BACKOFF, ..PollRequest::every(model.every) }
 }
 
 /// The screen and its inputs.
@@ -133,12 +133,12 @@ impl View<'_> {
         let mut drawn = Instant::now();
         let mut has_updates = false;
         loop {
-            let due = drawn + if has_updates { PICTURE } else { TICK };
+            let due = drawn + if has_updates { FRAME_INTERVAL } else { TICK };
             tokio::select! {
                 biased;
                 event = events.recv() => {
                     let Some(event) = event else { return Err(Failure::new(Kind::Interrupted, "the terminal was closed")) };
-                    if self.heed(&event)? {
+                    if self.execute(&event)? {
                         return Ok(());
                     }
                     // Several keys at once make one screen update.
@@ -154,7 +154,7 @@ impl View<'_> {
                     }
                 }
                 Some(told) = self.updates.next() => {
-                    has_updates |= self.take(told);
+                    has_updates |= self.handle_event(told);
                     continue;
                 }
             }
@@ -165,15 +165,15 @@ impl View<'_> {
     }
 
     /// Handles a poller event. Returns whether the screen changes.
-    fn take(&mut self, told: poll::Event) -> bool {
+    fn handle_event(&mut self, message: poll::Event) -> bool {
         let now = self.start.elapsed();
-        match told {
-            poll::Event::Appeared(robot) => self.model.appear(&robot),
-            poll::Event::Gone(robot) => self.model.leave(&RobotId::of(&robot)),
-            told => return self.model.hear(now, told),
+        match message {
+            poll::Event::Appeared(robot) => self.model.add_robot(&robot),
+            poll::Event::Gone(robot) => self.model.remove_robot(&RobotId::for_robot(&robot)),
+            told => return self.model.handle_event(now, told),
         }
         // Another robot can be open now.
-        self.updates.wish(wish_of(&self.model));
+        self.updates.wish(poll_request(&self.model));
         true
     }
 
@@ -183,16 +183,16 @@ impl View<'_> {
     }
 
     /// Handles a terminal event. Returns whether to quit.
-    fn heed(&mut self, event: &Event) -> Result<bool, Failure> {
+    fn execute(&mut self, event: &Event) -> Result<bool, Failure> {
         let Event::Key(key) = event else { return Ok(false) };
-        match order(*key, self.model.is_typing) {
+        match action(*key, self.model.is_typing) {
             Some(KeyAction::Quit) => return Ok(true),
             Some(KeyAction::Interrupt) => return Err(Failure::new(Kind::Interrupted, "Ctrl-C")),
             Some(KeyAction::Suspend) => self.terminal.suspend()?,
             Some(KeyAction::Refresh) => self.terminal.refresh()?,
             Some(order) => {
-                self.model.obey(self.start.elapsed(), order);
-                self.updates.wish(wish_of(&self.model));
+                self.model.handle_key(self.start.elapsed(), order);
+                self.updates.wish(poll_request(&self.model));
             }
             None => {}
         }

@@ -29,7 +29,7 @@ const INTERVALS: [Duration; 8] = [
     Duration::from_secs(30),
 ];
 /// An answer is out of date after this number of intervals, but not before this time.
-const OLD_AFTER: (u32, Duration) = (3, Duration::from_secs(2));
+const STALE_AFTER: (u32, Duration) = (3, Duration::from_secs(2));
 /// Longest filter.
 const FILTER: usize = 40;
 
@@ -38,9 +38,9 @@ const FILTER: usize = 40;
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub struct Model {
     /// Current robots; a pause shows older data.
-    robots: Vec<Seen>,
+    robots: Vec<RobotRow>,
     /// Start and data of a pause.
-    frozen: Option<(Moment, Vec<Seen>)>,
+    frozen: Option<(Moment, Vec<RobotRow>)>,
     /// Polling interval.
     pub every: Duration,
     /// Selected robot.
@@ -65,9 +65,9 @@ pub struct Model {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sort {
     /// As selected, or as in the inventory.
-    Given,
+    Unsorted,
     /// Most severe first.
-    Trouble,
+    BySeverity,
     /// By name.
     Name,
     /// Slowest answer first.
@@ -76,8 +76,8 @@ pub enum Sort {
 
 impl Sort {
     const ALL: [(Self, &'static str); 4] = [
-        (Self::Given, "inventory order"),
-        (Self::Trouble, "alarms first"),
+        (Self::Unsorted, "inventory order"),
+        (Self::BySeverity, "alarms first"),
         (Self::Name, "by name"),
         (Self::Answer, "slowest first"),
     ];
@@ -95,7 +95,7 @@ impl Sort {
 
 /// A robot of the view.
 #[derive(Debug, Clone)]
-pub struct Seen {
+pub struct RobotRow {
     /// Name.
     pub name: String,
     /// Family.
@@ -119,9 +119,9 @@ pub enum Contact {
     /// Not polled yet, or no answer yet.
     Waiting,
     /// It answers.
-    Answers,
+    Reachable,
     /// The last poll failed.
-    Fails(Failure),
+    Unreachable(Failure),
 }
 
 /// Severity of a robot's state, in rising order.
@@ -141,14 +141,14 @@ impl Model {
     /// Creates a view without data.
     pub fn new(robots: &[Robot], every: Duration) -> Self {
         Self {
-            robots: robots.iter().map(Seen::new).collect(),
+            robots: robots.iter().map(RobotRow::new).collect(),
             frozen: None,
             every,
             cursor: 0,
             // A single robot needs no list.
             is_open: robots.len() == 1,
             axis: 0,
-            sort: Sort::Given,
+            sort: Sort::Unsorted,
             filter: String::new(),
             is_typing: false,
             has_help: false,
@@ -163,21 +163,21 @@ impl Model {
     }
 
     /// Selects an axis by name, if it exists.
-    pub fn choose_axis(&mut self, name: &str) {
-        let axes = self.chosen().and_then(Seen::sample).and_then(|sample| sample.whole.as_ref());
+    pub fn select_axis(&mut self, name: &str) {
+        let axes = self.selected_robot().and_then(RobotRow::sample).and_then(|sample| sample.full.as_ref());
         let found = axes.and_then(|whole| whole.axes.iter().position(|axis| axis.name.eq_ignore_ascii_case(name)));
         self.axis = found.unwrap_or(self.axis);
     }
 
     /// Handles a poller event of a robot. Returns whether anything is new.
-    pub fn hear(&mut self, now: Moment, told: Event) -> bool {
+    pub fn handle_event(&mut self, now: Moment, told: Event) -> bool {
         let (robot, looked) = match told {
-            Event::Looked(look) => {
+            Event::Polled(look) => {
                 // The user can correct an unreadable text file, so show its error.
                 let looked = look.unexplained.clone().map_or_else(|| Ok(look.sample.clone()), Err);
-                (RobotId::of(&look.robot), looked)
+                (RobotId::for_robot(&look.robot), looked)
             }
-            Event::Failed { robot, failure, .. } => (RobotId::of(&robot), Err(failure)),
+            Event::Failed { robot, failure, .. } => (RobotId::for_robot(&robot), Err(failure)),
             Event::Appeared(_) | Event::Gone(_) | Event::Inventory(_) => return false,
         };
         let at = self.robots.iter().position(|seen| seen.id() == robot);
@@ -188,17 +188,17 @@ impl Model {
     }
 
     /// A robot was added or changed.
-    pub fn appear(&mut self, robot: &Robot) {
-        if !self.robots.iter().any(|seen| seen.id() == RobotId::of(robot)) {
-            self.robots.push(Seen::new(robot));
+    pub fn add_robot(&mut self, robot: &Robot) {
+        if !self.robots.iter().any(|seen| seen.id() == RobotId::for_robot(robot)) {
+            self.robots.push(RobotRow::new(robot));
         }
     }
 
     /// A robot was removed.
-    pub fn leave(&mut self, robot: &RobotId) {
-        let chosen = self.chosen().map(Seen::id);
+    pub fn remove_robot(&mut self, robot: &RobotId) {
+        let selected = self.selected_robot().map(RobotRow::id);
         self.robots.retain(|seen| seen.id() != *robot);
-        self.choose(chosen.as_ref());
+        self.choose(selected.as_ref());
     }
 
     /// Selects a robot if it is still present.
@@ -220,12 +220,12 @@ impl Model {
     }
 
     /// The shown robots in their original order.
-    pub fn robots(&self) -> &[Seen] {
+    pub fn robots(&self) -> &[RobotRow] {
         self.frozen.as_ref().map_or(&self.robots, |(_, robots)| robots)
     }
 
     /// The shown time.
-    pub fn moment(&self, now: Moment) -> Moment {
+    pub fn displayed_time(&self, now: Moment) -> Moment {
         self.frozen.as_ref().map_or(now, |(since, _)| *since)
     }
 
@@ -236,22 +236,22 @@ impl Model {
 
     /// The robot with the open screen; it is polled in full detail.
     pub fn open(&self) -> Option<RobotId> {
-        self.chosen().filter(|_| self.is_open).map(Seen::id)
+        self.selected_robot().filter(|_| self.is_open).map(RobotRow::id)
     }
 
     /// The selected robot.
-    pub fn chosen(&self) -> Option<&Seen> {
+    pub fn selected_robot(&self) -> Option<&RobotRow> {
         self.robots().get(self.cursor)
     }
 
     /// Indexes of the robots in the list, sorted and filtered.
-    pub fn listed(&self) -> Vec<usize> {
+    pub fn visible_robots(&self) -> Vec<usize> {
         let robots = self.robots();
-        let wanted = self.filter.to_lowercase();
-        let mut listed: Vec<usize> = (0..robots.len()).filter(|robot| robots[*robot].has(&wanted)).collect();
+        let matches_filter = self.filter.to_lowercase();
+        let mut listed: Vec<usize> = (0..robots.len()).filter(|robot| robots[*robot].has(&matches_filter)).collect();
         match self.sort {
-            Sort::Given => {}
-            Sort::Trouble => listed.sort_by_key(|robot| std::cmp::Reverse(robots[*robot].trouble())),
+            Sort::Unsorted => {}
+            Sort::BySeverity => listed.sort_by_key(|robot| std::cmp::Reverse(robots[*robot].trouble())),
             Sort::Name => listed.sort_by(|a, b| robots[*a].name.cmp(&robots[*b].name)),
             Sort::Answer => listed.sort_by_key(|robot| std::cmp::Reverse(robots[*robot].answers.back())),
         }
@@ -259,7 +259,7 @@ impl Model {
     }
 
     /// Handles a key, except actions of the process, which the caller handles.
-    pub fn obey(&mut self, now: Moment, order: KeyAction) {
+    pub fn handle_key(&mut self, now: Moment, order: KeyAction) {
         // Any key closes the help.
         if std::mem::take(&mut self.has_help) {
             return;
@@ -271,12 +271,12 @@ impl Model {
             KeyAction::Down(steps) => self.step(|at, last| at.saturating_add(steps).min(last)),
             KeyAction::Previous => self.step(|at, _| at.saturating_sub(1)),
             KeyAction::Next => self.step(|at, last| (at + 1).min(last)),
-            KeyAction::Open => self.is_open = !self.listed().is_empty(),
+            KeyAction::Open => self.is_open = !self.visible_robots().is_empty(),
             KeyAction::Back if !self.is_open => self.filter.clear(),
             KeyAction::Back => self.is_open = false,
             KeyAction::Sort => self.sort = self.sort.next(),
             KeyAction::Pause if self.is_paused() => {
-                let chosen = self.chosen().map(Seen::id);
+                let chosen = self.selected_robot().map(RobotRow::id);
                 self.frozen = None;
                 self.choose(chosen.as_ref());
             }
@@ -287,8 +287,8 @@ impl Model {
             KeyAction::Filter => (self.is_typing, self.is_open) = (true, false),
             KeyAction::Type(character) if self.filter.chars().count() < FILTER => self.filter.push(character),
             KeyAction::Erase => _ = self.filter.pop(),
-            KeyAction::Keep => self.is_typing = false,
-            KeyAction::Discard => (self.is_typing, self.filter) = (false, String::new()),
+            KeyAction::ApplyFilter => self.is_typing = false,
+            KeyAction::CancelFilter => (self.is_typing, self.filter) = (false, String::new()),
             KeyAction::Type(_) | KeyAction::Quit | KeyAction::Interrupt | KeyAction::Suspend | KeyAction::Refresh => {}
         }
         self.keep_cursor();
@@ -296,7 +296,7 @@ impl Model {
 
     /// Moves the selection in the list.
     fn step(&mut self, to: impl FnOnce(usize, usize) -> usize) {
-        let listed = self.listed();
+        let listed = self.visible_robots();
         let at = listed.iter().position(|robot| *robot == self.cursor).unwrap_or_default();
         if let Some(robot) = listed.get(to(at, listed.len().saturating_sub(1))) {
             self.cursor = *robot;
@@ -307,7 +307,7 @@ impl Model {
 
     /// Keeps the selection on a robot of the list.
     fn keep_cursor(&mut self) {
-        let listed = self.listed();
+        let listed = self.visible_robots();
         if !self.is_open
             && !listed.contains(&self.cursor)
             && let Some(first) = listed.first()
@@ -317,11 +317,11 @@ impl Model {
     }
 
     fn last_axis(&self) -> usize {
-        self.chosen().map_or(0, |seen| seen.tracks.len().saturating_sub(1))
+        self.selected_robot().map_or(0, |seen| seen.tracks.len().saturating_sub(1))
     }
 }
 
-impl Seen {
+impl RobotRow {
     fn new(robot: &Robot) -> Self {
         Self {
             name: robot.name.clone(),
@@ -350,18 +350,18 @@ impl Seen {
         let sample = match looked {
             Ok(sample) => sample,
             Err(failure) => {
-                self.contact = Contact::Fails(failure);
+                self.contact = Contact::Unreachable(failure);
                 return;
             }
         };
-        self.contact = Contact::Answers;
+        self.contact = Contact::Reachable;
         if let Some(answered_in) = sample.answered_in {
             if self.answers.len() == ANSWERS {
                 self.answers.pop_front();
             }
             self.answers.push_back(answered_in);
         }
-        if let Some(whole) = &sample.whole {
+        if let Some(whole) = &sample.full {
             if !Track::fit(&self.tracks, &whole.axes) {
                 self.tracks = whole.axes.iter().map(Track::new).collect();
             }
@@ -369,13 +369,13 @@ impl Seen {
                 track.push(now, every, axis);
             }
         }
-        let whole = sample.whole.or_else(|| self.last.take().and_then(|(_, last)| last.whole));
-        self.last = Some((now, Sample { whole, ..sample }));
+        let whole = sample.full.or_else(|| self.last.take().and_then(|(_, last)| last.full));
+        self.last = Some((now, Sample { full: whole, ..sample }));
     }
 
     /// Newest sample, while the robot answers.
     pub fn sample(&self) -> Option<&Sample> {
-        let answers = matches!(self.contact, Contact::Answers);
+        let answers = matches!(self.contact, Contact::Reachable);
         self.last.as_ref().filter(|_| answers).map(|(_, sample)| sample)
     }
 
@@ -385,14 +385,14 @@ impl Seen {
     }
 
     /// Whether the last answer is out of date.
-    pub fn is_old(&self, now: Moment, every: Duration) -> bool {
-        let (intervals, least) = OLD_AFTER;
+    pub fn is_stale(&self, now: Moment, every: Duration) -> bool {
+        let (intervals, least) = STALE_AFTER;
         self.age(now).is_some_and(|age| age > every.saturating_mul(intervals).max(least))
     }
 
     /// Severity of its state.
     pub fn trouble(&self) -> Severity {
-        if let Contact::Fails(_) = self.contact {
+        if let Contact::Unreachable(_) = self.contact {
             return Severity::Silent;
         }
         let Some(line) = self.sample().map(|sample| &sample.line) else { return Severity::Held };
@@ -405,16 +405,16 @@ impl Seen {
 
     /// Short alarm text and its tone.
     pub fn alarm(&self) -> (String, Tone) {
-        if let Contact::Fails(failure) = &self.contact {
-            return (in_short(failure.kind).to_owned(), Tone::Bad);
+        if let Contact::Unreachable(failure) = &self.contact {
+            return (format_short(failure.kind).to_owned(), Tone::Bad);
         }
         let Some(sample) = self.sample() else { return ("waiting".to_owned(), Tone::Plain) };
-        sample.line.trouble().map_or_else(Default::default, |told| (told, Tone::Bad))
+        sample.line.fault_text().map_or_else(Default::default, |told| (told, Tone::Bad))
     }
 }
 
 /// Short reason for a missing sample.
-fn in_short(kind: Kind) -> &'static str {
+fn format_short(kind: Kind) -> &'static str {
     match kind {
         Kind::NoAnswer => "no answer",
         Kind::Refused => "refuses to report",
@@ -435,7 +435,7 @@ fn nearest(every: Duration, faster: bool) -> Duration {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{fleet, sample, silence};
+    use super::super::testing::{fail, fleet, sample};
     use super::*;
     use crate::command::robot::state::Fault;
 
@@ -443,129 +443,129 @@ mod tests {
     const EVERY: Duration = Duration::from_millis(500);
 
     fn names(model: &Model) -> Vec<&str> {
-        model.listed().into_iter().map(|robot| model.robots()[robot].name.as_str()).collect()
+        model.visible_robots().into_iter().map(|robot| model.robots()[robot].name.as_str()).collect()
     }
 
     #[test]
-    fn trouble_comes_first_if_that_is_wanted() {
+    fn sorts_by_severity() {
         let mut model = Model::new(&fleet(4), EVERY);
         model.take(NOW, 0, Ok(sample(0.0)));
-        model.take(NOW, 1, Err(silence()));
+        model.take(NOW, 1, Err(fail()));
         let mut alarmed = sample(0.0);
         alarmed.line.state.fault = Fault::new(true, None);
         model.take(NOW, 2, Ok(alarmed));
         assert_eq!(names(&model), ["cell1", "cell2", "cell3", "cell4"]);
-        model.obey(NOW, KeyAction::Sort);
+        model.handle_key(NOW, KeyAction::Sort);
         assert_eq!(names(&model), ["cell2", "cell3", "cell4", "cell1"]);
         assert_eq!(model.robots()[1].alarm(), ("no answer".to_owned(), Tone::Bad));
     }
 
     #[test]
-    fn the_filter_keeps_the_cursor_in_the_list() {
+    fn filter_keeps_the_cursor_in_the_list() {
         let mut model = Model::new(&fleet(12), EVERY);
-        model.obey(NOW, KeyAction::Filter);
-        "L1".chars().for_each(|character| model.obey(NOW, KeyAction::Type(character)));
+        model.handle_key(NOW, KeyAction::Filter);
+        "L1".chars().for_each(|character| model.handle_key(NOW, KeyAction::Type(character)));
         assert_eq!(names(&model), ["cell1", "cell10", "cell11", "cell12"]);
-        model.obey(NOW, KeyAction::Type('2'));
+        model.handle_key(NOW, KeyAction::Type('2'));
         assert_eq!((names(&model), model.cursor), (vec!["cell12"], 11));
-        model.obey(NOW, KeyAction::Type('x'));
+        model.handle_key(NOW, KeyAction::Type('x'));
         assert!(names(&model).is_empty());
-        model.obey(NOW, KeyAction::Keep);
-        model.obey(NOW, KeyAction::Open);
+        model.handle_key(NOW, KeyAction::ApplyFilter);
+        model.handle_key(NOW, KeyAction::Open);
         assert!(!model.is_open, "there is none to open");
-        model.obey(NOW, KeyAction::Back);
-        assert_eq!((model.listed().len(), model.cursor), (12, 11));
+        model.handle_key(NOW, KeyAction::Back);
+        assert_eq!((model.visible_robots().len(), model.cursor), (12, 11));
     }
 
     #[test]
-    fn a_pause_shows_what_was_and_loses_nothing() {
+    fn pause_freezes_the_display_without_losing_data() {
         let mut model = Model::new(&fleet(1), EVERY);
         model.take(NOW, 0, Ok(sample(1.0)));
-        model.obey(NOW, KeyAction::Pause);
+        model.handle_key(NOW, KeyAction::Pause);
         let later = NOW + EVERY;
         model.take(later, 0, Ok(sample(2.0)));
         assert_eq!(model.robots()[0].tracks[0].positions.len(), 1);
-        assert_eq!(model.moment(later), NOW);
-        model.obey(later, KeyAction::Pause);
+        assert_eq!(model.displayed_time(later), NOW);
+        model.handle_key(later, KeyAction::Pause);
         assert_eq!(model.robots()[0].tracks[0].positions.len(), 2);
-        assert_eq!(model.moment(later), later);
+        assert_eq!(model.displayed_time(later), later);
     }
 
     #[test]
-    fn only_the_open_robot_is_asked_for_everything() {
+    fn polls_full_detail_of_the_open_robot_only() {
         let mut model = Model::new(&fleet(2), EVERY);
         assert_eq!(model.open(), None);
-        model.obey(NOW, KeyAction::Open);
+        model.handle_key(NOW, KeyAction::Open);
         let id = |model: &Model, at: usize| Some(model.robots[at].id());
         assert_eq!(model.open(), id(&model, 0));
-        model.obey(NOW, KeyAction::Next);
+        model.handle_key(NOW, KeyAction::Next);
         assert_eq!(model.open(), id(&model, 1));
-        model.obey(NOW, KeyAction::Back);
+        model.handle_key(NOW, KeyAction::Back);
         assert_eq!(model.open(), None);
         let single = Model::new(&fleet(1), EVERY);
         assert_eq!(single.open(), id(&single, 0), "a single one needs no list");
     }
 
     #[test]
-    fn intervals_go_up_and_down_in_steps() {
+    fn changes_the_interval_in_steps() {
         let mut model = Model::new(&fleet(1), Duration::from_millis(300));
-        model.obey(NOW, KeyAction::Faster);
+        model.handle_key(NOW, KeyAction::Faster);
         assert_eq!(model.every, Duration::from_millis(200));
-        (0..9).for_each(|_| model.obey(NOW, KeyAction::Faster));
+        (0..9).for_each(|_| model.handle_key(NOW, KeyAction::Faster));
         assert_eq!(model.every, Duration::from_millis(100));
-        (0..9).for_each(|_| model.obey(NOW, KeyAction::Slower));
+        (0..9).for_each(|_| model.handle_key(NOW, KeyAction::Slower));
         assert_eq!(model.every, Duration::from_secs(30));
     }
 
     #[test]
-    fn what_a_robot_said_before_it_fell_silent_is_not_shown_as_if_it_were_now() {
+    fn hides_outdated_data_of_a_silent_robot() {
         let mut model = Model::new(&fleet(1), EVERY);
         model.take(NOW, 0, Ok(sample(1.0)));
-        model.take(NOW + EVERY, 0, Err(silence()));
+        model.take(NOW + EVERY, 0, Err(fail()));
         let seen = &model.robots()[0];
         assert_eq!(seen.sample(), None);
         assert_eq!(seen.age(NOW + EVERY), Some(EVERY));
-        assert!(seen.is_old(NOW + Duration::from_secs(3), EVERY));
+        assert!(seen.is_stale(NOW + Duration::from_secs(3), EVERY));
         model.take(NOW + 2 * EVERY, 0, Ok(sample(2.0)));
         assert!(model.robots()[0].sample().is_some());
     }
 
     #[test]
-    fn robots_come_and_go_and_the_cursor_stays_at_its_own() {
+    fn cursor_stays_at_its_robot() {
         let robots = fleet(4);
         let mut model = Model::new(&robots[..3], EVERY);
-        model.obey(NOW, KeyAction::Down(2));
-        model.obey(NOW, KeyAction::Open);
-        model.appear(&robots[0]);
+        model.handle_key(NOW, KeyAction::Down(2));
+        model.handle_key(NOW, KeyAction::Open);
+        model.add_robot(&robots[0]);
         assert_eq!(names(&model), ["cell1", "cell2", "cell3"], "one that is known is not there twice");
-        model.leave(&RobotId::of(&robots[0]));
+        model.remove_robot(&RobotId::for_robot(&robots[0]));
         assert_eq!((names(&model), model.cursor, model.is_open), (vec!["cell2", "cell3"], 1, true));
-        model.appear(&robots[3]);
-        assert_eq!(model.chosen().map(|seen| seen.name.as_str()), Some("cell3"));
+        model.add_robot(&robots[3]);
+        assert_eq!(model.selected_robot().map(|seen| seen.name.as_str()), Some("cell3"));
         // A pause shows old data. After it, the same robot is selected.
-        model.obey(NOW, KeyAction::Pause);
-        model.leave(&RobotId::of(&robots[1]));
+        model.handle_key(NOW, KeyAction::Pause);
+        model.remove_robot(&RobotId::for_robot(&robots[1]));
         assert_eq!(names(&model), ["cell2", "cell3", "cell4"]);
-        model.obey(NOW, KeyAction::Pause);
+        model.handle_key(NOW, KeyAction::Pause);
         assert_eq!((names(&model), model.cursor, model.is_open), (vec!["cell3", "cell4"], 0, true));
-        model.leave(&RobotId::of(&robots[2]));
+        model.remove_robot(&RobotId::for_robot(&robots[2]));
         assert_eq!((names(&model), model.is_open), (vec!["cell4"], false), "nothing is shown of one that has gone");
-        model.leave(&RobotId::of(&robots[3]));
-        assert!(model.chosen().is_none() && model.open().is_none());
+        model.remove_robot(&RobotId::for_robot(&robots[3]));
+        assert!(model.selected_robot().is_none() && model.open().is_none());
     }
 
     #[test]
-    fn cursors_stay_where_there_is_something() {
+    fn cursor_stays_in_range() {
         let mut model = Model::new(&fleet(3), EVERY);
-        model.obey(NOW, KeyAction::Down(99));
+        model.handle_key(NOW, KeyAction::Down(99));
         assert_eq!(model.cursor, 2);
-        model.obey(NOW, KeyAction::Up(99));
+        model.handle_key(NOW, KeyAction::Up(99));
         assert_eq!(model.cursor, 0);
         model.take(NOW, 0, Ok(sample(0.0)));
-        model.obey(NOW, KeyAction::Open);
-        model.obey(NOW, KeyAction::Down(99));
+        model.handle_key(NOW, KeyAction::Open);
+        model.handle_key(NOW, KeyAction::Down(99));
         assert_eq!(model.axis, model.robots()[0].tracks.len() - 1);
-        model.obey(NOW, KeyAction::Next);
+        model.handle_key(NOW, KeyAction::Next);
         assert_eq!((model.cursor, model.axis), (1, 0));
         let mut empty = Model::new(&[], EVERY);
         for order in [
@@ -576,8 +576,8 @@ mod tests {
             KeyAction::Open,
             KeyAction::Back,
         ] {
-            empty.obey(NOW, order);
+            empty.handle_key(NOW, order);
         }
-        assert!(empty.chosen().is_none());
+        assert!(empty.selected_robot().is_none());
     }
 }

@@ -66,7 +66,7 @@ pub fn sample(position: f64) -> Sample {
             indicator("running", true, Tone::Good),
             indicator("hold", false, Tone::Warning),
             indicator("alarm", false, Tone::Bad),
-            Indicator::should("CPU OK", true, Tone::Bad),
+            Indicator::expected("CPU OK", true, Tone::Bad),
         ],
         axes: vec![
             joint("S", position, 12.0),
@@ -81,11 +81,11 @@ pub fn sample(position: f64) -> Sample {
         ],
         not_asked: None,
     };
-    Sample { line, answered_in: Some(Duration::from_micros(4200)), alarms: Vec::new(), whole: Some(whole) }
+    Sample { line, answered_in: Some(Duration::from_micros(4200)), alarms: Vec::new(), full: Some(whole) }
 }
 
 /// The same with two alarms, whose text contains terminal control characters.
-pub fn alarmed() -> Sample {
+pub fn with_alarm() -> Sample {
     let mut alarmed = sample(0.0);
     alarmed.line.state.running = Some(false);
     let alarm =
@@ -97,7 +97,7 @@ pub fn alarmed() -> Sample {
 }
 
 /// No answer.
-pub fn silence() -> Failure {
+pub fn fail() -> Failure {
     Failure::new(Kind::NoAnswer, "cell2 (udp://192.168.1.2): no answer within 3s")
         .hint("check address, cable and firewall")
 }

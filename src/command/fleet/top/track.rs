@@ -9,7 +9,7 @@ use crate::command::face::sample::Axis;
 /// Limit of stored points.
 const POINTS: usize = 600;
 /// Time range of a chart in intervals, and its minimum.
-const SHOWN: (u32, Duration) = (120, Duration::from_secs(30));
+const MAX_AGE: (u32, Duration) = (120, Duration::from_secs(30));
 
 /// History of an axis. Times are in seconds since the view started.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +60,7 @@ impl Track {
 
 /// Time range of a chart.
 pub fn window(every: Duration) -> Duration {
-    let (intervals, least) = SHOWN;
+    let (intervals, least) = MAX_AGE;
     every.saturating_mul(intervals).max(least)
 }
 
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn the_past_is_bounded_by_time_and_by_number() {
+    fn limits_history_by_time_and_number() {
         let every = Duration::from_millis(500);
         let mut track = Track::new(&axis(0.0));
         for look in 0..1000_u32 {
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn other_axes_begin_anew() {
+    fn other_axes_start_a_new_track() {
         let tracks = [Track::new(&axis(0.0))];
         assert!(Track::fit(&tracks, &[axis(5.0)]));
         assert!(!Track::fit(&tracks, &[Axis { unit: "mm", ..axis(5.0) }]));

@@ -6,7 +6,7 @@ use jiff::Timestamp;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::silences::Said;
+use super::failure_log::RoundFailures;
 use super::{Run, RunError};
 use crate::command::frame::{AnyCommand, AnyReport, Outcome};
 use crate::failure::Failure;
@@ -55,7 +55,7 @@ impl Run {
             let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
             self.emit(self.of_stream(envelope))?;
         }
-        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: self.screen.is_json() }))
+        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: self.screen.is_json() }))
     }
 
     /// Writes what several robots reported, and says it as envelopes.
@@ -64,14 +64,16 @@ impl Run {
         command: &dyn AnyCommand,
         robots: &[Robot],
         outcomes: &[Outcome],
-        (place, said): (ReportPosition<'_>, &mut Said<'_>),
+        (place, said): (ReportPosition<'_>, &mut RoundFailures<'_>),
     ) -> Result<Vec<Envelope>, Failure> {
-        let envelopes = enveloped_all(robots, command.id(), outcomes)?;
+        let envelopes = envelopes(robots, command.id(), outcomes)?;
         if !self.is_for_people() {
             if self.screen.format == Format::Jsonl {
-                envelopes.iter().try_for_each(|envelope| self.emit(timed(envelope.clone())))?;
+                envelopes.iter().try_for_each(|envelope| self.emit(with_time(envelope.clone())))?;
             } else {
-                self.write(&envelopes.iter().cloned().map(|envelope| self.marked(envelope)).collect::<Vec<_>>())?;
+                self.write(
+                    &envelopes.iter().cloned().map(|envelope| self.with_time_mark(envelope)).collect::<Vec<_>>(),
+                )?;
             }
             return Ok(envelopes);
         }
@@ -102,7 +104,7 @@ impl Run {
         if let Some(summary) = summary.and_then(|summary| said.summary(summary).map(str::to_owned)) {
             self.screen.note(&summary);
         }
-        for failure in alike(&reasons) {
+        for failure in common_failures(&reasons) {
             self.redraw.forget();
             self.screen.failure(&failure);
         }
@@ -146,14 +148,14 @@ impl Run {
                 place => self.show_one(report, place),
             };
         }
-        let envelope = enveloped(robot, id, Ok(report))?;
+        let envelope = envelope(robot, id, Ok(report))?;
         let is_stream = self.screen.format == Format::Jsonl || !matches!(place, ReportPosition::Alone);
-        self.emit(if is_stream { timed(envelope) } else { envelope })
+        self.emit(if is_stream { with_time(envelope) } else { envelope })
     }
 
     /// Adds the time to an envelope in a stream format.
     fn of_stream(&self, envelope: Envelope) -> Envelope {
-        if self.screen.format == Format::Jsonl { timed(envelope) } else { envelope }
+        if self.screen.format == Format::Jsonl { with_time(envelope) } else { envelope }
     }
 
     /// Starts a round of a watch. On a terminal it replaces the previous round; lines of a log stay.
@@ -170,10 +172,10 @@ impl Run {
 
     /// Writes an envelope.
     pub(super) fn emit(&self, envelope: Envelope) -> Result<(), Failure> {
-        self.write(&self.marked(envelope))
+        self.write(&self.with_time_mark(envelope))
     }
 
-    fn marked(&self, envelope: Envelope) -> Envelope {
+    fn with_time_mark(&self, envelope: Envelope) -> Envelope {
         match &self.line {
             Some(line) => line.marked(envelope),
             None => envelope,
@@ -183,7 +185,7 @@ impl Run {
     /// Writes JSON, or the results of the filter, one per line: strings raw, the rest as JSON.
     fn write(&self, value: &impl Serialize) -> Result<(), Failure> {
         let value = match &self.line {
-            Some(line) => line.pass(as_value(value)?),
+            Some(line) => line.stop_passing(as_value(value)?),
             None if self.filter.is_none() => return self.screen.json(value),
             None => Some(as_value(value)?),
         };
@@ -267,16 +269,16 @@ fn sheet_of(report: &dyn AnyReport) -> Sheet {
 }
 
 /// Failures of robots, with common ones merged.
-fn alike(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
+fn common_failures(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
     /// Maximum number of robots that are listed individually.
-    const FEW: usize = 5;
+    const MIN_GROUP: usize = 5;
     /// Maximum number of robot names in a merged failure.
-    const NAMED: usize = 3;
+    const MAX_NAMES: usize = 3;
 
     let why = |(robot, failure): &(&Robot, Failure)| {
         let message = failure.message.strip_prefix(&robot.label()).unwrap_or(&failure.message);
-        let hint = failure.hint.as_ref().map(|hint| general(hint, robot));
-        (failure.kind, general(message.trim_start_matches(": "), robot), hint)
+        let hint = failure.hint.as_ref().map(|hint| generalize(hint, robot));
+        (failure.kind, generalize(message.trim_start_matches(": "), robot), hint)
     };
     let mut groups: Vec<(_, Vec<&(&Robot, Failure)>)> = Vec::new();
     let mut places = HashMap::new();
@@ -289,26 +291,28 @@ fn alike(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
         groups[at].1.push(reason);
     }
     let told = groups.into_iter().flat_map(|((kind, message, hint), all)| {
-        if all.len() <= FEW {
-            return all.into_iter().map(|(robot, failure)| named(robot, failure.clone())).collect();
+        if all.len() <= MIN_GROUP {
+            return all.into_iter().map(|(robot, failure)| with_robot_name(robot, failure.clone())).collect();
         }
-        let names: Vec<&str> = all.iter().take(NAMED).map(|(robot, _)| robot.name.as_str()).collect();
-        let message = format!("{} and {} more robots: {message}", names.join(", "), all.len() - NAMED);
+        let names: Vec<&str> = all.iter().take(MAX_NAMES).map(|(robot, _)| robot.name.as_str()).collect();
+        let message = format!("{} and {} more robots: {message}", names.join(", "), all.len() - MAX_NAMES);
         vec![Failure { hint, ..Failure::new(kind, message) }]
     });
     told.collect()
 }
 
 /// Text with the name, host and port of the robot replaced by dots.
-fn general(text: &str, robot: &Robot) -> String {
+fn generalize(text: &str, robot: &Robot) -> String {
     let url = robot.target.value.url();
     let parts = url.split(|one: char| !one.is_alphanumeric() && !"._-".contains(one));
     let parts = parts.filter(|part| part.len() > 1 && part.contains(|one: char| one.is_ascii_digit()));
-    std::iter::once(robot.name.as_str()).chain(parts).fold(text.replace(url, "…"), |text, part| without(&text, part))
+    std::iter::once(robot.name.as_str())
+        .chain(parts)
+        .fold(text.replace(url, "…"), |text, part| without_part(&text, part))
 }
 
 /// Text with a word replaced by dots.
-fn without(text: &str, word: &str) -> String {
+fn without_part(text: &str, word: &str) -> String {
     let is_part = |one: Option<char>| one.is_some_and(|one| one.is_alphanumeric() || one == '_' || one == '-');
     let mut out = String::with_capacity(text.len());
     let mut done = 0;
@@ -325,7 +329,7 @@ fn without(text: &str, word: &str) -> String {
 }
 
 /// Failure with the robot's name, unless a link failure already has it.
-pub(super) fn named(robot: &Robot, failure: Failure) -> Failure {
+pub(super) fn with_robot_name(robot: &Robot, failure: Failure) -> Failure {
     let label = robot.label();
     let is_named = failure.message.starts_with(&label);
     let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
@@ -333,12 +337,12 @@ pub(super) fn named(robot: &Robot, failure: Failure) -> Failure {
 }
 
 /// Envelopes of reports or failures of several robots.
-pub(super) fn enveloped_all(robots: &[Robot], id: &str, outcomes: &[Outcome]) -> Result<Vec<Envelope>, Failure> {
+pub(super) fn envelopes(robots: &[Robot], id: &str, outcomes: &[Outcome]) -> Result<Vec<Envelope>, Failure> {
     let pairs = robots.iter().zip(outcomes);
-    pairs.map(|(robot, outcome)| enveloped(robot, id, outcome.as_deref().map_err(Clone::clone))).collect()
+    pairs.map(|(robot, outcome)| envelope(robot, id, outcome.as_deref().map_err(Clone::clone))).collect()
 }
 
-pub fn enveloped(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failure>) -> Result<Envelope, Failure> {
+pub fn envelope(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failure>) -> Result<Envelope, Failure> {
     let report = match outcome {
         Err(failure) => return Ok(Envelope::of(robot, id, Err(failure))),
         Ok(report) => report,
@@ -348,7 +352,7 @@ pub fn enveloped(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failur
     Ok(Envelope { ok: failure.is_none(), error: failure.map(Into::into), ..envelope })
 }
 
-pub fn timed(envelope: Envelope) -> Envelope {
+pub fn with_time(envelope: Envelope) -> Envelope {
     Envelope { time: Some(Timestamp::now()), ..envelope }
 }
 
@@ -365,7 +369,7 @@ mod tests {
     use crate::settings::inventory::Inventory;
 
     #[test]
-    fn failures_that_many_have_in_common_are_one() {
+    fn merges_common_failures() {
         let robots = |count: u16| -> Vec<Robot> {
             let one = |at: u16| {
                 format!("[[robot]]\nname = \"r{at}\"\nfamily = \"yerc\"\ntarget = \"udp://127.0.0.1:{}\"\n", 2000 + at)
@@ -383,7 +387,7 @@ mod tests {
                     .hint(format!("`armctl robots check {}`", robot.name))
             };
             let reasons: Vec<(&Robot, Failure)> = robots.iter().map(|robot| (robot, failure(robot))).collect();
-            alike(&reasons)
+            common_failures(&reasons)
                 .into_iter()
                 .map(|failure| format!("{} | {}", failure.message, failure.hint.unwrap()))
                 .collect()

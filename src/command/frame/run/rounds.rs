@@ -37,11 +37,11 @@ impl Repeat {
     /// Whether a wait ends with this failure of a robot: one in the first round, or another one than silence. Only a
     /// robot that answered before may be silent for a while.
     pub fn ends_with(&self, failure: &Failure, is_first: bool) -> bool {
-        self.is_quiet && !self.permits(failure) && (is_first || failure.kind != Kind::NoAnswer)
+        self.is_quiet && !self.allows(failure) && (is_first || failure.kind != Kind::NoAnswer)
     }
 
     /// Whether the condition is about a robot that does not answer.
-    pub fn permits(&self, failure: &Failure) -> bool {
+    pub fn allows(&self, failure: &Failure) -> bool {
         failure.kind == Kind::NoAnswer && self.until.as_ref().is_some_and(Condition::is_about_connection)
     }
 }
@@ -52,13 +52,13 @@ pub struct Rounds<'a> {
     repeat: &'a Repeat,
     every: Duration,
     began: Instant,
-    done: u32,
+    completed: u32,
 }
 
 impl<'a> Rounds<'a> {
     /// `every` is the default interval.
     pub fn new(repeat: &'a Repeat, every: Duration) -> Self {
-        Self { repeat, every: repeat.every.unwrap_or(every), began: Instant::now(), done: 0 }
+        Self { repeat, every: repeat.every.unwrap_or(every), began: Instant::now(), completed: 0 }
     }
 
     /// Deadline of `--for`.
@@ -67,18 +67,18 @@ impl<'a> Rounds<'a> {
     }
 
     pub fn is_first(&self) -> bool {
-        self.done == 0
+        self.completed == 0
     }
 
     /// Whether the condition is true. A condition that can never be true is reported in the first round.
     pub fn is_met(&self, value: &impl Serialize, screen: &Screen) -> Result<bool, Failure> {
         let Some(until) = &self.repeat.until else { return Ok(false) };
         let value = as_value(value)?;
-        if until.holds(&value)? {
+        if until.is_met(&value)? {
             return Ok(true);
         }
         if self.is_first()
-            && let Some(why) = until.never(&value)
+            && let Some(why) = until.check_keys(&value)
         {
             screen.note(&why);
         }
@@ -87,7 +87,7 @@ impl<'a> Rounds<'a> {
 
     /// Whether this is the last round.
     pub fn is_last(&self) -> bool {
-        let done = self.done.saturating_add(1);
+        let done = self.completed.saturating_add(1);
         self.repeat.count.is_some_and(|count| u64::from(done) >= count)
             || self.repeat.within.is_some_and(|within| self.every.saturating_mul(done) > within)
     }
@@ -95,8 +95,8 @@ impl<'a> Rounds<'a> {
     /// Waits for the next round; `false` if there is none.
     pub async fn next(&mut self) -> Result<bool, Failure> {
         let is_over = self.is_last();
-        self.done = self.done.saturating_add(1);
-        let next = self.began + self.every.saturating_mul(self.done);
+        self.completed = self.completed.saturating_add(1);
+        let next = self.began + self.every.saturating_mul(self.completed);
         if !is_over {
             let rest = async {
                 // Signals must be handled even without a pause.

@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use super::print::{ReportPosition, enveloped_all, named, timed};
+use super::failure_log::RoundFailures;
+use super::print::{ReportPosition, envelopes, with_robot_name, with_time};
 use super::rounds::Rounds;
-use super::silences::Said;
-use super::{EVERY, Granted, Run, RunError, at_a_time};
+use super::{DEFAULT_INTERVAL, Granted, Run, RunError, run_parallel};
 use crate::command::frame::{AnyCommand, Outcome};
 use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
@@ -16,20 +16,20 @@ const RECONNECT_EVERY: Duration = Duration::from_secs(2);
 
 impl Run {
     /// Runs on several robots in parallel, one connection each, and reports in the order of the robots.
-    pub(super) async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
+    pub(super) async fn run_many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         if command.is_endless() && !self.gate.dry_run {
             return self.watch_each(command, robots).await;
         }
         if self.gate.dry_run || !self.repeat.is_wanted() {
-            let outcomes = self.gather(command, robots).await;
-            let place = (ReportPosition::First, &mut Said::nothing(self, robots));
+            let outcomes = self.collect(command, robots).await;
+            let place = (ReportPosition::First, &mut RoundFailures::nothing(self, robots));
             let printed = self.print_many(command, robots, &outcomes, place);
-            let printed = printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+            let printed = printed.map_err(|failure| self.mark_unprinted(command.intent(None).risk, failure))?;
             self.verdict(&outcomes)?;
             return Ok(self.check(&printed)?);
         }
-        let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;
-        let verdict = self.many_over(command, robots, &mut links).await;
+        let mut links = run_parallel(robots.iter().map(|robot| self.connect(command, robot))).await;
+        let verdict = self.run_connected(command, robots, &mut links).await;
         let mut closed = Ok(());
         for (link, _) in links.into_iter().flatten() {
             closed = closed.and(link.close(&self.screen).await);
@@ -38,14 +38,14 @@ impl Run {
         Ok(closed?)
     }
 
-    async fn many_over(
+    async fn run_connected(
         &self,
         command: &dyn AnyCommand,
         robots: &[Robot],
         links: &mut [Result<Granted, Failure>],
     ) -> Result<(), RunError> {
-        let mut rounds = Rounds::new(&self.repeat, EVERY);
-        let mut said = Said::nothing(self, robots);
+        let mut rounds = Rounds::new(&self.repeat, DEFAULT_INTERVAL);
+        let mut reported = RoundFailures::nothing(self, robots);
         let mut reconnect_at = Instant::now() + RECONNECT_EVERY;
         loop {
             let reconnects = Instant::now() >= reconnect_at;
@@ -62,18 +62,18 @@ impl Run {
                     Err(failure) => Err(failure.clone()),
                 }
             });
-            let outcomes = at_a_time(attempts).await;
+            let outcomes = run_parallel(attempts).await;
             let place = self.round(rounds.is_first(), false);
             let is_met = if self.repeat.is_quiet {
-                rounds.is_met(&enveloped_all(robots, command.id(), &outcomes)?, &self.screen)?
+                rounds.is_met(&envelopes(robots, command.id(), &outcomes)?, &self.screen)?
             } else {
-                let envelopes = self.print_many(command, robots, &outcomes, (place, &mut said))?;
+                let envelopes = self.print_many(command, robots, &outcomes, (place, &mut reported))?;
                 rounds.is_met(&envelopes, &self.screen)?
             };
             let ends = |failure: Failure| self.repeat.ends_with(&failure, rounds.is_first());
             let goes_on = !is_met && !failures(&outcomes).any(ends) && rounds.next().await?;
             if self.repeat.is_quiet && !goes_on {
-                self.print_many(command, robots, &outcomes, (ReportPosition::First, &mut said))?;
+                self.print_many(command, robots, &outcomes, (ReportPosition::First, &mut reported))?;
             }
             if is_met {
                 return Ok(());
@@ -87,7 +87,7 @@ impl Run {
 
     /// Common result of several robots.
     fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
-        let failures: Vec<Failure> = failures(outcomes).filter(|failure| !self.repeat.permits(failure)).collect();
+        let failures: Vec<Failure> = failures(outcomes).filter(|failure| !self.repeat.allows(failure)).collect();
         self.failed(&failures, outcomes.len())
     }
 
@@ -99,7 +99,7 @@ impl Run {
         } else {
             Failure::new(Kind::Mixed, format!("{} of {robots} robots failed", failures.len()))
         };
-        Err(RunError { failure, envelope: None, told: !self.is_for_people() })
+        Err(RunError { failure, envelope: None, is_reported: !self.is_for_people() })
     }
 
     /// Watches several robots in parallel, each on its own connection, until all watches have ended.
@@ -107,16 +107,16 @@ impl Run {
         let watches = robots.iter().map(|robot| async move {
             let watched = self.watch(command, robot, Some(ReportPosition::LineOf(robot))).await;
             let Err(stopped) = watched else { return Ok(()) };
-            if stopped.failure.kind != Kind::Interrupted && !stopped.told {
+            if stopped.failure.kind != Kind::Interrupted && !stopped.is_reported {
                 if self.is_for_people() {
-                    self.screen.failure(&named(robot, stopped.failure.clone()));
+                    self.screen.failure(&with_robot_name(robot, stopped.failure.clone()));
                 } else {
-                    self.emit(timed(Envelope::of(robot, command.id(), Err(stopped.failure.clone()))))?;
+                    self.emit(with_time(Envelope::of(robot, command.id(), Err(stopped.failure.clone()))))?;
                 }
             }
             Err(stopped.failure)
         });
-        let failures: Vec<Failure> = at_a_time(watches).await.into_iter().filter_map(Result::err).collect();
+        let failures: Vec<Failure> = run_parallel(watches).await.into_iter().filter_map(Result::err).collect();
         if let Some(interrupted) = failures.iter().find(|failure| failure.kind == Kind::Interrupted) {
             return Err(interrupted.clone().into());
         }

@@ -1,4 +1,4 @@
-//! Writing rows: what is there is read first, what differs is confirmed, written, and answers for itself.
+//! Write of rows: read the old rows, confirm the changes, write different rows, each with its own result.
 
 use super::{Answers, Differing, Store, Writable, WrittenOf, columns, item};
 use crate::command::frame::authority::Authority;
@@ -6,7 +6,7 @@ use crate::command::frame::connection::Family;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::names;
-use crate::command::frame::orders::unwritten;
+use crate::command::frame::settings_report::nothing_written;
 use crate::command::robot::item::{Written, WrittenItems};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
@@ -14,7 +14,7 @@ use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// How a yes is given to what writes rows.
+/// Type of confirmation for a write.
 pub const fn confirmation<S: Writable>() -> Confirmation {
     match S::RISK {
         Risk::Destroy => Confirmation::WhenKnown,
@@ -27,26 +27,26 @@ pub fn intent<S: Writable>() -> String {
     format!("overwrite {}", S::WORDS.nouns[1])
 }
 
-/// A row, and what it shall hold.
+/// Key and new content of a row.
 pub type Row<S> = (<S as Store>::Key, <S as Writable>::Draft);
 
-/// Whatever a write needs beside its rows.
-pub struct Work<'a, S: Store> {
-    /// The table.
+/// Context of a write.
+pub struct TableWrite<'a, S: Store> {
+    /// Table.
     pub table: S,
-    /// The robot.
+    /// Robot.
     pub robot: &'a Robot,
-    /// The connection to it.
+    /// Connection to the robot.
     pub link: &'a mut <S::Family as Family>::Link,
-    /// For progress.
+    /// Screen for progress.
     pub screen: &'a Screen,
-    /// Confirms what is overwritten.
+    /// Authority to confirm overwriting.
     pub authority: Authority<'a>,
 }
 
 /// A row, compared with the controller.
 #[derive(Debug)]
-pub struct Compared<S: Store> {
+pub struct ComparedRow<S: Store> {
     /// The row.
     pub key: S::Key,
     old: Option<S::Wire>,
@@ -57,25 +57,25 @@ pub struct Compared<S: Store> {
     pub is_skipped: bool,
 }
 
-impl<S: Store> Compared<S> {
+impl<S: Store> ComparedRow<S> {
     /// Whether the row was refused, so that the controller does not have it yet.
     pub fn is_undefined(&self) -> bool {
         self.old.is_none()
     }
 
     /// Whether the controller holds something else.
-    pub fn differs(&self) -> bool {
+    pub fn is_different(&self) -> bool {
         self.old.as_ref().is_none_or(|old| !S::is_equal(old, &self.new))
     }
 }
 
-/// Writes rows that do not hold that already. The first failure of the link ends it; each row says what became of it.
-pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
-    let Work { mut table, robot, link, screen, authority } = work;
-    table.select(link).await.map_err(unwritten)?;
+/// Writes the rows that differ. Stops at the first failure of the link; each row has its own result.
+pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
+    let TableWrite { mut table, robot, link, screen, authority } = work;
+    table.select(link).await.map_err(nothing_written)?;
     let compared = write_selected(&table, link, screen, authority, rows).await;
-    // After Ctrl-C nothing more is asked: the end of the link selects what was selected before.
-    let is_interrupted = |rows: &Vec<Compared<S>>| {
+    // After Ctrl-C nothing more is requested. The close of the link restores the selected table.
+    let is_interrupted = |rows: &Vec<ComparedRow<S>>| {
         rows.iter().any(|row| row.outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted))
     };
     let compared = match compared {
@@ -84,13 +84,13 @@ pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<
     };
     let written: Vec<S::Key> =
         compared.iter().filter(|row| matches!(row.outcome, Ok(true))).map(|row| row.key).collect();
-    if let Some(words) = table.afterwards(&written).filter(|_| !written.is_empty()) {
+    if let Some(words) = table.follow_up_note(&written).filter(|_| !written.is_empty()) {
         screen.note(&words);
     }
-    let names = names::of(robot, screen);
+    let names = names::of_robot(robot, screen);
     let items: Vec<_> = compared
         .into_iter()
-        .map(|Compared { key, old, new, outcome, .. }| {
+        .map(|ComparedRow { key, old, new, outcome, .. }| {
             let (is_written, outcome) = match outcome {
                 Ok(is_written) => (is_written, Ok(Some(new))),
                 Err(failure) => (false, Err(failure)),
@@ -109,12 +109,12 @@ async fn write_selected<S: Writable>(
     screen: &Screen,
     authority: Authority<'_>,
     rows: Vec<Row<S>>,
-) -> Result<Vec<Compared<S>>, Failure> {
+) -> Result<Vec<ComparedRow<S>>, Failure> {
     let Some(mut compared) = compare(table, link, screen, &rows).await? else {
         table.plan(link, &rows).await?;
         return Err(unknown());
     };
-    authority.confirm(&overwritten(table, &differing(&compared))).await?;
+    authority.confirm(&old_rows(table, &differing(&compared))).await?;
     write_each(table, link, screen, &mut compared).await;
     Ok(compared)
 }
@@ -128,7 +128,7 @@ pub async fn compare<S: Writable>(
     link: &mut <S::Family as Family>::Link,
     screen: &Screen,
     rows: &[Row<S>],
-) -> Result<Option<Vec<Compared<S>>>, Failure> {
+) -> Result<Option<Vec<ComparedRow<S>>>, Failure> {
     let read = match table.read_old(link, screen, rows).await {
         // All are refused alike: each is judged below.
         Err(failure) if failure.kind == Kind::Refused => {
@@ -137,24 +137,24 @@ pub async fn compare<S: Writable>(
         }
         read => read,
     };
-    let Some(answers) = read.known().map_err(unwritten)? else { return Ok(None) };
+    let Some(answers) = read.known().map_err(nothing_written)? else { return Ok(None) };
     let mut compared = Vec::with_capacity(rows.len());
     for ((key, draft), old) in rows.iter().zip(answers.rows) {
         let old = match old {
             Ok(old) => old,
             Err(failure) if S::risk(*key) < Risk::Destroy && failure.kind == Kind::Refused => None,
             Err(failure) if S::is_undefined(&failure) => None,
-            Err(failure) => return Err(unwritten(failure)),
+            Err(failure) => return Err(nothing_written(failure)),
         };
-        let new = table.whole(*key, draft, old.as_ref())?;
-        compared.push(Compared::<S> { key: *key, old, new, outcome: Ok(false), is_skipped: false });
+        let new = table.complete_draft(*key, draft, old.as_ref())?;
+        compared.push(ComparedRow::<S> { key: *key, old, new, outcome: Ok(false), is_skipped: false });
     }
     Ok(Some(compared))
 }
 
 /// Rows that will be written.
-pub fn differing<S: Writable>(rows: &[Compared<S>]) -> Vec<Differing<'_, S>> {
-    rows.iter().filter(|row| row.differs()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
+pub fn differing<S: Writable>(rows: &[ComparedRow<S>]) -> Vec<Differing<'_, S>> {
+    rows.iter().filter(|row| row.is_different()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
 }
 
 /// Values that a person wrote and that are replaced: name, old value, new value.
@@ -169,14 +169,14 @@ pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[Strin
 }
 
 /// What is overwritten that a person wrote, for a question.
-pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
+pub fn old_rows<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
     table.consequences(rows).into_iter().fold(overwriting(table, &replaced(table, rows)), Change::note)
 }
 
 /// Question about rows that are overwritten: the name of each, old and new.
 pub fn overwriting<S: Writable>(table: &S, lost: &[[String; 3]]) -> Change {
     let [one, many] = S::WORDS.nouns;
-    let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.place());
+    let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.table_suffix());
     let change = match lost.len() {
         0 => return Change::nothing(),
         1 => Change::new(format!("overwrite {article} {one}{place}")),
@@ -190,9 +190,9 @@ pub async fn write_each<S: Writable>(
     table: &S,
     link: &mut <S::Family as Family>::Link,
     screen: &Screen,
-    rows: &mut [Compared<S>],
+    rows: &mut [ComparedRow<S>],
 ) {
-    let differing: Vec<usize> = (0..rows.len()).filter(|index| rows[*index].differs()).collect();
+    let differing: Vec<usize> = (0..rows.len()).filter(|index| rows[*index].is_different()).collect();
     let blocks = table.blocks(&changes(rows, &differing));
     let mut progress = (differing.len() > 1)
         .then(|| screen.items_progress(&format!("writing {}", S::WORDS.nouns[1]), differing.len() as u64));
@@ -201,8 +201,8 @@ pub async fn write_each<S: Writable>(
         let block: Vec<usize> = block.into_iter().map(|index| differing[index]).collect();
         let is_skipped = end.is_some();
         let outcome = match &end {
-            Some(failure) => Err(not_written(failure)),
-            // Ctrl-C ends the work, and what was written is said.
+            Some(failure) => Err(unwritten_rows(failure)),
+            // After Ctrl-C, the report still lists the written rows.
             None => match interruptible(table.write(link, screen, &changes(rows, &block))).await {
                 Ok(outcome) => outcome.map(|()| true),
                 Err(interrupted) => Err(interrupted),
@@ -224,13 +224,13 @@ pub async fn write_each<S: Writable>(
     }
 }
 
-/// Rows with these indices, each with its old and its new content.
-fn changes<'r, S: Writable>(rows: &'r [Compared<S>], indices: &[usize]) -> Vec<Differing<'r, S>> {
+/// Rows with these indices, with old and new content.
+fn changes<'r, S: Writable>(rows: &'r [ComparedRow<S>], indices: &[usize]) -> Vec<Differing<'r, S>> {
     indices.iter().map(|index| &rows[*index]).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
 }
 
-/// A row behind the one that ended the work.
-fn not_written(failure: &Failure) -> Failure {
+/// Failure of the rows after the one that ended the work.
+fn unwritten_rows(failure: &Failure) -> Failure {
     let kind = if failure.kind == Kind::OutcomeUnknown { Kind::NoAnswer } else { failure.kind };
     Failure { kind, message: format!("not written: {}", failure.message), ..failure.clone() }
         .hint("the same command goes on: what is stored already is not written again")

@@ -1,13 +1,13 @@
-//! `copy`: what one row holds into others.
+//! `copy`: copies the content of a row to other rows.
 
 use clap::Args;
 
-use super::change::{Work, confirmation, intent, write};
+use super::change::{TableWrite, confirmation, intent, write};
 use super::get::Rows;
 use super::{Writable, WrittenOf, read};
 use crate::command::frame::command::{Command, Context};
 use crate::command::frame::dry_run::Known as _;
-use crate::command::robot::item::asked;
+use crate::command::robot::item::as_requested;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::Confirmation;
@@ -39,33 +39,33 @@ impl<S: Writable> Command for Copy<S> {
 
     async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
         let Context { robot, link, screen, authority, .. } = context;
-        let one = S::WORDS.nouns[0];
+        let copy_one = S::WORDS.nouns[0];
         let [from] = self.from.0[..] else {
             return Err(
-                Failure::usage(format!("a single {one} can be copied")).hint("name one row, then where it goes")
+                Failure::usage(format!("a single {copy_one} can be copied")).hint("name one row, then where it goes")
             );
         };
-        let name = asked(one, &S::name(from));
+        let name = as_requested(copy_one, &S::name(from));
         let to = Rows::of(&self.to);
         if to.contains(&from) {
             return Err(Failure::usage(format!("{name} cannot be copied to itself")).hint("name another row"));
         }
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &[&to[..], &[from]].concat()).await?;
-        // A dry run knows no values: every field stays open.
+        // In a dry run, the values are unknown.
         let mut texts = vec![None; table.fields().len()];
         if let Some(answers) = read(&mut table, link, screen, &[from]).await.known()? {
-            let held = answers.rows.into_iter().next().transpose()?.flatten().ok_or_else(|| {
+            let stored = answers.rows.into_iter().next().transpose()?.flatten().ok_or_else(|| {
                 let message = format!("{name} is not defined: there is nothing to copy");
                 Failure::new(Kind::ConditionNotMet, message).hint("nothing was written")
             })?;
-            texts = table.texts(&held).into_iter().map(Some).collect();
+            texts = table.texts(&stored).into_iter().map(Some).collect();
         }
         let texts: Vec<Option<&str>> = texts.iter().map(Option::as_deref).collect();
         let draft = |key: S::Key| {
             Ok((key, table.draft(key, &texts).map_err(|why| Failure::usage(why).hint("nothing was written"))?))
         };
         let rows = to.into_iter().map(draft).collect::<Result<_, Failure>>()?;
-        write(Work { table, robot, link, screen, authority }, rows).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, authority }, rows).await?.or_only_failure()
     }
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::change::{Work, confirmation, intent, write};
+use super::change::{TableWrite, confirmation, intent, write};
 use super::get::{Rows, defined};
 use super::{Store, Writable, WrittenOf, read, read_keys, sheet};
 use crate::command::frame::command::{Command, Context};
@@ -15,7 +15,7 @@ use crate::command::frame::items::{ItemError, verdict};
 use crate::command::frame::report::Report;
 use crate::command::frame::sheet::SheetManner;
 use crate::command::frame::text_files;
-use crate::command::robot::item::asked;
+use crate::command::robot::item::as_requested;
 use crate::controller::Risk;
 use crate::controller::findings::Findings;
 use crate::controller::sheet::{Column, Sheet};
@@ -54,7 +54,7 @@ impl<S: Store> Command for Dump<S> {
     async fn run(&self, context: Context<'_, S::Family>) -> Result<Dumped, Failure> {
         let Context { link, screen, several, .. } = context;
         let target = self.manner.target(self.file.clone(), several)?;
-        // An update is of the rows that the file has, whatever they hold now.
+        // An update writes all rows of the file, also if they are blank now.
         let old = target.old();
         let keys = old
             .filter(|_| self.rows.is_empty())
@@ -128,7 +128,7 @@ impl Kept {
                 None => Some(wire),
             },
             Err(failure) => {
-                self.failed.push(ItemError::new(asked(S::WORDS.nouns[0], &S::name(key)), failure));
+                self.failed.push(ItemError::new(as_requested(S::WORDS.nouns[0], &S::name(key)), failure));
                 None
             }
         }
@@ -146,11 +146,11 @@ impl Kept {
 pub fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &mut [Vec<String>]) {
     let optional = std::iter::once(false).chain(table.fields().into_iter().map(|field| field.is_optional));
     let is_used = |(at, is_optional): (usize, bool)| !is_optional || rows.iter().any(|row| !row[at].is_empty());
-    let used: Vec<bool> = optional.enumerate().map(is_used).collect();
-    let mut kept = used.iter();
+    let used_columns: Vec<bool> = optional.enumerate().map(is_used).collect();
+    let mut kept = used_columns.iter();
     columns.retain(|_| kept.next().is_some_and(|used| *used));
     for row in rows {
-        let mut kept = used.iter();
+        let mut kept = used_columns.iter();
         row.retain(|_| kept.next().is_some_and(|used| *used));
     }
 }
@@ -164,7 +164,7 @@ pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<(S::Key, 
     let mut findings = Findings::default();
     let rows = parse(table, &bytes, &mut findings);
     if findings.errors() > 0 {
-        return Err(text_files::faulty(&text_files::shown(path), &findings.into_errors()));
+        return Err(text_files::file_failure(&text_files::display_path(path), &findings.into_errors()));
     }
     Ok(rows)
 }
@@ -176,7 +176,7 @@ pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failu
     if let Some(sheet) = Sheet::read(bytes, expected, &mut findings) {
         let Some(at) = sheet.column("name") else {
             let message = format!("column name is missing ({expected})");
-            return Err(Failure::usage(format!("{}: {message}", text_files::shown(path)))
+            return Err(Failure::usage(format!("{}: {message}", text_files::display_path(path)))
                 .hint("nothing was read; --force replaces the file"));
         };
         for row in sheet.rows() {
@@ -187,12 +187,12 @@ pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failu
         }
     }
     if findings.errors() > 0 {
-        return Err(text_files::faulty(&text_files::shown(path), &findings.into_errors()));
+        return Err(text_files::file_failure(&text_files::display_path(path), &findings.into_errors()));
     }
     Ok(keys)
 }
 
-/// One spelling of a row.
+/// Canonical spelling of a row.
 fn canonical<S: Store>(text: &str) -> String {
     match S::keys(text).as_deref() {
         Ok([key]) => S::name(*key),
@@ -200,11 +200,11 @@ fn canonical<S: Store>(text: &str) -> String {
     }
 }
 
-/// Where rows went.
+/// Report of a saved table.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Dumped {
     file: String,
-    /// How many rows it holds.
+    /// Number of rows in it.
     saved: usize,
     /// Rows that are not defined: `3, 7..9`.
     not_defined: String,
@@ -262,14 +262,14 @@ impl<S: Writable> Command for Restore<S> {
 
     async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
         let Context { robot, link, screen, authority, .. } = context;
-        let name = text_files::shown(&self.file);
+        let name = text_files::display_path(&self.file);
         let mut table = S::open(link, &self.options).await?;
         let bytes = text_files::read(&self.file)?;
         table.prepare(link, &keys_of::<S>(&self.file, &bytes).unwrap_or_default()).await?;
-        let mut findings = Findings::default();
-        let mut rows = parse(&table, &bytes, &mut findings);
-        if findings.errors() > 0 {
-            return Err(text_files::faulty(&name, &findings.into_errors()));
+        let mut warnings = Findings::default();
+        let mut rows = parse(&table, &bytes, &mut warnings);
+        if warnings.errors() > 0 {
+            return Err(text_files::file_failure(&name, &warnings.into_errors()));
         }
         if self.rows.is_empty() {
             let left = rows.extract_if(.., |(key, _)| !S::is_restored(*key)).count();
@@ -277,18 +277,18 @@ impl<S: Writable> Command for Restore<S> {
                 screen.note(&format!("skipped {left} {}: {}", S::WORDS.nouns[1], S::NOT_RESTORED));
             }
         } else {
-            let chosen = Rows::of(&self.rows);
-            rows.retain(|(key, _)| chosen.contains(key));
+            let selected = Rows::of(&self.rows);
+            rows.retain(|(key, _)| selected.contains(key));
         }
         if rows.is_empty() {
             let message = format!("{name}: the file has no {} to write", S::WORDS.nouns[1]);
             return Err(Failure::usage(message).hint("`dump FILE` writes such a file"));
         }
-        write(Work { table, robot, link, screen, authority }, rows).await
+        write(TableWrite { table, robot, link, screen, authority }, rows).await
     }
 }
 
-/// Whether the first line of a file has an alias of a field among its columns.
+/// Whether a column in the first line is an alias of a field.
 fn has_aliases<S: Store>(table: &S, bytes: &[u8]) -> bool {
     let head = bytes.split(|byte| *byte == b'\n').find(|line| !line.trim_ascii().is_empty()).unwrap_or_default();
     let head = String::from_utf8_lossy(head).to_lowercase();
@@ -349,7 +349,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
                 Some(at) => Some(row.string(*at).to_owned()),
             });
         }
-        // A row that is not defined has no value in its file.
+        // An undefined row has no values in its file.
         if fields.iter().all(|field| field.is_optional) && texts.iter().all(Option::is_none) {
             continue;
         }

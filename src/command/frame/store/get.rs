@@ -1,4 +1,4 @@
-//! `get`, `list` and what `watch` repeats.
+//! `get` and `list`; `watch` repeats `get`.
 
 use clap::Args;
 
@@ -11,7 +11,7 @@ use crate::command::robot::item::{Item, Items};
 use crate::controller::{Risk, typed};
 use crate::failure::Failure;
 
-/// Rows as typed.
+/// Parsed row arguments.
 #[derive(Debug)]
 pub struct Rows<S: Store>(pub Vec<S::Key>);
 
@@ -22,15 +22,15 @@ impl<S: Store> Clone for Rows<S> {
 }
 
 impl<S: Store> Rows<S> {
-    /// Reads them.
+    /// Parses the arguments.
     ///
     /// # Errors
-    /// Why they name no rows.
+    /// An argument is not a row.
     pub fn parse(text: &str) -> Result<Self, String> {
         read_keys::<S>(text).map(Self)
     }
 
-    /// All that were given, each once; without any, all rows.
+    /// The typed rows, without repetitions; all rows if none was typed.
     pub fn of(given: &[Self]) -> Vec<S::Key> {
         if given.is_empty() { S::all() } else { typed::once(given.iter().flat_map(|rows| rows.0.iter().copied())) }
     }
@@ -62,7 +62,7 @@ impl<S: Store> Command for Get<S> {
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let mut undefined = Vec::new();
         let items = keys.iter().zip(answers.rows).map(|(key, outcome)| {
             let outcome = match outcome {
@@ -75,7 +75,7 @@ impl<S: Store> Command for Get<S> {
             item(&table, names, *key, outcome)
         });
         let items = items.collect();
-        Items::new(columns(&table), items).asked(answers.asked).undefined(undefined).or_only_failure()
+        Items::new(columns(&table), items).asked(answers.asked).undefined(undefined).single_failure()
     }
 }
 
@@ -113,19 +113,19 @@ impl<S: Store> Command for List<S> {
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let rows = answers.rows.into_iter().map(defined::<S>);
-        let held = keys.into_iter().zip(rows).filter(|(_, outcome)| {
+        let stored = keys.into_iter().zip(rows).filter(|(_, outcome)| {
             let is_empty = |wire: &Option<S::Wire>| wire.as_ref().is_none_or(|wire| table.is_blank(wire));
             self.empty || !outcome.as_ref().is_ok_and(is_empty)
         });
         let items: Vec<Item<S::Value, S::More>> =
-            held.map(|(key, outcome)| item(&table, names, key, outcome)).collect();
+            stored.map(|(key, outcome)| item(&table, names, key, outcome)).collect();
         Ok(Items::new(columns(&table), items))
     }
 }
 
-/// A refusal that says that a row is not defined is the answer where all rows are wanted.
+/// For a list of all rows, the refusal of an undefined row counts as an answer.
 pub fn defined<S: Store>(outcome: Result<Option<S::Wire>, Failure>) -> Result<Option<S::Wire>, Failure> {
     match outcome {
         Err(failure) if S::is_undefined(&failure) => Ok(None),

@@ -1,5 +1,5 @@
-//! Tables of a controller. A family declares what a table is ([`Store`], [`Writable`]); `get`, `list`, `watch`, `set`, `copy`,
-//! `dump` and `restore` follow from that, the same for every table of every family.
+//! Tables of a controller. A family declares a table ([`Store`], [`Writable`]). The commands `get`, `list`, `watch`, `set`,
+//! `copy`, `dump` and `restore` are generic, so that they are the same for every table of every family.
 
 mod change;
 mod copy;
@@ -16,7 +16,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use self::change::{Row, Work, overwriting, overwritten, write};
+pub use self::change::{Row, TableWrite, old_rows, overwriting, write};
 pub use self::copy::Copy;
 pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
 pub use self::get::{Get, List};
@@ -25,7 +25,7 @@ pub use self::set::Set;
 use super::connection::Family;
 use super::kind::ValueKind;
 use super::names as labels;
-use crate::command::robot::item::{Columns, Item, Items, WrittenItems, asked};
+use crate::command::robot::item::{Columns, Item, Items, WrittenItems, as_requested};
 use crate::controller::Risk;
 use crate::controller::names::{Kind, Names};
 use crate::controller::sheet::Column;
@@ -33,18 +33,18 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::Cell;
 
-/// A value of a row, for tables and files.
+/// Field of a row, for tables and files.
 #[derive(Debug, Clone)]
 pub struct Field {
     /// Column of a file: `speed_mm_s`.
     pub name: Cow<'static, str>,
-    /// Another column that means the same: `ax1_mm` for `x_mm`.
+    /// Alternative column name: `ax1_mm` for `x_mm`.
     pub alias: Option<&'static str>,
     /// Heading of a table: `speed (mm/s)`.
     pub heading: &'static str,
     /// Whether it is a number.
     pub is_number: bool,
-    /// Whether only some rows have it: a file has no column for it if no row has a value, and an empty cell means none.
+    /// Whether only some rows have it. Then an empty cell means no value, and a file has the column only if a row has a value.
     pub is_optional: bool,
 }
 
@@ -66,22 +66,22 @@ impl Field {
     }
 }
 
-/// Words of a table.
+/// Names of a table and its rows in texts.
 #[derive(Debug, Clone, Copy)]
-pub struct Words {
-    /// One row, and several: `counter`, `counters`. The first is `kind` in reports.
+pub struct TableWords {
+    /// Singular and plural of a row: `counter`, `counters`. The singular is `kind` in reports.
     pub nouns: [&'static str; 2],
     /// Placeholder of a row on the command line: `N`, `POINT`.
     pub placeholder: &'static str,
-    /// Which rows there are, for the help: `1 to 99: 5, CN05 or 1-10, or a name`.
+    /// Valid rows, for the help: `1 to 99: 5, CN05 or 1-10, or a name`.
     pub range: &'static str,
-    /// Further help of commands that read.
+    /// Additional help of commands that read.
     pub reading: Option<&'static str>,
-    /// Further help of commands that write.
+    /// Additional help of commands that write.
     pub writing: Option<&'static str>,
 }
 
-/// Names of the reports of a table's commands; a command that a table does not have has none.
+/// Report names of the commands of a table.
 #[derive(Debug, Clone, Copy)]
 pub struct Ids {
     /// Of `get`: `toyo.counter.get`.
@@ -100,7 +100,7 @@ pub struct Ids {
     pub restore: &'static str,
 }
 
-/// The ids of a noun: `ids!("toyo.counter")`.
+/// Report names for a noun: `ids!("toyo.counter")`.
 macro_rules! ids {
     ($noun:literal) => {
         $crate::command::frame::store::Ids {
@@ -116,7 +116,7 @@ macro_rules! ids {
 }
 pub(crate) use ids;
 
-/// Declares the commands of a table: the verbs that every table has, then its own.
+/// Declares the commands of a table: the generic verbs, then additional ones.
 macro_rules! table_commands {
     ($(#[$meta:meta])* $name:ident of $store:ty { $($(#[$doc:meta])* $variant:ident($arguments:ty),)* }) => {
         $crate::command::commands! {
@@ -143,49 +143,49 @@ macro_rules! table_commands {
 }
 pub(crate) use table_commands;
 
-/// What each row came to: what it holds, `None` where it is not defined, or why it was not read.
+/// Result of each row: its content, `None` if it is not defined, or the reason why it was not read.
 #[derive(Debug)]
 pub struct Answers<W> {
-    /// One for each row, in the order asked for.
+    /// One result per row, in the requested order.
     pub rows: Vec<Result<Option<W>, Failure>>,
-    /// How many were asked for: those behind would fail alike.
+    /// Number of rows that were requested. The remaining rows would fail in the same way.
     pub asked: usize,
 }
 
 impl<W> Answers<W> {
-    /// Of rows that all were asked for, and hold something where they were read.
+    /// Results of rows that were all requested, and are defined if they were read.
     pub fn of(rows: Vec<Result<W, Failure>>) -> Self {
         Self { asked: rows.len(), rows: rows.into_iter().map(|row| row.map(Some)).collect() }
     }
 }
 
-/// Options of a table that a controller has once.
+/// Options of a table that exists once per controller.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct Single {}
 
-/// A table of a controller, and how its rows are read.
+/// A table of a controller that can be read.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Store: Debug + Send + Sync + Sized + 'static {
-    /// The family that has it.
+    /// Family of the controller.
     type Family: Family;
-    /// What tells a row from the others.
+    /// Key of a row.
     type Key: Debug + Clone + std::marker::Copy + PartialEq + Eq + Hash + Send + Sync;
-    /// What a row holds, as the protocol has it.
+    /// Content of a row in the protocol.
     type Wire: Debug + Clone + PartialEq;
-    /// The same for reports.
+    /// Content of a row in reports.
     type Value: Debug + Clone + Serialize + JsonSchema;
-    /// What the family adds to an item: [`Plain`](crate::command::robot::item::Plain) where that is nothing.
+    /// Additional fields of an item; [`Plain`](crate::command::robot::item::Plain) for none.
     type More: Debug + Clone + Serialize + JsonSchema;
     /// Options that say which table is meant, where there are several: [`Single`] otherwise.
     type Options: Args + Debug + Clone + Send + Sync;
 
-    /// Its words.
-    const WORDS: Words;
-    /// Names of its reports.
+    /// Names in texts.
+    const WORDS: TableWords;
+    /// Report names.
     const IDS: Ids;
-    /// Kind of the names that people give to rows.
+    /// Kind of the user names of rows.
     const LABELS: Option<Kind> = None;
-    /// What completes a row.
+    /// Completion of a row argument.
     const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
     /// Whether `dump` saves blank rows as well.
     const SAVES_BLANK: bool = false;
@@ -202,10 +202,10 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// Rows as typed: one, or a range.
     ///
     /// # Errors
-    /// Why it names no row.
+    /// The text is not a row.
     fn keys(text: &str) -> Result<Vec<Self::Key>, String>;
 
-    /// All rows, where that is few enough to read them unasked; none otherwise.
+    /// All rows, if they are few enough to read without a selection; otherwise none.
     fn all() -> Vec<Self::Key> {
         Vec::new()
     }
@@ -220,7 +220,7 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         Self::all().first().map_or_else(String::new, |key| Self::name(*key))
     }
 
-    /// A row as it is typed.
+    /// Row as typed.
     fn name(key: Self::Key) -> String;
 
     /// Several rows as they are typed.
@@ -230,19 +230,18 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
 
     /// A row in questions.
     fn asked(key: Self::Key) -> String {
-        asked(Self::WORDS.nouns[0], &Self::name(key))
+        as_requested(Self::WORDS.nouns[0], &Self::name(key))
     }
 
-    /// The address under which people's names for rows are kept.
+    /// Address of the row in the user names.
     fn address(key: Self::Key) -> String {
         Self::name(key)
     }
 
-    /// Asks the controller what must be known before a row is read or written, such as the letters of the axes. Nothing is
-    /// changed.
+    /// Reads the information that is needed before a row is read or written, such as the axis letters. Changes nothing.
     async fn open(link: &mut <Self::Family as Family>::Link, options: &Self::Options) -> Result<Self, Failure>;
 
-    /// Asks the controller what must be known of these rows in particular, before they are read or parsed from a file.
+    /// Reads the information about these rows that is needed before they are read, or parsed from a file.
     async fn prepare(
         &mut self,
         _link: &mut <Self::Family as Family>::Link,
@@ -251,17 +250,17 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         Ok(())
     }
 
-    /// Risk of reading rows: Write where another table has to be selected on the controller for that.
+    /// Risk of a read: Write, if another table must be selected on the controller for it.
     fn risk_of_reading(_options: &Self::Options) -> Risk {
         Risk::Read
     }
 
-    /// Selects the table on the controller, where it has several.
+    /// Selects the table, if the controller has several.
     async fn select(&mut self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// Selects the table that was selected before [`select`](Self::select), whatever came of the work meanwhile.
+    /// Selects the table again that was selected before [`select`](Self::select), also after a failure.
     async fn deselect<T>(
         &self,
         _link: &mut <Self::Family as Family>::Link,
@@ -270,45 +269,45 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         outcome
     }
 
-    /// Which of several tables it is, in questions: ` of task 2`.
-    fn place(&self) -> String {
+    /// Suffix for one of several tables, in questions: ` of task 2`.
+    fn table_suffix(&self) -> String {
         String::new()
     }
 
-    /// The values of a row.
+    /// Fields of a row.
     fn fields(&self) -> Vec<Field>;
 
-    /// The text of each field.
+    /// Text of each field.
     fn texts(&self, wire: &Self::Wire) -> Vec<String>;
 
-    /// Headings of a table, and what stands under them; those of the fields where a row is narrow enough.
+    /// Headings of a table; by default those of the fields.
     fn headings(&self) -> Vec<&'static str> {
         self.fields().iter().map(|field| field.heading).collect()
     }
 
-    /// What a table shows of a row.
+    /// Cells of a row in a table.
     fn cells(&self, _key: Self::Key, wire: &Self::Wire) -> Vec<Cell> {
         let cell = |(field, text): (Field, String)| if field.is_number { Cell::number(text) } else { text.into() };
         self.fields().into_iter().zip(self.texts(wire)).map(cell).collect()
     }
 
-    /// What differs between two rows, in a line each.
+    /// Differences of two rows: one line for the old, one for the new.
     fn difference(&self, old: &Self::Wire, new: &Self::Wire) -> [String; 2] {
         difference(self, old, new)
     }
 
-    /// What a row holds, for reports; nothing where that fits no type.
+    /// Content of a row for reports; `None` if it has no report type.
     fn value(&self, wire: &Self::Wire) -> Option<Self::Value>;
 
-    /// What the family adds to the item of a row; without `wire`, that was not read, or is not defined.
+    /// Additional fields of the item of a row. Without `wire`, the row was not read or is not defined.
     fn more(&self, key: Self::Key, wire: Option<&Self::Wire>) -> Self::More;
 
-    /// Whether two rows hold the same.
+    /// Whether two rows have the same content.
     fn is_equal(old: &Self::Wire, new: &Self::Wire) -> bool {
         old == new
     }
 
-    /// Whether a row holds nothing that anybody wrote.
+    /// Whether a row has no user data.
     fn is_blank(&self, _wire: &Self::Wire) -> bool {
         false
     }
@@ -323,11 +322,11 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         false
     }
 
-    /// Reads rows; each answers for itself. A dry run notes the questions and fails with
+    /// Reads rows, each with its own result. A dry run notes the requests and fails with
     /// [`unknown`](super::dry_run::unknown).
     ///
     /// # Errors
-    /// What ends the whole, where nothing was read.
+    /// A failure before any row was read.
     async fn read(
         &self,
         link: &mut <Self::Family as Family>::Link,
@@ -336,16 +335,16 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     ) -> Result<Answers<Self::Wire>, Failure>;
 }
 
-/// A row that will be written: its key, what it holds as far as that is known, and what it shall hold.
+/// A row to write: its key, its old content if known, and its new content.
 pub type Differing<'r, S> = (<S as Store>::Key, Option<&'r <S as Store>::Wire>, &'r <S as Store>::Wire);
 
-/// A table whose rows can be written.
+/// A table that can be written.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Writable: Store {
-    /// What a row shall hold, as far as that was given.
+    /// New content of a row; can be incomplete.
     type Draft: Debug + Clone;
 
-    /// Write, or Destroy where a person wrote or taught what is overwritten; of the row with the highest risk.
+    /// Highest risk of all rows: Destroy, if user data can be overwritten, otherwise Write.
     const RISK: Risk;
 
     /// Risk of writing this row.
@@ -369,37 +368,42 @@ pub trait Writable: Store {
     /// What a row shall hold, from the text of each field; a field without text stays.
     ///
     /// # Errors
-    /// Why that cannot be.
+    /// The content is not valid.
     fn draft(&self, key: Self::Key, texts: &[Option<&str>]) -> Result<Self::Draft, String>;
 
-    /// The same from words of a command line: all values in their order, or some as `NAME=VALUE`.
+    /// New content from words of a command line: all values in their order, or some as `NAME=VALUE`.
     ///
     /// # Errors
-    /// Why that cannot be.
+    /// The content is not valid.
     fn typed(&self, key: Self::Key, words: &[String]) -> Result<Self::Draft, Failure> {
         set::typed(self, key, words)
     }
 
-    /// What the row will hold, where `old` is what it holds.
+    /// Completes the new content with the old one.
     ///
     /// # Errors
-    /// Where what stays cannot be written, or is not known.
-    fn whole(&self, key: Self::Key, draft: &Self::Draft, old: Option<&Self::Wire>) -> Result<Self::Wire, Failure>;
+    /// An old value is needed, but it is unknown or cannot be written.
+    fn complete_draft(
+        &self,
+        key: Self::Key,
+        draft: &Self::Draft,
+        old: Option<&Self::Wire>,
+    ) -> Result<Self::Wire, Failure>;
 
-    /// What follows from writing rows, beside what the question says anyway.
+    /// Consequences of the write, for the question.
     fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
         Vec::new()
     }
 
-    /// What is to be done after these rows were written.
-    fn afterwards(&self, _written: &[Self::Key]) -> Option<String> {
+    /// Note about steps after the write of these rows.
+    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
         None
     }
 
-    /// Reads rows before they are written; a dry run may note another purpose of the questions.
+    /// Reads rows before a write. A dry run can note another purpose for the requests.
     ///
     /// # Errors
-    /// As those of [`read`](Store::read).
+    /// As [`read`](Store::read).
     async fn read_old(
         &self,
         link: &mut <Self::Family as Family>::Link,
@@ -410,12 +414,12 @@ pub trait Writable: Store {
         self.read(link, screen, &keys).await
     }
 
-    /// Rows that one request writes, by their index; otherwise each row has a request of its own.
+    /// Groups of row indices that one request can write; by default, one row per request.
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
         (0..rows.len()).map(|index| vec![index]).collect()
     }
 
-    /// Notes in a dry run what writes rows, and reads them back.
+    /// Notes in a dry run the requests that write rows and read them back.
     async fn plan(&self, link: &mut <Self::Family as Family>::Link, rows: &[Row<Self>]) -> Result<(), Failure>;
 
     /// Writes the rows of a [block](Self::blocks).
@@ -427,12 +431,12 @@ pub trait Writable: Store {
     ) -> Result<(), Failure>;
 }
 
-/// The report of reads.
+/// Report of reads.
 type ItemsOf<S> = Items<<S as Store>::Value, <S as Store>::More>;
-/// The report of writes.
+/// Report of writes.
 pub type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
 
-/// The item of a row.
+/// Item of a row.
 fn item<S: Store>(
     table: &S,
     names: &Names,
@@ -443,19 +447,19 @@ fn item<S: Store>(
     let label = S::LABELS.and_then(|kind| labels::label(names, kind, &S::address(key)));
     let wire = outcome.as_ref().ok().and_then(Option::as_ref);
     let (cells, more) = (wire.map(|wire| table.cells(key, wire)).unwrap_or_default(), table.more(key, wire));
-    // A row that was read and has no value.
+    // The row was read and has no value.
     let cells = if matches!(outcome, Ok(None)) { vec!["undefined".into()] } else { cells };
     let value = outcome.map(|wire| wire.as_ref().and_then(|wire| table.value(wire)));
     Item { cells, ..Item::with(S::WORDS.nouns[0], name, more, value) }.labelled(label)
 }
 
-/// Headings of a table of rows.
+/// Columns of a table of rows.
 fn columns<S: Store>(table: &S) -> Columns {
     let [one, many] = S::WORDS.nouns;
     Columns { name: one, values: table.headings(), empty: many }
 }
 
-/// Columns of a file: the row, its fields, and the name that people gave it.
+/// Columns of a file: the row, its fields, and its user name.
 fn sheet<S: Store>(table: &S) -> Vec<Column> {
     let column = |field: Field| {
         let name = field.name.into_owned();
@@ -464,7 +468,7 @@ fn sheet<S: Store>(table: &S) -> Vec<Column> {
     std::iter::once(Column::text("name")).chain(table.fields().into_iter().map(column)).collect()
 }
 
-/// What a row holds in a line: `250.0 mm/s`, or `limit=2.50 load=1.00`.
+/// Content of a row in one line: `250.0 mm/s`, or `limit=2.50 load=1.00`.
 fn line<S: Store>(table: &S, wire: &S::Wire) -> String {
     let (fields, texts) = (table.fields(), table.texts(wire));
     if let ([field], [text]) = (&fields[..], &texts[..]) {
@@ -489,7 +493,7 @@ pub fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String;
     [differ(&old_texts), differ(&new_texts)]
 }
 
-/// Reads rows of a table that is selected for it.
+/// Selects the table, reads rows, and restores the selection.
 async fn read<S: Store>(
     table: &mut S,
     link: &mut <S::Family as Family>::Link,
@@ -501,8 +505,8 @@ async fn read<S: Store>(
     table.deselect(link, read).await
 }
 
-/// Rows as typed, with names where people gave some.
+/// Rows as typed, with their user names.
 fn read_keys<S: Store>(text: &str) -> Result<Vec<S::Key>, String> {
     let Some(kind) = S::LABELS else { return S::keys(text) };
-    labels::read(&[kind], &S::any(), text, S::keys)
+    labels::parse_or_name(&[kind], &S::any(), text, S::keys)
 }

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use futures_util::future::LocalBoxFuture;
 
-use super::change::{Compared, Row, compare, differing, replaced, write_each};
+use super::change::{ComparedRow, Row, compare, differing, replaced, write_each};
 use super::file::{Kept, LeftOut, leave_out_unused, parse};
 use super::get::defined;
 use super::{Writable, read, sheet};
@@ -75,7 +75,7 @@ pub trait TablePart<F: Family>: Debug {
 pub struct Part<S: Writable> {
     table: S,
     rows: Vec<Row<S>>,
-    compared: Vec<Compared<S>>,
+    compared: Vec<ComparedRow<S>>,
     absent: Vec<LeftOut>,
 }
 
@@ -117,7 +117,7 @@ impl<S: Writable> Part<S> {
         let is_unwritten =
             |failure: &Failure| matches!(failure.kind, Kind::Refused | Kind::NoAnswer | Kind::Rejected | Kind::Usage);
         let tried = || failed.clone().filter(|row| !row.is_skipped);
-        let is_unknown = |row: &&Compared<S>| row.outcome.as_ref().is_err_and(|failure| !is_unwritten(failure));
+        let is_unknown = |row: &&ComparedRow<S>| row.outcome.as_ref().is_err_and(|failure| !is_unwritten(failure));
         let unknown: Vec<String> = tried().filter(is_unknown).map(|row| S::name(row.key)).collect();
         let refused = tried().filter(|row| !is_unknown(row)).map(|row| S::name(row.key));
         let not_written: Vec<String> = refused.chain(skipped).collect();
@@ -206,7 +206,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
     }
 
     fn differing(&self) -> Vec<String> {
-        self.compared.iter().filter(|row| row.differs()).map(|row| S::name(row.key)).collect()
+        self.compared.iter().filter(|row| row.is_different()).map(|row| S::name(row.key)).collect()
     }
 
     fn replaced(&self) -> Vec<[String; 3]> {

@@ -1,12 +1,12 @@
-//! `set`: one row.
+//! `set`: writes one row.
 
 use clap::builder::ValueRange;
 use clap::{ArgAction, Args};
 
-use super::change::{Work, confirmation, intent, write};
+use super::change::{TableWrite, confirmation, intent, write};
 use super::{Store, Writable, WrittenOf, read_keys};
 use crate::command::frame::command::{Command, Context};
-use crate::command::robot::item::asked;
+use crate::command::robot::item::as_requested;
 use crate::controller::Risk;
 use crate::controller::nearest::nearest;
 use crate::failure::Failure;
@@ -19,7 +19,7 @@ pub struct Set<S: Writable> {
     #[command(flatten)]
     options: S::Options,
     #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = S::WORDS.range, add = S::COMPLETE)]
-    row: One<S>,
+    row: SingleRow<S>,
     /// All values in their order, or some as NAME=VALUE, which keeps the others
     #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true, allow_hyphen_values = S::IS_TEXT,
         action = if S::IS_TEXT { ArgAction::Set } else { ArgAction::Append },
@@ -29,17 +29,17 @@ pub struct Set<S: Writable> {
 
 /// A single row.
 #[derive(Debug)]
-struct One<S: Store>(S::Key);
+struct SingleRow<S: Store>(S::Key);
 
-impl<S: Store> Clone for One<S> {
+impl<S: Store> Clone for SingleRow<S> {
     fn clone(&self) -> Self {
         Self(self.0)
     }
 }
 
-fn one<S: Store>(text: &str) -> Result<One<S>, String> {
+fn one<S: Store>(text: &str) -> Result<SingleRow<S>, String> {
     match read_keys::<S>(text)?[..] {
-        [key] => Ok(One(key)),
+        [key] => Ok(SingleRow(key)),
         _ => Err(format!("'{text}' names several {}; name one", S::WORDS.nouns[1])),
     }
 }
@@ -60,42 +60,42 @@ impl<S: Writable> Command for Set<S> {
         let key = self.row.0;
         let table = S::open(link, &self.options).await?;
         let draft = table.typed(key, &self.values)?;
-        write(Work { table, robot, link, screen, authority }, vec![(key, draft)]).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, authority }, vec![(key, draft)]).await?.or_only_failure()
     }
 }
 
-/// What a row shall hold from words: all values in their order, or some as `NAME=VALUE`.
+/// New content from words: all values in their order, or some as `NAME=VALUE`.
 pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S::Draft, Failure> {
     let fields = table.fields();
-    let row = asked(S::WORDS.nouns[0], &S::name(key));
+    let row = as_requested(S::WORDS.nouns[0], &S::name(key));
     let names: Vec<&str> = fields.iter().map(|field| &*field.name).collect();
     let usage = match &names[..] {
         [_] => "give one value".to_owned(),
         names => format!("give all values in this order, or some by name: {}", names.join("=… ") + "=…"),
     };
-    let wrong = |message: String| Failure::usage(format!("{row}: {message}")).hint(usage.as_str());
+    let invalid = |message: String| Failure::usage(format!("{row}: {message}")).hint(usage.as_str());
     let mut texts: Vec<Option<&str>> = vec![None; fields.len()];
     let has_name = |word: &String| word.split_once('=').is_some_and(|(name, _)| name.starts_with(char::is_alphabetic));
     if !S::IS_TEXT && words.iter().any(has_name) {
         for word in words {
-            let (name, value) = word.split_once('=').ok_or_else(|| wrong(format!("'{word}' has no name")))?;
-            let wanted = name.to_ascii_lowercase().replace('-', "_");
-            let exact = names.iter().position(|field| *field == wanted);
-            // `speed` for `speed_mm_s`.
-            let begins = |field: &&str| field.strip_prefix(&*wanted).is_some_and(|rest| rest.starts_with('_'));
+            let (name, value) = word.split_once('=').ok_or_else(|| invalid(format!("'{word}' has no name")))?;
+            let requested = name.to_ascii_lowercase().replace('-', "_");
+            let exact = names.iter().position(|field| *field == requested);
+            // Accepts `speed` for `speed_mm_s`.
+            let begins = |field: &&str| field.strip_prefix(&*requested).is_some_and(|rest| rest.starts_with('_'));
             let at = exact.or_else(|| names.iter().position(begins)).ok_or_else(|| {
-                let near = nearest(name, names.iter().copied());
-                let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-                wrong(format!("there is no value '{}'{near}", name.escape_debug()))
+                let similar = nearest(name, names.iter().copied());
+                let near = similar.map_or(String::new(), |near| format!("; did you mean {near}?"));
+                invalid(format!("there is no value '{}'{near}", name.escape_debug()))
             })?;
             if texts[at].replace(value).is_some() {
-                return Err(wrong(format!("{name} is given twice")));
+                return Err(invalid(format!("{name} is given twice")));
             }
         }
     } else if words.len() == fields.len() {
         texts = words.iter().map(|word| Some(word.as_str())).collect();
     } else {
-        return Err(wrong(format!("{} values needed, {} given", fields.len(), words.len())));
+        return Err(invalid(format!("{} values needed, {} given", fields.len(), words.len())));
     }
-    table.draft(key, &texts).map_err(wrong)
+    table.draft(key, &texts).map_err(invalid)
 }

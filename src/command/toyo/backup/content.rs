@@ -152,24 +152,24 @@ impl Content {
     /// Reads and checks the file of a part of a machine with these letters.
     pub fn load(part: Part, folder: &Path, letters: Letters, screen: &Screen) -> Result<Self, Failure> {
         let path = folder.join(part.file());
-        let (name, bytes) = (files::shown(&path), files::read(&path)?);
-        let faulty = |errors: Vec<Finding>| files::faulty(&name, &errors);
+        let (name, bytes) = (files::display_path(&path), files::read(&path)?);
+        let file_failure = |errors: Vec<Finding>| files::file_failure(&name, &errors);
         Ok(match part {
             Part::Parameters => {
-                let all = store::Part::parse(Parameters, &bytes).map_err(faulty)?;
+                let all = store::Part::parse(Parameters, &bytes).map_err(file_failure)?;
                 Self::Parameters(all.split(Parameters, is_machine))
             }
             Part::Easy => {
                 let table = TableRows::<Numbered>::default();
-                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(faulty)?))
+                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(file_failure)?))
             }
             Part::Palletizing(number) => {
                 let table = Records::new(number.into(), letters);
-                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(faulty)?))
+                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(file_failure)?))
             }
             Part::Points(task) => {
                 let table = Points::with_letters(task, letters);
-                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(faulty)?))
+                Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(file_failure)?))
             }
             Part::Program(task) => {
                 // The program of a backup was on a controller: warnings are nothing new.

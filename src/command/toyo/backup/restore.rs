@@ -5,15 +5,15 @@ use clap::Args;
 use super::content::{self, Content, Table, left_out_row};
 use super::manifest::{Controller, Manifest};
 use super::parts::Part;
+use crate::command::backup::arguments::RestoreOptions;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{MANIFEST, Saved};
-use crate::command::backup::options::RestoreOptions;
-use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Only, Restored, Restoring, would_leave, would_write};
+use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreSelection, Restored, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::local::own_folder;
-use crate::command::frame::orders::unwritten;
+use crate::command::frame::local_names::private_folder;
+use crate::command::frame::settings_report::nothing_written;
 use crate::command::frame::store::PartResult;
 use crate::command::robot::file::{FileItem, State};
 use crate::command::toyo::eeprom::{Cell, Cells};
@@ -51,7 +51,7 @@ pub struct Restore {
 
 /// What is asked for of a restore.
 struct Asked {
-    restoring: Restoring,
+    restoring: RestoreSelection,
     resume: Option<Part>,
 }
 
@@ -87,13 +87,13 @@ impl Command for Restore {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
         let restoring = self.options.restoring();
-        let folder = own_folder(&restoring.folder, &context.robot.name, context.several);
-        Asked { restoring: Restoring { folder, ..restoring }, resume: self.resume }.run(context).await
+        let folder = private_folder(&restoring.folder, &context.robot.name, context.several);
+        Asked { restoring: RestoreSelection { folder, ..restoring }, resume: self.resume }.run(context).await
     }
 }
 
 /// Writes back what a backup holds.
-pub async fn restore(context: Context<'_, Toyo>, restoring: &Restoring) -> Result<Restored, Failure> {
+pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
     Asked { restoring: restoring.clone(), resume: None }.run(context).await
 }
 
@@ -101,9 +101,9 @@ impl Asked {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, authority, .. } = context;
         let folder = &self.restoring.folder;
-        let manifest: Manifest = manifest::existing(folder)?;
+        let manifest: Manifest = manifest::open_existing(folder)?;
         // Whether robot and address are those of the backup; the machine itself is asked later.
-        manifest::check_origin(&manifest::existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
+        manifest::check_origin(&manifest::open_existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
         let parts = self.chosen(&manifest)?;
         if self.restoring.machine && !parts.contains(&Part::Parameters) {
             return Err(Failure::usage("--machine needs the parameters, which --only excludes")
@@ -193,11 +193,14 @@ impl Asked {
         }
         let Jobs { mut machine, mut parts, mut speed } = self.jobs(backup, contents, Some(&found))?;
         let folder = &self.restoring.folder;
-        let pending = |job: &Job| FileItem::values(job.part).of_copy(folder, &job.saved);
+        let pending = |job: &Job| FileItem::values(job.part).from_copy(folder, &job.saved);
         let mut results: Vec<FileItem> = parts.iter().map(pending).collect();
         machine.take_if(|_| !self.restoring.machine);
         if let Some(machine) = &mut machine {
-            interruptible(machine.compare(link, screen)).await.and_then(|compared| compared).map_err(unwritten)?;
+            interruptible(machine.compare(link, screen))
+                .await
+                .and_then(|compared| compared)
+                .map_err(nothing_written)?;
         }
         let needs_power_cycle = machine.iter().any(changes_machine);
         if needs_power_cycle {
@@ -206,7 +209,8 @@ impl Asked {
             check_room(&parts, &found)?;
             compare_all(link, screen, &mut parts, &mut results).await?;
             if let Some((cell, present)) = &mut speed {
-                *present = link.read_if_there(&cell.read).await.map_err(unwritten)?.map(|record| percent(&record));
+                *present =
+                    link.read_if_there(&cell.read).await.map_err(nothing_written)?.map(|record| percent(&record));
             }
         }
         let compared = || parts.iter().zip(&results).filter(|(_, result)| !needs_power_cycle && result.error.is_none());
@@ -320,7 +324,7 @@ async fn compare_all(
         }
         match interruptible(job.table.compare(link, screen)).await.and_then(|compared| compared) {
             Ok(()) => {}
-            Err(failure) if failure.kind == Kind::Interrupted => return Err(unwritten(failure)),
+            Err(failure) if failure.kind == Kind::Interrupted => return Err(nothing_written(failure)),
             Err(failure) => {
                 if !result.fail(failure.clone()) {
                     lost = Some(failure);

@@ -5,10 +5,10 @@ use clap::Args;
 use super::content::{self, Text};
 use super::manifest::Controller;
 use super::parts::Part;
+use crate::command::backup::arguments::BackupOptions;
 use crate::command::backup::manifest::Entry;
-use crate::command::backup::options::BackupOptions;
-use crate::command::backup::saving::{self, Task, cut_off_by_ctrl_c};
-use crate::command::backup::{BackedUp, Making, Only};
+use crate::command::backup::save::{self, Task, interrupted_failure};
+use crate::command::backup::{BackedUp, Only, SaveOptions};
 use crate::command::frame::dry_run::unknown;
 use crate::command::robot::file::FileItem;
 use crate::command::toyo::link::Link;
@@ -58,7 +58,11 @@ impl Command for Backup {
 }
 
 /// Makes a backup; of the current task only where nothing may be changed.
-pub async fn back_up(context: Context<'_, Toyo>, mut making: Making, current_task: bool) -> Result<BackedUp, Failure> {
+pub async fn back_up(
+    context: Context<'_, Toyo>,
+    mut making: SaveOptions,
+    current_task: bool,
+) -> Result<BackedUp, Failure> {
     let is_said = making.scope.iter().flatten().any(|word| word == CURRENT_TASK);
     if current_task && !making.resume && !is_said {
         making.scope.get_or_insert_default().push(CURRENT_TASK.to_owned());
@@ -66,7 +70,7 @@ pub async fn back_up(context: Context<'_, Toyo>, mut making: Making, current_tas
     make(context, making, current_task).await
 }
 
-async fn make(context: Context<'_, Toyo>, making: Making, current_task: bool) -> Result<BackedUp, Failure> {
+async fn make(context: Context<'_, Toyo>, making: SaveOptions, current_task: bool) -> Result<BackedUp, Failure> {
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
     if link.is_dry() {
@@ -76,7 +80,7 @@ async fn make(context: Context<'_, Toyo>, making: Making, current_task: bool) ->
         return Err(Failure::usage(format!("{} is a backup of every task", task.folder.display()))
             .hint("use another folder for a backup of the current task"));
     }
-    let outcome = cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task))).await;
+    let outcome = interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task))).await;
     tasks::done(link, outcome).await
 }
 
@@ -99,7 +103,7 @@ async fn save(
         let entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
         let read = async {
             let Text { text, left_out } = content::read(link, screen, *part, &controller).await?;
-            Ok(saving::Part { left_out, ..saving::Part::new(saving::Content::Text(part.file(), text)) })
+            Ok(save::SavedPart { left_out, ..save::SavedPart::new(save::Content::Text(part.file(), text)) })
         };
         if !list.part(entry, read).await? {
             break;

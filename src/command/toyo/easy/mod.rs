@@ -10,7 +10,7 @@ use super::link::wrong;
 use super::programs::{Copy, Kind, Select};
 use super::rows::{self, Rows, WRITING};
 use crate::command::commands;
-use crate::command::frame::store::{Dump, Field, Get, Ids, List, Restore, Set, Words, ids};
+use crate::command::frame::store::{Dump, Field, Get, Ids, List, Restore, Set, TableWords, ids};
 use crate::controller::toyo::field::{self, Value};
 use crate::controller::toyo::layout::{Layout, Record};
 use crate::controller::toyo::request::Request;
@@ -80,7 +80,7 @@ pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
 
 impl rows::Kind for Numbered {
     type Value = Program;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["easy program", "easy programs"],
         placeholder: "PROGRAM",
         range: "Programs, 1 to 8: 5, 1-3",

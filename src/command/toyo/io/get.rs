@@ -41,7 +41,7 @@ async fn get(signals: &[Spots], Station { station }: Station, context: Context<'
             .hint("type port and bit, as in IN1.3"));
     }
     let spots: Vec<Spot> = typed::once(signals.iter().flat_map(|spots| spots.spots.iter().copied()));
-    let names = names::of(context.robot, context.screen);
+    let names = names::of_robot(context.robot, context.screen);
     let bytes = read(context.link, station, &spots).await?;
     Signals::new(spots.into_iter().filter_map(|spot| row(spot, station, &bytes, names)).collect())
 }

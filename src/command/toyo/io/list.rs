@@ -46,7 +46,7 @@ async fn rows(
     let ports =
         banks.into_iter().flat_map(|bank| (bank.first(station)..=bank.last(station)).map(move |port| (bank, port)));
     let spots: Vec<Spot> = ports.flat_map(|(bank, port)| (1..=8).map(move |bit| Spot { bank, port, bit })).collect();
-    let names = names::of(context.robot, context.screen);
+    let names = names::of_robot(context.robot, context.screen);
     let mut bytes = read(context.link, station, &spots).await?;
     let refused = |byte: &Result<u8, Failure>| byte.as_ref().is_err_and(|failure| failure.kind == Kind::Refused);
     // A controller can have fewer ports. It is an error if it refuses all ports.

@@ -191,7 +191,7 @@ impl FromStr for Spots {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let spots = names::read(&[Kind::Input, Kind::Output], "IN1.1", text, addresses)?;
+        let spots = names::parse_or_name(&[Kind::Input, Kind::Output], "IN1.1", text, addresses)?;
         Ok(Self { spots, is_named: addresses(text).is_err() })
     }
 }

@@ -10,7 +10,7 @@ use super::super::refusal;
 use super::Station;
 use super::port::{OUTPUTS, Spot, name, ports_of};
 use crate::command::frame::names;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 use crate::command::toyo::complete;
 use crate::command::toyo::link::Toyo;
@@ -87,7 +87,7 @@ impl FromStr for Assignment {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (place, value) = typed::setting(text, "a port", "a value", "OUT1.3=on")?;
-        let Target { port, bit } = names::read(&[NameKind::Output], "OUT1.1", place, place_of)?;
+        let Target { port, bit } = names::parse_or_name(&[NameKind::Output], "OUT1.1", place, place_of)?;
         let mask = match bit {
             Some(bit) => one_bit(bit, value)?,
             None => match fields()[2].read(value) {
@@ -143,7 +143,7 @@ impl Command for Set {
                 .hint("type port and bit, as in OUT1.3=on"));
         }
         let orders = self.orders()?;
-        let names = names::of(context.robot, context.screen);
+        let names = names::of_robot(context.robot, context.screen);
         let mut written = Vec::new();
         for (done, order) in orders.iter().enumerate() {
             let port =
@@ -170,7 +170,7 @@ impl PortChange {
         let new = state(order.mask.bits);
         let written = WrittenSignal::new(spot.item(station, names), self.old.map(state), new);
         match (self.now.map(state), &self.failure) {
-            (Some(now), Some(failure)) if now != new => written.but(now, failure.clone()),
+            (Some(now), Some(failure)) if now != new => written.with_error(now, failure.clone()),
             _ => written,
         }
     }
@@ -250,7 +250,7 @@ impl Command for Direct {
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.ask(&request).await?;
         let words = format!("direct output F{}", self.number);
-        Ok(New::of("direct_output", self.number, words).replaces(Old::UNREAD))
+        Ok(NewValue::of("direct_output", self.number, words).replaces(Old::UNREAD))
     }
 }
 

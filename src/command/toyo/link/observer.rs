@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::client::toyo::Event;
 use crate::client::{Ends, Watcher};
-use crate::command::frame::trace::locked;
+use crate::command::frame::trace::lock_writer;
 use crate::command::toyo::change_journal::{AbandonedEntry, ChangeJournal};
 use crate::command::toyo::failure::not_put_back;
 use crate::command::toyo::trace::Trace;
@@ -55,11 +55,11 @@ pub(super) struct SharedObserver(pub(super) Arc<Mutex<Observer>>);
 
 impl Watcher<Event> for SharedObserver {
     fn frame(&mut self, direction: Direction, _: Ends, bytes: &[u8]) {
-        locked(&self.0).trace.record(direction, bytes);
+        lock_writer(&self.0).trace.record(direction, bytes);
     }
 
     fn event(&mut self, event: Event) {
-        let mut observer = locked(&self.0);
+        let mut observer = lock_writer(&self.0);
         match event {
             Event::Motion(moving) => observer.journal.moving(moving),
             Event::HostSwitch(is_taken) => observer.journal.host(is_taken),

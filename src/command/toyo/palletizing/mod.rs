@@ -19,7 +19,7 @@ use super::values::{self, NamedValue};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::commands;
-use crate::command::frame::store::{Answers, Dump, Field, Get, Ids, List, Restore, Set, Store, Words, ids};
+use crate::command::frame::store::{Answers, Dump, Field, Get, Ids, List, Restore, Set, Store, TableWords, ids};
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{self, Value};
 use crate::controller::toyo::layout::{Layout, Record};
@@ -160,7 +160,7 @@ impl Store for Records {
     type More = About;
     type Options = ProgramOptions;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["record", "records"],
         placeholder: "RECORD",
         range: "Records by name or number: start source-p0 6",
@@ -195,7 +195,7 @@ impl Store for Records {
         Ok(Self { program: options.program, letters: link.letters().await? })
     }
 
-    fn place(&self) -> String {
+    fn table_suffix(&self) -> String {
         format!(" of palletizing program {}", self.program)
     }
 

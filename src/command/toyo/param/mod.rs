@@ -20,7 +20,7 @@ use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::commands;
 use crate::command::frame::store::{
-    Answers, Differing, Dump, Field, Get, Ids, List, Restore, Set, Single, Store, Words, ids,
+    Answers, Differing, Dump, Field, Get, Ids, List, Restore, Set, Single, Store, TableWords, ids,
 };
 use crate::command::frame::watch::Watch;
 use crate::controller::nearest::nearest;
@@ -208,7 +208,7 @@ impl Store for Parameters {
     type More = About;
     type Options = Single;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["parameter", "parameters"],
         placeholder: "NAME",
         range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, table, machine, special",

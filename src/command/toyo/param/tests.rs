@@ -247,7 +247,7 @@ proptest! {
                 prop_assert!(key.parameter.id == "E22", "{}: {texts:?}", key_text(key));
                 continue;
             };
-            prop_assert_eq!(Parameters.whole(key, &draft, None).unwrap(), cell.wanted, "{}: {:?}", key_text(key), texts);
+            prop_assert_eq!(Parameters.complete_draft(key, &draft, None).unwrap(), cell.wanted, "{}: {:?}", key_text(key), texts);
         }
     }
 }

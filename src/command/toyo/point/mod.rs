@@ -19,8 +19,8 @@ use super::rows::{EepromRow, Listed, is_zero, texts, unlisted};
 use super::{complete, tasks, values};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
-use crate::command::frame::store::{Answers, Field, Ids, Store, Words, ids, table_commands};
-use crate::command::frame::teach::printed_position;
+use crate::command::frame::store::{Answers, Field, Ids, Store, TableWords, ids, table_commands};
+use crate::command::frame::teach::parse_printed_position;
 use crate::command::robot::position::Position;
 use crate::controller::Risk;
 use crate::controller::names::Kind;
@@ -57,7 +57,7 @@ impl Points {
 
     /// Table of a task of a machine whose axes have these letters.
     pub const fn with_letters(task: u8, letters: Letters) -> Self {
-        Self { letters, wanted: Some(task), task }
+        Self { letters, selected_task: Some(task), task }
     }
 
     /// The letters of the axes.
@@ -122,7 +122,7 @@ impl Store for Points {
     type More = OfTask;
     type Options = TaskOptions;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["point", "points"],
         placeholder: "POINT",
         range: "Rows of the coordinate table, 1 to 999: 1-10,20; or names",
@@ -172,7 +172,7 @@ impl Store for Points {
         tasks::done(link, outcome).await
     }
 
-    fn place(&self) -> String {
+    fn table_suffix(&self) -> String {
         format!(" of task {}", self.task)
     }
 
@@ -226,7 +226,7 @@ impl EepromRow for Points {
     fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
         let [only] = words else { return Ok(words.to_vec()) };
         let Some(file) = only.strip_prefix('@') else { return Ok(words.to_vec()) };
-        let text = printed_position(Path::new(file))?;
+        let text = parse_printed_position(Path::new(file))?;
         Ok(text.split_whitespace().map(ToOwned::to_owned).collect())
     }
 

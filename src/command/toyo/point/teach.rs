@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::{AXES, Points, TaskOptions, parse_point};
 use crate::command::frame::dry_run::{Known as _, unknown};
-use crate::command::frame::store::{Store as _, Writable as _, overwritten};
+use crate::command::frame::store::{Store as _, Writable as _, old_rows};
 use crate::command::frame::teach::Taught;
 use crate::command::toyo::complete;
 use crate::command::toyo::link::{Link, Toyo};
@@ -79,7 +79,7 @@ impl Teach {
         let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(current.number(axis).unwrap_or_default()));
         let new = points.cell(point, axes.into())?.wanted;
         let needs_confirmation = authority.asks();
-        let change = overwritten(points, &[(point, Some(&stored), &new)]);
+        let change = old_rows(points, &[(point, Some(&stored), &new)]);
         authority.confirm(&change).await?;
         if needs_confirmation {
             let moved_to = Coordinates::of(&read_position(link).await?, points.letters());

@@ -62,7 +62,7 @@ impl OfflineCommand for Check {
         let points = self.points.as_ref().map(|path| keys_of::<Points>(path, &files::read(path)?));
         let known = Known { points: points.transpose()?.map(|points| points.into_iter().collect()) };
         let verdict = |path: &PathBuf| {
-            let (bytes, name) = (files::read(path)?, files::shown(path));
+            let (bytes, name) = (files::read(path)?, files::display_path(path));
             let mut checked = program::check_known(&bytes, room, None, &names, &known);
             if let Some(program) = &checked.program {
                 let stop = sim::rehearse(&name, program, self.points.as_deref())?;

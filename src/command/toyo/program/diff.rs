@@ -58,9 +58,9 @@ impl Command for Diff {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Difference, Failure> {
         let Context { robot, link, screen, .. } = context;
-        let name = files::shown(&self.file);
+        let name = files::display_path(&self.file);
         let bytes = files::read(&self.file)?;
-        let checked = check_named(&bytes, MOST_STEPS, None, names::of(robot, screen));
+        let checked = check_named(&bytes, MOST_STEPS, None, names::of_robot(robot, screen));
         let program = text::program(&name, checked, &screen.silenced())?;
         let get = Get::whole(self.task());
         if link.is_dry() {
@@ -73,7 +73,7 @@ impl Command for Diff {
         let difference = Difference::new(task, &found[..used(&found)], &wanted[..used(&wanted)]);
         let path = Some(self.file.display().to_string()).filter(|path| path != "-");
         let [file] = difference.files;
-        Ok(Difference { files: [FileItem { path, ..file }.holding(Hash::of(&bytes))], ..difference })
+        Ok(Difference { files: [FileItem { path, ..file }.with_content(Hash::of(&bytes))], ..difference })
     }
 }
 

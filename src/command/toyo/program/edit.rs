@@ -11,7 +11,7 @@ use super::get::Get;
 use super::put::{Put, Stored};
 use super::steps;
 use crate::command::backup::text_diff::{self, Hunk, TextDifference};
-use crate::command::frame::edited::Edited;
+use crate::command::frame::editor_session::EditedText;
 use crate::command::toyo::items::Answers;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::tasks;
@@ -65,7 +65,7 @@ impl Command for Edit {
             Some(source) => source.text,
             None => listing_with(&read, &BTreeMap::new(), style, &Rows::new()).text,
         };
-        let mut edited = Edited::new("program.toyo", text.as_bytes(), *screen)?;
+        let mut edited = EditedText::new("program.toyo", text.as_bytes(), *screen)?;
         if !edited.is_changed()? {
             return Ok(EditedProgram { changed: false, hunks: Vec::new(), stored: None });
         }
@@ -77,13 +77,14 @@ impl Command for Edit {
         let put = Put::edited(edited.path().to_owned(), self.task, read);
         match put.run(Context { robot, link, screen, several, authority }).await {
             Ok(stored) => {
-                edited.done();
+                edited.mark_stored();
                 Ok(EditedProgram { changed: true, hunks, stored: Some(stored) })
             }
             Err(failure) => {
                 let task = self.task.map_or_else(String::new, |task| format!(" --task {task}"));
-                Err(edited
-                    .kept(failure, |path| format!("your text is in {path}: `toyo program put {path}{task}` writes it")))
+                Err(edited.keep_file(failure, |path| {
+                    format!("your text is in {path}: `toyo program put {path}{task}` writes it")
+                }))
             }
         }
     }

@@ -10,7 +10,7 @@ use super::kept::Source;
 use super::steps;
 use crate::command::backup::manifest::Hash;
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::local::Target;
+use crate::command::frame::local_names::Target;
 use crate::command::frame::names;
 use crate::command::robot::file::FileItem;
 use crate::command::robot::item::Plain;
@@ -109,7 +109,7 @@ impl Command for Get {
                 if let Some(source) = source {
                     screen.note(&other_program(&source, differences));
                 }
-                (listing_named(&read, &unread, style, &rows, names::of(robot, screen)).text, false)
+                (listing_named(&read, &unread, style, &rows, names::of_robot(robot, screen)).text, false)
             }
         };
         let is_written = target.is_some() && unread.is_empty();
@@ -123,8 +123,8 @@ impl Command for Get {
             Some(_) => Err(Failure::new(Kind::ConditionNotMet, NOT_WRITTEN)),
             None => Ok(()),
         };
-        let file = FileItem::new(format!("program-{task}"), Plain {}, written).holding(Hash::of(text.as_bytes()));
-        let file = target.iter().fold(file, |file, target| file.at(target.path()));
+        let file = FileItem::new(format!("program-{task}"), Plain {}, written).with_content(Hash::of(text.as_bytes()));
+        let file = target.iter().fold(file, |file, target| file.with_path(target.path()));
         let shown = if is_whole { program::used(&read) } else { read.len() };
         let step = |(step, answer): (u16, Result<Record, Failure>)| {
             Item::kept("step", step.into(), answer.map(|record| Step::of(step.into(), &record)))

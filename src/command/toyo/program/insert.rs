@@ -53,7 +53,7 @@ impl Command for Insert {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Inserted, Failure> {
         let Context { robot, link, screen, authority, .. } = context;
-        let instruction = self.instruction(names::of(robot, screen))?;
+        let instruction = self.instruction(names::of_robot(robot, screen))?;
         if link.is_dry() {
             return self.dry_run(link, &authority, &instruction).await;
         }

@@ -10,7 +10,7 @@ use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use crate::command::frame::local::state_folder;
+use crate::command::frame::local_names::state_folder;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::program::{tags, used};
 use crate::controller::toyo::request::instruction;

@@ -90,7 +90,7 @@ impl Command for Put {
         let Context { robot, link, screen, authority, .. } = context;
         let name = self.name();
         let bytes = files::read(&self.file)?;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         // The tags around a part are known later.
         let around = self.at.map(|at| part(at, None));
         let room = MOST_STEPS + 1 - usize::from(self.at.unwrap_or(1));
@@ -118,7 +118,7 @@ impl Put {
 
     /// Name of the text in messages.
     fn name(&self) -> String {
-        if self.expected.is_some() { "edited".to_owned() } else { files::shown(&self.file) }
+        if self.expected.is_some() { "edited".to_owned() } else { files::display_path(&self.file) }
     }
 
     async fn store(
@@ -187,7 +187,7 @@ impl Put {
         }
         cells.cells_unchanged = u32::try_from(found.len() - changes.len()).unwrap_or(u32::MAX);
         let path = (self.expected.is_none() && self.file != Path::new("-")).then(|| name.clone());
-        let file = FileItem::new(format!("program-{task}"), Plain {}, Ok(())).holding(Hash::of(bytes));
+        let file = FileItem::new(format!("program-{task}"), Plain {}, Ok(())).with_content(Hash::of(bytes));
         Ok(Stored {
             files: [FileItem { path, ..file }],
             shown: name,

@@ -1,7 +1,7 @@
 //! The steps of a task as a table, for restores.
 
 use super::steps;
-use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Single, Store, Words, Writable, ids};
+use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids};
 use crate::command::robot::item::Plain;
 use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::items::read_each;
@@ -35,8 +35,8 @@ impl Store for Steps {
     type More = Plain;
     type Options = Single;
 
-    const WORDS: Words =
-        Words { nouns: ["step", "steps"], placeholder: "STEP", range: "1 to 5000", reading: None, writing: None };
+    const WORDS: TableWords =
+        TableWords { nouns: ["step", "steps"], placeholder: "STEP", range: "1 to 5000", reading: None, writing: None };
     const IDS: Ids = ids!("toyo.program");
 
     fn keys(text: &str) -> Result<Vec<u16>, String> {
@@ -59,7 +59,7 @@ impl Store for Steps {
         tasks::done(link, outcome).await
     }
 
-    fn place(&self) -> String {
+    fn table_suffix(&self) -> String {
         format!(" of task {}", self.task)
     }
 
@@ -100,7 +100,7 @@ impl Writable for Steps {
 
     /// A step that the manual does not list is not written. If the controller has another one, the program would be a
     /// different one, and nothing of it is written.
-    fn whole(&self, step: u16, wanted: &Record, old: Option<&Record>) -> Result<Record, Failure> {
+    fn complete_draft(&self, step: u16, wanted: &Record, old: Option<&Record>) -> Result<Record, Failure> {
         let (text, found) = (wanted.written(), old.map(Record::written).unwrap_or_default());
         match old {
             Some(old) if !wanted.is_listed() && text == found => Ok(old.clone()),

@@ -22,7 +22,7 @@ pub fn name(text: &str) -> Result<Name, String> {
 pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {
     let Some(program) = checked.program else {
         let errors: Vec<Finding> = checked.errors().cloned().collect();
-        return Err(files::faulty(name, &errors));
+        return Err(files::file_failure(name, &errors));
     };
     for finding in checked.findings.iter().filter(|finding| finding.severity == Severity::Warning) {
         screen.note(&in_a_line(name, finding));

@@ -291,7 +291,7 @@ fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failur
 
 /// A row of a file that cannot be used.
 fn in_file(path: &Path, why: &str) -> Failure {
-    Failure::usage(format!("{}: {why}", files::shown(path))).hint("`dump` writes a valid file")
+    Failure::usage(format!("{}: {why}", files::display_path(path))).hint("`dump` writes a valid file")
 }
 
 /// Adds a point to a start state.
@@ -312,7 +312,7 @@ fn place(state: &mut toml::Table, task: usize, point: i32, values: &[Value]) {
 
 /// The program in a file.
 fn source(screen: &Screen, names: &Names, task: usize, file: &Path) -> Result<Source, Failure> {
-    let name = files::shown(file);
+    let name = files::display_path(file);
     let bytes = files::read(file)?;
     Ok(Source {
         task,

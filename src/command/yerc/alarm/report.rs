@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::robot::alarm::{Alarm, AlarmEntry, Besides, Kind, Standing};
+use crate::command::robot::alarm::{Alarm, AlarmEntry, AlarmState, ExtraColumns, Kind};
 use crate::command::yerc::link::Link;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -20,7 +20,7 @@ pub struct WithTexts {
     pub with_texts: bool,
 }
 
-impl Standing for WithTexts {}
+impl AlarmState for WithTexts {}
 
 /// Family-specific fields of an alarm.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -56,7 +56,7 @@ impl SubCode {
     /// Text on the pendant, or the best known form; none if there is no sub-code.
     pub(super) fn describe(&self) -> Option<&str> {
         let text = self.text.as_deref().filter(|text| !text.trim().is_empty());
-        Some(text.unwrap_or(&self.shown)).filter(|told| !told.is_empty())
+        Some(text.unwrap_or(&self.shown)).filter(|rendered_text| !rendered_text.is_empty())
     }
 }
 
@@ -88,7 +88,7 @@ pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) ->
 }
 
 /// Adds the text of `alarms.toml`.
-pub(super) async fn explained(
+pub(super) async fn explain(
     entry: AlarmEntry<Own>,
     robot: &Robot,
     link: &mut Link,
@@ -107,7 +107,7 @@ pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
     Alarm { text: Some(text), ..alarm }
 }
 
-impl Besides for Own {
+impl ExtraColumns for Own {
     // The type is only in JSON, because a column for it would leave no space for the text.
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         let board = self.board.as_deref().map(str::trim).filter(|board| !board.is_empty());
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sub_code_shows_how_far_it_can_be_trusted() {
+    fn shows_the_reliability_of_a_sub_code() {
         let alarm = collision(3, 3, None);
         let json = serde_json::to_value(&alarm).unwrap();
         assert_eq!(json["sub_code"]["raw"], 3);
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn the_text_of_the_controller_wins_in_the_table() {
+    fn table_prefers_the_text_of_the_controller() {
         let texts =
             AlarmTexts { source: Text::cut(b"[SV#1]"), sub_code: Text::cut(b"[R1: S]"), reversed: Text::cut(b"0") };
         let alarms = of(vec![Row::new(1, "alarm slot 1", Ok(collision(20, 1, Some(texts))))]);
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_said_as_such() {
+    fn describes_an_empty_list() {
         assert_eq!(render::text(&of(Vec::new()).view(), 80, false), "no alarm\n");
     }
 }

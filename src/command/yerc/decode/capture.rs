@@ -13,7 +13,7 @@ use crate::transport::capture::{Carrier, Message};
 use crate::transport::tap::Direction;
 
 /// Maximum number of pending requests: more peers than in any plant.
-const MOST_ASKED: usize = 1 << 16;
+const MAX_REQUESTS: usize = 1 << 16;
 
 /// Datagrams that start like a frame.
 #[derive(Debug, Default)]
@@ -22,7 +22,7 @@ pub struct FrameDecoder {
     /// Addresses that sent requests.
     clients: HashSet<SocketAddr>,
     /// Last request of each id, with its packet number.
-    asked: HashMap<(SocketAddr, SocketAddr, u8), (u64, Request)>,
+    requests: HashMap<(SocketAddr, SocketAddr, u8), (u64, Request)>,
 }
 
 impl CaptureDecoder for FrameDecoder {
@@ -51,16 +51,16 @@ impl CaptureDecoder for FrameDecoder {
             && let Ok(frame) = RequestFrame::parse(bytes)
             && !frame.ack
         {
-            if self.asked.len() >= MOST_ASKED {
+            if self.requests.len() >= MAX_REQUESTS {
                 // No plant has that many. Later frames are decoded without their requests.
-                self.asked.clear();
+                self.requests.clear();
                 self.clients.clear();
             }
             self.clients.insert(client);
-            self.asked.insert(key, (message.number, Request::from(frame)));
+            self.requests.insert(key, (message.number, Request::from(frame)));
         }
-        let asked = self.asked.get(&key).filter(|_| sender == Sender::Controller);
-        let request = asked.map(|(_, request)| request);
+        let request_key = self.requests.get(&key).filter(|_| sender == Sender::Controller);
+        let request = request_key.map(|(_, request)| request);
         let description = describe(bytes, sender, request);
         self.decoded.messages.push(DecodedMessage {
             number: message.number,
@@ -68,7 +68,7 @@ impl CaptureDecoder for FrameDecoder {
             direction,
             link: (client.to_string(), controller.to_string()),
             text: summary(bytes, sender, request),
-            answers: asked.map(|(number, _)| *number),
+            answers: request_key.map(|(number, _)| *number),
             section: description.section,
             raw: hex(bytes),
             fields: description.fields,

@@ -5,9 +5,9 @@ use super::name::{self, Shown, type_word};
 use super::transfer::{self, Download};
 use crate::command::Context;
 use crate::command::backup::manifest::Entry;
-use crate::command::backup::saving::{Content, Part, Task, cut_off_by_ctrl_c};
-use crate::command::backup::{BackedUp, Making, Only};
-use crate::command::frame::local::{LocalNames, Target};
+use crate::command::backup::save::{Content, SavedPart, Task, interrupted_failure};
+use crate::command::backup::{BackedUp, Only, SaveOptions};
+use crate::command::frame::local_names::{LocalNames, Target};
 use crate::command::robot::file::FileItem;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
@@ -19,7 +19,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 
 /// Makes a backup.
-pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<BackedUp, Failure> {
+pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<BackedUp, Failure> {
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
     if link.is_dry() {
@@ -29,7 +29,7 @@ pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<Backe
         link.then("downloads every listed file (service 0x16) and acknowledges each block");
         return Ok(BackedUp::new(&task.folder, task.scope, false, Vec::new()));
     }
-    cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task))).await
+    interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task))).await
 }
 
 /// File on the controller and its local name.
@@ -57,7 +57,7 @@ async fn save(
                 list.fail(failure);
                 refused.push(list);
             }
-            Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
+            Err(failure) => return Err(transfer::describe_request(&kind.filter(), failure)),
         }
     }
     drop(looking);
@@ -79,7 +79,7 @@ async fn save(
         let label = format!("{}/{} {shown}", number + 1, work.len());
         let holds = type_word(FileType::from_name(name).unwrap_or(*kind)).to_owned();
         let entry = Entry { name: shown, name_hex: Some(hex(name)), holds, ..Entry::default() };
-        let fetched = async {
+        let fetched_file = async {
             // A listed name that is not allowed is an error of the controller, not of the operator.
             let malformed = |failure| Failure { kind: Kind::Malformed, ..failure };
             let local = local.clone().map_err(malformed)?;
@@ -87,16 +87,16 @@ async fn save(
             let target = Target::new(task.folder.join(&local), true)?;
             let content = transfer::save(link, screen, &label, &target, Download::Listed(&file)).await?;
             let notes = if content.bytes == 0 { vec!["empty".to_owned()] } else { Vec::new() };
-            Ok(Part { notes, ..Part::new(Content::File(content.saved(local))) })
+            Ok(SavedPart { notes, ..SavedPart::new(Content::File(content.saved(local))) })
         };
-        if !saving.part(entry, fetched).await? {
+        if !saving.part(entry, fetched_file).await? {
             break;
         }
         saved.advance(1);
     }
     let files = saving.files();
-    let tried = files.len();
-    files.extend(work[tried..].iter().map(|listed| FileItem::pending(encoding.decode(&listed.name))));
+    let attempted = files.len();
+    files.extend(work[attempted..].iter().map(|listed| FileItem::pending(encoding.decode(&listed.name))));
     for (file, listed) in files.iter_mut().zip(&work) {
         file.more.name_hex = Shown::new(encoding, &listed.name).name_hex;
     }

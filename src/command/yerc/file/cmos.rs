@@ -13,7 +13,7 @@ use clap::Args;
 use super::transfer;
 use crate::command::backup::manifest::Hash;
 use crate::command::frame::dry_run::{Reason, unknown};
-use crate::command::frame::local::{Target, folder_of, make_folder, own_folder};
+use crate::command::frame::local_names::{Target, folder_of, make_folder, private_folder};
 use crate::command::robot::file::{FileItem, Files, State};
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
@@ -60,7 +60,7 @@ impl Command for Cmos {
         let name = file.file_name().ok_or_else(|| {
             Failure::usage(format!("{} is not a file name", file.display())).hint("use a file name, as in cmos.bin")
         })?;
-        let folder = own_folder(&folder_of(file), &robot.name, several);
+        let folder = private_folder(&folder_of(file), &robot.name, several);
         let path = if several { folder.join(name) } else { file.to_owned() };
         let target = Target::new(path, self.force)?;
         if link.is_dry() {
@@ -81,29 +81,29 @@ impl Command for Cmos {
 
 impl Cmos {
     async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files, Failure> {
-        let _waiting = Waiting::new(screen, MAKING);
+        let _waiting = Waiting::new(screen, CREATE_TIMEOUT);
         // The transfer ends at its first block, so that the controller keeps its existing backup.
-        let had_one = |_: &[u8]| {
+        let existed = |_: &[u8]| {
             Err(Failure::new(Kind::Malformed, "the controller already has a backup and created no new one")
                 .hint("download it with --download-only"))
         };
-        self.ask(link, had_one).await?;
-        Ok(made(FileItem::pending(NAME)))
+        self.ask(link, existed).await?;
+        Ok(created_files(FileItem::pending(NAME)))
     }
 
     async fn make_and_fetch(&self, link: &mut Link, screen: &Screen, target: &Target) -> Result<Files, Failure> {
         let (mut draft, mut hash) = (target.begin()?, Hash::default());
-        let requests = if self.download_only { &[FETCHING][..] } else { &[MAKING, FETCHING] };
+        let requests = if self.download_only { &[FETCHING][..] } else { &[CREATE_TIMEOUT, FETCHING] };
         for what in requests {
             let mut waiting = Waiting::new(screen, what);
-            let came = self.ask(link, |block| {
+            let received = self.ask(link, |block| {
                 waiting.advance(block);
                 hash.take(block);
                 draft.write(block)
             });
-            if came.await?.is_some() {
+            if received.await?.is_some() {
                 draft.commit()?;
-                return Ok(made(FileItem::pending(NAME).at(target.path()).holding(hash)));
+                return Ok(created_files(FileItem::pending(NAME).with_path(target.path()).with_content(hash)));
             }
         }
         Err(Failure::new(Kind::Malformed, "the controller created a backup instead of sending the existing one").hint(
@@ -128,7 +128,7 @@ impl Cmos {
 
 /// Name on the controller.
 const NAME: &str = "CMOSBK.BIN";
-const MAKING: &str = "the controller creates its backup (about ten minutes)";
+const CREATE_TIMEOUT: &str = "the controller creates its backup (about ten minutes)";
 const FETCHING: &str = "waiting for the backup";
 
 /// Progress display: first the wait for the controller, then the bytes received.
@@ -154,7 +154,7 @@ impl<'a> Waiting<'a> {
 }
 
 /// Report of the batch backup; it has a path unless it was left on the controller.
-fn made(mut file: FileItem) -> Files {
+fn created_files(mut file: FileItem) -> Files {
     file.succeed(State::Done);
     Files::new(vec![file], |files| match files {
         [FileItem { path: Some(path), bytes: Some(bytes), .. }] => {

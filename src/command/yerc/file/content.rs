@@ -37,7 +37,7 @@ pub struct JobRules {
 impl Content {
     /// Opens a file to send. It must not be empty.
     pub fn open(path: &Path) -> Result<Self, Failure> {
-        let content = Self::open_any(path)?;
+        let content = Self::open_file(path)?;
         if content.len == 0 {
             return Err(Failure::usage(format!("{} is empty", path.display()))
                 .hint("the protocol cannot transfer an empty file"));
@@ -46,7 +46,7 @@ impl Content {
     }
 
     /// Opens a file to read.
-    pub fn open_any(path: &Path) -> Result<Self, Failure> {
+    pub fn open_file(path: &Path) -> Result<Self, Failure> {
         let place = || path.display().to_string();
         let file = match files::open(path) {
             Err(error) if matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported) => {
@@ -135,7 +135,7 @@ impl Pieces<'_> {
         let read = self.file.take(PIECE as u64).read_to_end(&mut piece);
         read.with_context(|| self.path.display().to_string())?;
         if let Some(fixer) = &mut self.fixer {
-            piece = fixer.fixed(&piece);
+            piece = fixer.fix_line_endings_of(&piece);
         }
         self.hash.take(&piece);
         Ok(piece)
@@ -149,7 +149,7 @@ struct Fixer {
 }
 
 impl Fixer {
-    fn fixed(&mut self, piece: &[u8]) -> Vec<u8> {
+    fn fix_line_endings_of(&mut self, piece: &[u8]) -> Vec<u8> {
         let mut fixed = Vec::with_capacity(piece.len() + piece.len() / 16);
         for &byte in piece {
             if byte == b'\n' && self.previous != b'\r' {
@@ -263,21 +263,21 @@ mod tests {
     const FIX: JobRules = JobRules { fix_line_endings: true, force: false };
 
     #[test]
-    fn a_job_goes_as_it_is() {
+    fn sends_a_job_unchanged() {
         assert_eq!(check(JOB, JobRules::default()).unwrap(), JOB);
         assert_eq!(check(JOB, FIX).unwrap(), JOB);
         assert_eq!(check(b"/JOB\r\nNOP\r\nEND", JobRules::default()).unwrap(), b"/JOB\r\nNOP\r\nEND");
     }
 
     #[test]
-    fn a_job_names_itself() {
+    fn reads_the_name_of_a_job() {
         let (_file, mut content) = content(b"/JOB\r\n//NAME A B\r\nNOP\r\nEND\r\n//NAME C\r\n");
         content.check_job(JobRules::default()).unwrap();
         assert_eq!(content.job_name(), Some(&b"A B"[..]));
     }
 
     #[test]
-    fn a_bare_line_feed_is_refused_or_fixed() {
+    fn refuses_or_fixes_a_bare_line_feed() {
         let job = b"/JOB\r\nNOP\n\r\nEND\n";
         let failure = check(job, JobRules { force: true, ..JobRules::default() }).unwrap_err();
         assert_eq!(failure.kind.exit(), 2);
@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_job_is_named() {
+    fn names_the_missing_part_of_a_job() {
         for (bytes, missing) in [
             (&b"NOP\r\nEND\r\n"[..], "/JOB"),
             (b"\xef\xbb\xbf/JOB\r\nNOP\r\nEND\r\n", "/JOB"),
@@ -302,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_no_file_are_no_content() {
+    fn rejects_empty_and_missing_files() {
         let file = tempfile::NamedTempFile::new().unwrap();
         assert_eq!(Content::open(file.path()).unwrap_err().kind.exit(), 2);
         assert_eq!(Content::open(Path::new(".")).unwrap_err().kind.exit(), 2);
@@ -311,16 +311,16 @@ mod tests {
 
     proptest! {
         #[test]
-        fn fixing_adds_only_what_was_missing(bytes in prop::collection::vec(
+        fn fix_adds_only_missing_bytes(bytes in prop::collection::vec(
             prop::sample::select(b"\r\n\nA\0\x83".to_vec()), 0..60), cut in 0usize..60)
         {
             let (head, tail) = bytes.split_at(cut.min(bytes.len()));
             let mut fixer = Fixer::default();
-            let fixed = [fixer.fixed(head), fixer.fixed(tail)].concat();
+            let fixed = [fixer.fix_line_endings_of(head), fixer.fix_line_endings_of(tail)].concat();
             let mut scan = JobScan::default();
             scan.take(&fixed);
             prop_assert_eq!(scan.bare, 0);
-            prop_assert_eq!(&Fixer::default().fixed(&fixed), &fixed);
+            prop_assert_eq!(&Fixer::default().fix_line_endings_of(&fixed), &fixed);
             let mut scan = JobScan::default();
             scan.take(&bytes);
             prop_assert_eq!(fixed.len() as u64, bytes.len() as u64 + scan.bare);

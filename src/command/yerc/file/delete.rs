@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::lists::{Lists, There};
+use super::lists::{Existence, Lists};
 use super::name::{self, Shown};
 use super::transfer;
 use crate::command::frame::dry_run::Reason;
@@ -39,7 +39,7 @@ impl Command for Delete {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
         let Context { link, authority, .. } = context;
-        let files = name::all_typed(link.encoding, &self.names)?;
+        let files = name::parse_names(link.encoding, &self.names)?;
         let pending = |file: &FileName| Shown::new(link.encoding, file.as_bytes()).pending();
         let mut results: Vec<FileItem> = files.iter().map(pending).collect();
         let lists = Lists::ask(link, &files).await?;
@@ -52,29 +52,29 @@ impl Command for Delete {
             return Ok(report(results));
         };
         for (file, result) in files.iter().zip(&mut results) {
-            let outcome = match lists.tell(file) {
-                There::No => Err(transfer::not_listed()),
-                There::Yes | There::Untold => transfer::remove(link, file).await,
+            let outcome = match lists.existence(file) {
+                Existence::No => Err(transfer::not_listed()),
+                Existence::Yes | Existence::Unlisted => transfer::remove(link, file).await,
             };
-            if !result.settle(outcome.map(|()| None)) {
+            if !result.finish(outcome.map(|()| None)) {
                 break;
             }
         }
-        report(results).or_only_failure()
+        report(results).single_failure()
     }
 }
 
 /// Confirmation with the files to delete and the missing files.
 fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Change {
-    let tell = |file: &FileName| lists.map_or(There::No, |lists| lists.tell(file));
+    let tell = |file: &FileName| lists.map_or(Existence::No, |lists| lists.existence(file));
     let name = |file: &FileName| encoding.decode(file.as_bytes());
     let mut items = Vec::new();
     let mut missing = Vec::new();
     for file in files {
         match tell(file) {
-            There::Yes => items.push(name(file)),
-            There::Untold => items.push(format!("{} (not known whether it exists)", name(file))),
-            There::No => missing.push(name(file)),
+            Existence::Yes => items.push(name(file)),
+            Existence::Unlisted => items.push(format!("{} (not known whether it exists)", name(file))),
+            Existence::No => missing.push(name(file)),
         }
     }
     if items.is_empty() {

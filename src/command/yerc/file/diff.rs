@@ -11,10 +11,10 @@ use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
 use crate::command::backup::compare::{Compared, State};
-use crate::command::backup::dated::{DATE_LINE, aligned};
+use crate::command::backup::job_date::{DATE_LINE, align_files};
 use crate::command::backup::manifest::Hash;
-use crate::command::backup::text_diff::{self, Change, Ending, MOST_TEXT, TextDifference};
-use crate::command::frame::local::{local_name, own_folder};
+use crate::command::backup::text_diff::{self, Change, Ending, MAX_TEXT, TextDifference};
+use crate::command::frame::local_names::{local_name, private_folder};
 use crate::command::robot::file::{FILES, FileItem};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
@@ -52,41 +52,41 @@ impl Command for Diff {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Difference, Failure> {
         let Context { link, screen, robot, several, .. } = context;
-        let file = name::typed(link.encoding, &self.name)?;
+        let file = name::parse_name(link.encoding, &self.name)?;
         let local = self.local.clone().unwrap_or_else(|| {
-            own_folder("".as_ref(), &robot.name, several).join(local_name(link.encoding, file.as_bytes()))
+            private_folder("".as_ref(), &robot.name, several).join(local_name(link.encoding, file.as_bytes()))
         });
-        let mut source = Content::open_any(&local)?;
+        let mut source = Content::open_file(&local)?;
         let shown = Shown::new(link.encoding, file.as_bytes());
-        let mut theirs = Vec::new();
+        let mut controller_bytes = Vec::new();
         let mut progress = screen.bytes_progress(&shown.name, None);
         let without_date = !self.exact && (self.ignore_header || file.file_type() == Some(FileType::Jbi));
         let mut comparer = Comparer::new(source.pieces()?, without_date);
         transfer::fetch(link, &file, |block| {
             progress.advance(block.len() as u64);
             // One byte more than the limit shows that the file is longer.
-            let room = (MOST_TEXT + 1).saturating_sub(theirs.len());
-            theirs.extend_from_slice(block.get(..room).unwrap_or(block));
+            let remaining = (MAX_TEXT + 1).saturating_sub(controller_bytes.len());
+            controller_bytes.extend_from_slice(block.get(..remaining).unwrap_or(block));
             comparer.take(block)
         })
         .await
-        .map_err(|failure| transfer::about(&shown.name, failure))?;
+        .map_err(|failure| transfer::describe_request(&shown.name, failure))?;
         let (comparison, hash) = comparer.finish()?;
         drop(progress);
-        let text = if comparison.first_difference.is_some() && comparison.local_bytes <= MOST_TEXT as u64 {
-            let mut ours = Vec::new();
+        let text = if comparison.first_difference.is_some() && comparison.local_bytes <= MAX_TEXT as u64 {
+            let mut local_text = Vec::new();
             let mut pieces = source.pieces()?;
-            while ours.len() <= MOST_TEXT {
+            while local_text.len() <= MAX_TEXT {
                 let piece = pieces.next_piece()?;
                 if piece.is_empty() {
                     break;
                 }
-                ours.extend(piece);
+                local_text.extend(piece);
             }
             if without_date {
-                ([theirs, ours], _) = aligned(theirs, ours);
+                ([controller_bytes, local_text], _) = align_files(controller_bytes, local_text);
             }
-            TextDifference::of(link.encoding, &theirs, &ours)
+            TextDifference::of(link.encoding, &controller_bytes, &local_text)
         } else {
             None
         };
@@ -127,7 +127,7 @@ impl Difference {
         compared.ignored.extend(dates_differ.then_some(DATE_LINE));
         let Shown { name, name_hex } = name;
         let more = Sides { name_hex, compared, controller_bytes, first_difference_offset: first_difference };
-        let file = FileItem::new(name, more, Ok(())).at(local).holding(hash);
+        let file = FileItem::new(name, more, Ok(())).with_path(local).with_content(hash);
         Self { equal: first_difference.is_none(), files: [file] }
     }
 
@@ -219,13 +219,13 @@ mod tests {
     }
 
     #[test]
-    fn the_same_is_no_failure() {
+    fn equal_files_are_no_failure() {
         assert!(difference(b"a\r\n", b"a\r\n").failure().is_none());
         assert_eq!(text(b"a\0", b"a\0"), "A.JBI on the controller and a.jbi are the same, 2 bytes\n");
     }
 
     #[test]
-    fn changes_read_as_those_of_diff() {
+    fn formats_changes_like_diff() {
         let theirs = b"/JOB\r\n1\r\n2\r\n3\r\n4\r\n5\r\n6\r\n'\x83\x5c\x1b\r\nEND\r\n";
         let ours = b"/JOB\r\n1\r\n2\r\n3\r\n4\r\n5\r\n6\r\nMOVJ\n\r\nEND";
         let failure = difference(theirs, ours).failure().unwrap();
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn line_endings_alone_are_said_in_a_line() {
+    fn summarizes_line_ending_differences() {
         let found = difference(b"a\r\nb\r\nc\r\n", b"a\nb\r\nc");
         let Compared { only_line_endings, hunks, .. } = &found.files[0].more.compared;
         assert_eq!((*only_line_endings, hunks.as_ref().map(Vec::len)), (Some(true), Some(1)));
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_no_text_differ_from_an_offset_on() {
+    fn reports_the_offset_of_a_binary_difference() {
         assert_eq!(
             text(b"a\0bc", b"a\0bd!"),
             "A.JBI on the controller (4 bytes) and a.jbi (5 bytes) differ, starting at byte 3\n"
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_look_alike_in_text_still_differ() {
+    fn reports_differences_invisible_in_text() {
         // Both decode to the same character, but a controller may treat them as different.
         let found = difference(b"\x81\xca\r\n", b"\xee\xf9\r\n");
         assert_eq!(found.files[0].more.compared.hunks.as_ref().map(|hunks| hunks[0].lines.len()), Some(2));

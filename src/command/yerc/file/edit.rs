@@ -5,14 +5,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::content::{Content, JobRules};
-use super::deliver::{Delivery, Manner, deliver};
 use super::name::{self, Shown};
 use super::transfer;
-use crate::command::backup::dated::aligned;
-use crate::command::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MOST_TEXT, TextDifference};
+use super::upload::{Delivery, UploadOptions, upload};
+use crate::command::backup::job_date::align_files;
+use crate::command::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MAX_TEXT, TextDifference};
 use crate::command::frame::dry_run::{Reason, unknown};
-use crate::command::frame::edited::Edited;
-use crate::command::frame::local::local_name;
+use crate::command::frame::editor_session::EditedText;
+use crate::command::frame::local_names::local_name;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::{Command, Context, Report};
@@ -40,7 +40,7 @@ pub struct Edit {
     name: String,
 }
 
-const ENDING: &str = ".JBI";
+const EXTENSION: &str = ".JBI";
 
 impl Command for Edit {
     type Family = Yerc;
@@ -55,24 +55,24 @@ impl Command for Edit {
         if context.several {
             return Err(Failure::usage("job edit works on one job of one robot").hint("select the robot with -r"));
         }
-        let is_whole = self.name.len() >= ENDING.len()
-            && self.name.is_char_boundary(self.name.len() - ENDING.len())
-            && self.name[self.name.len() - ENDING.len()..].eq_ignore_ascii_case(ENDING);
-        let full = if is_whole { self.name.clone() } else { format!("{}{ENDING}", self.name) };
-        let file = name::to_send(name::typed(encoding, &full)?)?;
+        let is_whole = self.name.len() >= EXTENSION.len()
+            && self.name.is_char_boundary(self.name.len() - EXTENSION.len())
+            && self.name[self.name.len() - EXTENSION.len()..].eq_ignore_ascii_case(EXTENSION);
+        let full = if is_whole { self.name.clone() } else { format!("{}{EXTENSION}", self.name) };
+        let file = name::name_to_send(name::parse_name(encoding, &full)?)?;
         if context.link.is_dry() {
             return plan(context.link, &file);
         }
         let old = fetch(context.link, context.screen, &file).await?;
         let form = TextForm::of(encoding, &old);
         let local = local_name(encoding, file.as_bytes());
-        let mut edited = Edited::new(&local, &form.opened(&old), *context.screen)?;
-        match self.put_back(&mut context, &file, (&old, form), &edited).await {
+        let mut edited = EditedText::new(&local, &form.decode_text(&old), *context.screen)?;
+        match self.write_back(&mut context, &file, (&old, form), &edited).await {
             Ok(report) => {
-                edited.done();
+                edited.mark_stored();
                 Ok(report)
             }
-            Err(failure) => Err(edited.kept(failure, |path| {
+            Err(failure) => Err(edited.keep_file(failure, |path| {
                 format!("your text is in {path}; `yerc file put {path} --as {local} --replace --verify` sends it")
             })),
         }
@@ -80,24 +80,24 @@ impl Command for Edit {
 }
 
 impl Edit {
-    async fn put_back(
+    async fn write_back(
         &self,
         context: &mut Context<'_, Yerc>,
         file: &FileName,
         (old, form): (&[u8], TextForm),
-        edited: &Edited,
+        edited: &EditedText,
     ) -> Result<EditedJob, Failure> {
         let (link, screen) = (&mut *context.link, context.screen);
         let shown = Shown::new(link.encoding, file.as_bytes());
         if !edited.is_changed()? {
             return Ok(EditedJob { name: shown, changed: false, bytes: old.len() as u64, hunks: Vec::new() });
         }
-        let new = form.closed(&edited.text()?)?;
+        let new = form.encode_text(&edited.text()?)?;
         // From here on, the file has the bytes for the controller.
         edited.replace(&new)?;
         let mut delivery = Delivery { file: file.clone(), content: Content::open(edited.path())? };
         delivery.content.check_job(JobRules::default())?;
-        if let Some((own, sent)) = delivery.other_name(link.encoding) {
+        if let Some((own, sent)) = delivery.name_in_job(link.encoding) {
             return Err(Failure::usage(format!("the job has //NAME {own}, but its name is {sent}"))
                 .hint("rename a job on the pendant, or send it as a new job with `yerc file put`"));
         }
@@ -111,7 +111,7 @@ impl Edit {
         }
         check_idle(link, file).await?;
         let now = fetch(link, screen, file).await?;
-        let ([before, after], _) = aligned(old.to_vec(), now);
+        let ([before, after], _) = align_files(old.to_vec(), now);
         if before != after {
             return Err(Failure::new(
                 Kind::Rejected,
@@ -126,8 +126,8 @@ impl Edit {
         let (less, more) = (count(LineChange::Removed), count(LineChange::Added));
         let change = Change::new(format!("overwrite the job {}: -{less} +{more} lines", shown.name));
         context.authority.confirm(&change).await?;
-        let manner = Manner { verify: true, ignore_header: true, replace: true };
-        let sent = deliver(context.link, screen, &mut delivery, manner, &mut Vec::new()).await?;
+        let manner = UploadOptions { verify: true, ignore_header: true, replace: true };
+        let sent = upload(context.link, screen, &mut delivery, manner, &mut Vec::new()).await?;
         Ok(EditedJob { name: shown, changed: true, bytes: sent.bytes, hunks })
     }
 }
@@ -145,17 +145,17 @@ impl TextForm {
     /// Text, if the conversion is reversible.
     fn of(encoding: Encoding, bytes: &[u8]) -> Self {
         let text = Self::Text(encoding);
-        if text.closed(&text.opened(bytes)).is_ok_and(|back| back == bytes) { text } else { Self::Bytes }
+        if text.encode_text(&text.decode_text(bytes)).is_ok_and(|back| back == bytes) { text } else { Self::Bytes }
     }
 
-    fn opened(self, bytes: &[u8]) -> Vec<u8> {
+    fn decode_text(self, bytes: &[u8]) -> Vec<u8> {
         match self {
             Self::Bytes => bytes.to_vec(),
             Self::Text(encoding) => encoding.decode(bytes).replace("\r\n", "\n").into_bytes(),
         }
     }
 
-    fn closed(self, edited: &[u8]) -> Result<Vec<u8>, Failure> {
+    fn encode_text(self, edited: &[u8]) -> Result<Vec<u8>, Failure> {
         let Self::Text(encoding) = self else { return Ok(edited.to_vec()) };
         let text = std::str::from_utf8(edited)
             .map_err(|_| Failure::usage("the edited job is not UTF-8").hint("save the job as UTF-8 in the editor"))?;
@@ -181,14 +181,14 @@ async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<
     let fetched = transfer::fetch(link, file, |block| {
         progress.advance(block.len() as u64);
         bytes.extend_from_slice(block);
-        if bytes.len() > MOST_TEXT {
+        if bytes.len() > MAX_TEXT {
             return Err(
                 Failure::usage("the job is too large for this command").hint("download it with `yerc file get`")
             );
         }
         Ok(())
     });
-    fetched.await.map_err(|failure| transfer::about(&name, failure))?;
+    fetched.await.map_err(|failure| transfer::describe_request(&name, failure))?;
     Ok(bytes)
 }
 
@@ -199,7 +199,7 @@ async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     }
     let model = link.model().await?;
     let questions: Vec<ReadJob> = (0..=u8::MAX).map_while(|task| ReadJob::new(model, task).ok()).collect();
-    let stem = file.as_bytes().len().saturating_sub(ENDING.len());
+    let stem = file.as_bytes().len().saturating_sub(EXTENSION.len());
     let runs = link
         .ask_each(&questions)
         .await?
@@ -252,7 +252,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_job_leads_back_to_its_bytes() {
+    fn edited_text_encodes_to_the_original_bytes() {
         let sjis = TextForm::Text(Encoding::ShiftJis);
         for (bytes, form) in [
             (&b"/JOB\r\n'\x83\x65\x83\x58\r\nEND\r\n"[..], sjis),
@@ -261,11 +261,11 @@ mod tests {
             (b"/JOB\r\n'\xff\r\n", sjis),
         ] {
             let found = TextForm::of(Encoding::ShiftJis, bytes);
-            assert_eq!(found.closed(&found.opened(bytes)).unwrap(), bytes);
+            assert_eq!(found.encode_text(&found.decode_text(bytes)).unwrap(), bytes);
             assert!(found == form || bytes.contains(&0xff), "{bytes:?}");
         }
-        assert_eq!(sjis.closed("'テ\n".as_bytes()).unwrap(), b"'\x83\x65\r\n");
-        assert_eq!(sjis.closed(b"a\r\n").unwrap(), b"a\r\n");
-        assert!(sjis.closed("'한\n".as_bytes()).unwrap_err().message.starts_with("line 1"));
+        assert_eq!(sjis.encode_text("'テ\n".as_bytes()).unwrap(), b"'\x83\x65\r\n");
+        assert_eq!(sjis.encode_text(b"a\r\n").unwrap(), b"a\r\n");
+        assert!(sjis.encode_text("'한\n".as_bytes()).unwrap_err().message.starts_with("line 1"));
     }
 }

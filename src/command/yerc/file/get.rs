@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::name;
-use super::pattern::{self, Wanted, is_pattern};
+use super::pattern::{self, FilePattern, is_pattern};
 use super::transfer::{self, Download};
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::local::{LocalNames, Target, make_folder, own_folder};
+use crate::command::frame::local_names::{LocalNames, Target, make_folder, private_folder};
 use crate::command::robot::file::{FileItem, Files};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
@@ -47,10 +47,10 @@ impl Command for Get {
         }
         // Paths without a leading `./` are easier to read.
         let dir = if self.dir == Path::new(".") { Path::new("") } else { &self.dir };
-        let folder = own_folder(dir, &robot.name, several);
+        let folder = private_folder(dir, &robot.name, several);
         // All checks that need no list come before the first request.
-        let typed: Vec<String> = self.names.iter().filter(|name| !is_pattern(name)).cloned().collect();
-        let typed = name::all_typed(link.encoding, &typed)?;
+        let parsed: Vec<String> = self.names.iter().filter(|name| !is_pattern(name)).cloned().collect();
+        let typed = name::parse_names(link.encoding, &parsed)?;
         if !to_stdout {
             targets(link.encoding, &typed, &folder, self.force)?;
         }
@@ -66,17 +66,17 @@ impl Command for Get {
         }
         let mut names = LocalNames::new(link.encoding);
         let (mut work, mut results) = (Vec::with_capacity(wanted.len()), Vec::with_capacity(wanted.len()));
-        for Wanted { name, file } in wanted {
-            let placed = match file.and_then(|file| Ok((names.assign(file.as_bytes())?, file))) {
+        for FilePattern { name, file } in wanted {
+            let targets_of_files = match file.and_then(|file| Ok((names.assign(file.as_bytes())?, file))) {
                 Ok((local, file)) => Ok((file, Target::new(folder.join(local), self.force)?)),
                 Err(failure) => Err(failure),
             };
             let file = name.pending();
-            results.push(match &placed {
-                Ok((_, target)) => file.at(target.path()),
+            results.push(match &targets_of_files {
+                Ok((_, target)) => file.with_path(target.path()),
                 Err(_) => file,
             });
-            work.push(placed);
+            work.push(targets_of_files);
         }
         if !to_stdout && folder != Path::new("") && work.iter().any(Result::is_ok) {
             make_folder(&folder)?;
@@ -89,11 +89,11 @@ impl Command for Get {
                 }
                 Err(failure) => Err(failure),
             };
-            if !result.settle(outcome.map(Some)) {
+            if !result.finish(outcome.map(Some)) {
                 break;
             }
         }
-        Files::new(results, |files| FileItem::transfers(files, "saved")).or_only_failure()
+        Files::new(results, |files| FileItem::transfers(files, "saved")).single_failure()
     }
 }
 
@@ -120,10 +120,10 @@ fn targets(encoding: Encoding, files: &[FileName], folder: &Path, force: bool) -
 async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<(), Failure> {
     let mut out = Printer::new(screen, link.encoding);
     let name = link.encoding.decode(file.as_bytes());
-    let came = transfer::fetch(link, file, |block| out.take(block)).await;
+    let result = transfer::fetch(link, file, |block| out.take(block)).await;
     // Received bytes are written even after a failure; the exit code reports the failure.
     out.flush()?;
-    came.map(|_| ()).map_err(|failure| transfer::about(&name, failure))
+    result.map(|_| ()).map_err(|failure| transfer::describe_request(&name, failure))
 }
 
 /// Writer of a file to stdout: bytes, or on a terminal escaped text that cannot control the terminal.
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn existing_files_stop_the_command_before_anything_is_asked() {
+    fn refuses_existing_files_before_any_request() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("B.JBI"), "x").unwrap();
         let files = [FileName::new(*b"A.JBI").unwrap(), FileName::new(*b"B.JBI").unwrap()];

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::name::{Shown, TypeArg, type_word, word_of};
+use super::name::{Shown, TypeArg, name_of_type, type_word};
 use super::transfer;
 use crate::command::backup;
 use crate::command::frame::items::ItemError;
@@ -39,7 +39,7 @@ impl Command for List {
         let Context { link, screen, .. } = context;
         let filters = match &self.filter {
             Some(filter) => vec![(filter.clone(), None)],
-            None => TypeArg::chosen(&self.types).into_iter().map(|kind| (kind.filter(), Some(kind))).collect(),
+            None => TypeArg::selected_types(&self.types).into_iter().map(|kind| (kind.filter(), Some(kind))).collect(),
         };
         let requests = filters.iter().map(|(filter, _)| files::list_by(filter));
         let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| {
@@ -56,15 +56,15 @@ impl Command for List {
             match transfer::list_by(link, request).await {
                 Ok(names) => listed.extend(names.iter().map(|bytes| {
                     let Shown { name, name_hex } = Shown::new(link.encoding, bytes);
-                    let file_type = word_of(bytes).or(kind.map(type_word));
+                    let file_type = name_of_type(bytes).or(kind.map(type_word));
                     FileItem::new(name, Listed { name_hex, file_type }, Ok(()))
                 })),
                 // A controller may list jobs but refuse to list parameters.
-                Err(failure) if backup::goes_on(&failure) && filters.len() > 1 => {
+                Err(failure) if backup::continues_after(&failure) && filters.len() > 1 => {
                     let more = Listed { name_hex: None, file_type: kind.map(type_word) };
                     listed.push(FileItem::new(filter, more, Err(failure)));
                 }
-                Err(failure) => return Err(transfer::about(&shown(filter), failure)),
+                Err(failure) => return Err(transfer::describe_request(&shown(filter), failure)),
             }
         }
         Ok(Files::new(listed, table).asked(filters.len()))

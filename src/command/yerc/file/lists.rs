@@ -2,7 +2,7 @@
 //! confirmation.
 
 use super::transfer;
-use crate::command::backup::goes_on;
+use crate::command::backup::continues_after;
 use crate::command::frame::dry_run::Reason;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::{self, FileName, FileType};
@@ -10,13 +10,13 @@ use crate::failure::Failure;
 
 /// Existence of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum There {
+pub enum Existence {
     /// The file exists.
     Yes,
     /// The file does not exist.
     No,
     /// Unknown: there is no list of its type, or the controller refused it.
-    Untold,
+    Unlisted,
 }
 
 /// Lists of some types.
@@ -27,10 +27,10 @@ impl Lists {
     /// Reads the lists for these files; `None` in a dry run, which notes the requests.
     pub async fn ask<'a>(
         link: &mut Link,
-        asked: impl IntoIterator<Item = &'a FileName>,
+        is_asked: impl IntoIterator<Item = &'a FileName>,
     ) -> Result<Option<Self>, Failure> {
         let mut types: Vec<FileType> = Vec::new();
-        for kind in asked.into_iter().filter_map(FileName::file_type) {
+        for kind in is_asked.into_iter().filter_map(FileName::file_type) {
             if !types.contains(&kind) {
                 types.push(kind);
             }
@@ -45,8 +45,8 @@ impl Lists {
         for kind in types {
             let names = match transfer::list(link, kind).await {
                 Ok(names) => Some(names),
-                Err(failure) if goes_on(&failure) => None,
-                Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
+                Err(failure) if continues_after(&failure) => None,
+                Err(failure) => return Err(transfer::describe_request(&kind.filter(), failure)),
             };
             lists.0.push((kind, names));
         }
@@ -54,12 +54,14 @@ impl Lists {
     }
 
     /// Whether a file exists. A name in other case counts as well: a controller may treat it as the same file.
-    pub fn tell(&self, file: &FileName) -> There {
+    pub fn existence(&self, file: &FileName) -> Existence {
         let list = self.0.iter().find(|(kind, _)| Some(*kind) == file.file_type());
         match list {
-            Some((_, Some(names))) if names.iter().any(|name| name.eq_ignore_ascii_case(file.as_bytes())) => There::Yes,
-            Some((_, Some(_))) => There::No,
-            Some((_, None)) | None => There::Untold,
+            Some((_, Some(names))) if names.iter().any(|name| name.eq_ignore_ascii_case(file.as_bytes())) => {
+                Existence::Yes
+            }
+            Some((_, Some(_))) => Existence::No,
+            Some((_, None)) | None => Existence::Unlisted,
         }
     }
 }
@@ -69,12 +71,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_refused_list_leaves_it_open() {
+    fn refused_list_leaves_existence_unknown() {
         let file = |name: &str| FileName::new(name).unwrap();
         let lists = Lists(vec![(FileType::Jbi, Some(vec![b"a.JBI".to_vec()])), (FileType::Prm, None)]);
-        assert_eq!(lists.tell(&file("A.JBI")), There::Yes);
-        assert_eq!(lists.tell(&file("B.JBI")), There::No);
-        assert_eq!(lists.tell(&file("ALL.PRM")), There::Untold);
-        assert_eq!(lists.tell(&file("A.DAT")), There::Untold);
+        assert_eq!(lists.existence(&file("A.JBI")), Existence::Yes);
+        assert_eq!(lists.existence(&file("B.JBI")), Existence::No);
+        assert_eq!(lists.existence(&file("ALL.PRM")), Existence::Unlisted);
+        assert_eq!(lists.existence(&file("A.DAT")), Existence::Unlisted);
     }
 }

@@ -51,9 +51,9 @@ impl Controller {
 
     /// Model by the software version, or else the stored model: old versions of armctl called every model except
     /// FS100 a DX200.
-    pub fn taken_of(&self) -> &str {
-        let told = self.software.as_ref().and_then(|software| Model::from_software(software.as_bytes()));
-        match told {
+    pub fn description_of(&self) -> &str {
+        let reported = self.software.as_ref().and_then(|software| Model::from_software(software.as_bytes()));
+        match reported {
             Some(model) => model.name(),
             None => &self.model,
         }

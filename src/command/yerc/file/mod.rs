@@ -5,7 +5,6 @@ mod cmos;
 mod compare;
 mod content;
 mod delete;
-mod deliver;
 mod diff;
 mod edit;
 mod get;
@@ -18,13 +17,14 @@ mod put;
 mod read;
 mod restore;
 mod transfer;
+mod upload;
 
 pub use backup::back_up;
 pub use edit::Edit;
 pub(super) use name::{Shown, exact};
 pub(super) use read::{FileReading, read_files};
 pub use restore::Restore;
-pub(super) use transfer::{LISTS, fetch, list, plan_all, taken as download_failed};
+pub(super) use transfer::{LISTS, fetch, list, name_taken as download_failed, plan_all};
 
 use crate::command::commands;
 

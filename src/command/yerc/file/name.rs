@@ -67,14 +67,14 @@ impl TypeArg {
     }
 
     /// Selected types without duplicates, in the order of the manual.
-    pub fn chosen(args: &[Self]) -> Vec<FileType> {
+    pub fn selected_types(args: &[Self]) -> Vec<FileType> {
         let has = |kind| args.iter().any(|arg| arg.file_type().is_none_or(|chosen| chosen == kind));
         FileType::ALL.into_iter().filter(|kind| has(*kind)).collect()
     }
 }
 
 /// Type of a file in reports; null if its extension is not in the manuals.
-pub fn word_of(name: &[u8]) -> Option<&'static str> {
+pub fn name_of_type(name: &[u8]) -> Option<&'static str> {
     FileType::from_name(name).map(type_word)
 }
 
@@ -91,7 +91,7 @@ pub fn type_word(kind: FileType) -> &'static str {
 }
 
 /// Parses a file argument: text in the robot's encoding, or `hex:` and bytes.
-pub fn typed(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
+pub fn parse_name(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
     let bytes = if let Some(digits) = text.strip_prefix("hex:") {
         unhex(digits).ok_or_else(|| {
             Failure::usage(format!("'{text}' has an incomplete hexadecimal byte"))
@@ -106,7 +106,7 @@ pub fn typed(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
 }
 
 /// Checks a name for an upload.
-pub fn to_send(file: FileName) -> Result<FileName, Failure> {
+pub fn name_to_send(file: FileName) -> Result<FileName, Failure> {
     match file.check_load() {
         Ok(()) => Ok(file),
         Err(error) => Err(Failure::usage(error.to_string()).hint("use a job name such as TESTJOB.JBI")),
@@ -114,10 +114,10 @@ pub fn to_send(file: FileName) -> Result<FileName, Failure> {
 }
 
 /// Parses several file arguments and rejects duplicates.
-pub fn all_typed(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>, Failure> {
+pub fn parse_names(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>, Failure> {
     let mut files = Vec::with_capacity(texts.len());
     for text in texts {
-        let file = typed(encoding, text)?;
+        let file = parse_name(encoding, text)?;
         if files.contains(&file) {
             return Err(Failure::usage(format!("{text} is named twice")).hint("list every file once"));
         }
@@ -142,8 +142,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_typed_in_text_or_hex() {
-        let name = |text| typed(Encoding::ShiftJis, text).map(|file| file.as_bytes().to_vec());
+    fn parses_names_in_text_or_hex() {
+        let name = |text| parse_name(Encoding::ShiftJis, text).map(|file| file.as_bytes().to_vec());
         assert_eq!(name("TESTJOB.JBI"), Ok(b"TESTJOB.JBI".to_vec()));
         assert_eq!(name("てすと.JBI"), Ok(b"\x82\xC4\x82\xB7\x82\xC6.JBI".to_vec()));
         assert_eq!(name("A\\xff.JBI"), Ok(b"A\xff.JBI".to_vec()));
@@ -157,14 +157,17 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_named_once() {
+    fn rejects_a_repeated_file() {
         let texts = ["A.JBI".to_owned(), "hex:412e4a4249".to_owned()];
-        assert!(all_typed(Encoding::ShiftJis, &texts).is_err());
+        assert!(parse_names(Encoding::ShiftJis, &texts).is_err());
     }
 
     #[test]
-    fn types_come_in_the_order_of_the_manual() {
-        assert_eq!(TypeArg::chosen(&[TypeArg::All]), FileType::ALL);
-        assert_eq!(TypeArg::chosen(&[TypeArg::Cnd, TypeArg::Jbi, TypeArg::Cnd]), [FileType::Jbi, FileType::Cnd]);
+    fn orders_types_as_in_the_manual() {
+        assert_eq!(TypeArg::selected_types(&[TypeArg::All]), FileType::ALL);
+        assert_eq!(
+            TypeArg::selected_types(&[TypeArg::Cnd, TypeArg::Jbi, TypeArg::Cnd]),
+            [FileType::Jbi, FileType::Cnd]
+        );
     }
 }

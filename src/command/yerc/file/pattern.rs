@@ -3,15 +3,15 @@
 
 use super::name::{self, Shown};
 use super::transfer;
-use crate::command::backup::goes_on;
+use crate::command::backup::continues_after;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::{self, FileName, FileType};
 use crate::failure::{Failure, Kind};
-use crate::settings::inventory::fits;
+use crate::settings::inventory::matches_pattern;
 
 /// A requested file, or the reason why there is none.
 #[derive(Debug)]
-pub struct Wanted {
+pub struct FilePattern {
     /// Name, or the pattern or list without a result.
     pub name: Shown,
     /// Name to send.
@@ -26,15 +26,15 @@ pub fn is_pattern(text: &str) -> bool {
 /// File types that a pattern can match.
 fn types(pattern: &str) -> Vec<FileType> {
     let ending = pattern.rsplit_once('.').map_or("*", |(_, ending)| ending);
-    FileType::ALL.into_iter().filter(|kind| fits(&ending.to_uppercase(), kind.extension())).collect()
+    FileType::ALL.into_iter().filter(|kind| matches_pattern(&ending.to_uppercase(), kind.extension())).collect()
 }
 
 /// Finds the files of arguments: names unchanged, and matches of patterns, without duplicates. `None` in a dry run,
 /// which notes the requests.
-pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<Wanted>>, Failure> {
+pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePattern>>, Failure> {
     let (patterns, names): (Vec<&String>, Vec<&String>) = asked.iter().partition(|text| is_pattern(text));
     let names: Vec<String> = names.into_iter().cloned().collect();
-    let files = name::all_typed(link.encoding, &names)?;
+    let files = name::parse_names(link.encoding, &names)?;
     let kinds: Vec<FileType> = {
         let wanted: Vec<FileType> = patterns.iter().flat_map(|pattern| types(pattern)).collect();
         FileType::ALL.into_iter().filter(|kind| wanted.contains(kind)).collect()
@@ -53,41 +53,41 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<Wanted
     }
     let encoding = link.encoding;
     let shown = |bytes: &[u8]| Shown::new(encoding, bytes);
-    let mut found: Vec<Wanted> =
-        files.into_iter().map(|file| Wanted { name: shown(file.as_bytes()), file: Ok(file) }).collect();
-    let mut fitted = vec![false; patterns.len()];
+    let mut found: Vec<FilePattern> =
+        files.into_iter().map(|file| FilePattern { name: shown(file.as_bytes()), file: Ok(file) }).collect();
+    let mut matched = vec![false; patterns.len()];
     let mut refused = Vec::new();
     for kind in kinds {
         let listed = match transfer::list(link, kind).await {
             Ok(listed) => listed,
-            Err(failure) if goes_on(&failure) => {
-                refused.push(Wanted { name: shown(kind.filter().as_bytes()), file: Err(failure) });
+            Err(failure) if continues_after(&failure) => {
+                refused.push(FilePattern { name: shown(kind.filter().as_bytes()), file: Err(failure) });
                 continue;
             }
-            Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
+            Err(failure) => return Err(transfer::describe_request(&kind.filter(), failure)),
         };
         for bytes in listed {
             let name = shown(&bytes);
-            let mut fits_one = false;
-            for (pattern, fitted) in patterns.iter().zip(&mut fitted) {
-                let fits = fits(pattern, &name.name);
-                *fitted |= fits;
-                fits_one |= fits;
+            let mut matches_any = false;
+            for (pattern, fitted) in patterns.iter().zip(&mut matched) {
+                let is_match = matches_pattern(pattern, &name.name);
+                *fitted |= is_match;
+                matches_any |= is_match;
             }
             let is_new = !found.iter().any(|other| other.name == name);
-            if fits_one && is_new {
+            if matches_any && is_new {
                 // A listed name that is not allowed is an error of the controller, not of the operator.
                 let file = name::exact(bytes).map_err(|failure| Failure { kind: Kind::Malformed, ..failure });
-                found.push(Wanted { name, file });
+                found.push(FilePattern { name, file });
             }
         }
     }
-    for (pattern, fitted) in patterns.into_iter().zip(fitted) {
+    for (pattern, fitted) in patterns.into_iter().zip(matched) {
         // After a refused list, the matching files are unknown.
         if !fitted && !types(pattern).iter().any(|kind| refused.iter().any(|list| list.name.name == kind.filter())) {
-            let nothing = Failure::new(Kind::Refused, "no file on the controller matches")
+            let no_match = Failure::new(Kind::Refused, "no file on the controller matches")
                 .hint("`yerc file list --type all` shows the names; names are case-sensitive");
-            found.push(Wanted { name: Shown { name: pattern.clone(), name_hex: None }, file: Err(nothing) });
+            found.push(FilePattern { name: Shown { name: pattern.clone(), name_hex: None }, file: Err(no_match) });
         }
     }
     found.extend(refused);
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pattern_tells_which_lists_are_asked_for() {
+    fn pattern_selects_the_requested_lists() {
         assert_eq!(types("*.JBI"), [FileType::Jbi]);
         assert_eq!(types("WELD*.jbi"), [FileType::Jbi]);
         assert_eq!(types("*.?S?"), [FileType::Lst]);

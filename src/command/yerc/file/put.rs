@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::content::{Content, JobRules};
-use super::deliver::{self, Delivery, Manner, deliver};
-use super::lists::{Lists, There};
+use super::lists::{Existence, Lists};
 use super::name::{self, Shown};
+use super::upload::{self, Delivery, UploadOptions, upload};
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::local::controller_name;
+use crate::command::frame::local_names::controller_name;
 use crate::command::robot::file::{FileItem, Files};
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
@@ -65,8 +65,8 @@ impl Command for Put {
         let mut results: Vec<FileItem> = Vec::with_capacity(deliveries.len());
         for delivery in &deliveries {
             let Delivery { file, content } = delivery;
-            let mut result = Shown::new(link.encoding, file.as_bytes()).pending().at(content.path());
-            if let Some((own, sent)) = delivery.other_name(link.encoding) {
+            let mut result = Shown::new(link.encoding, file.as_bytes()).pending().with_path(content.path());
+            if let Some((own, sent)) = delivery.name_in_job(link.encoding) {
                 screen.note(&format!(
                     "warning: {} has //NAME {own} but is sent as {sent}: a controller may refuse it, or store it as \
                      {own}",
@@ -76,24 +76,25 @@ impl Command for Put {
             }
             results.push(result);
         }
-        let manner = Manner { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
+        let manner = UploadOptions { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
         let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
-        deliver::confirm(&authority, link.encoding, lists.as_ref(), &deliveries).await?;
+        upload::confirm_uploads(&authority, link.encoding, lists.as_ref(), &deliveries).await?;
         let Some(lists) = lists else {
             for delivery in &mut deliveries {
-                deliver::plan(link, delivery, manner, Reason::default())?;
+                upload::plan(link, delivery, manner, Reason::default())?;
             }
             return Ok(report(results));
         };
         for (delivery, result) in deliveries.iter_mut().zip(&mut results) {
             // An unlisted file was not confirmed, so it is not deleted.
-            let replace = manner.replace && lists.tell(&delivery.file) != There::No;
-            let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, &mut result.more.notes).await;
-            if !result.settle(outcome.map(Some)) {
+            let replace = manner.replace && lists.existence(&delivery.file) != Existence::No;
+            let outcome =
+                upload(link, screen, delivery, UploadOptions { replace, ..manner }, &mut result.more.notes).await;
+            if !result.finish(outcome.map(Some)) {
                 break;
             }
         }
-        report(results).or_only_failure()
+        report(results).single_failure()
     }
 }
 
@@ -107,10 +108,10 @@ impl Put {
         let mut deliveries: Vec<Delivery> = Vec::with_capacity(self.files.len());
         for path in &self.files {
             let file = match &self.name {
-                Some(name) => name::typed(encoding, name)?,
+                Some(name) => name::parse_name(encoding, name)?,
                 None => named_after(encoding, path)?,
             };
-            let file = name::to_send(file)?;
+            let file = name::name_to_send(file)?;
             if deliveries.iter().any(|other| other.file == file) {
                 return Err(Failure::usage(format!(
                     "{}: another file has the same name on the controller",
@@ -130,13 +131,13 @@ impl Put {
 
 /// Controller file name for a local file.
 fn named_after(encoding: Encoding, path: &Path) -> Result<FileName, Failure> {
-    let wrong = |why: String| {
+    let invalid = |why: String| {
         Failure::usage(format!("{}: {why}", path.display())).hint("set the name on the controller with --as")
     };
     let local = path.file_name().and_then(|name| name.to_str());
-    let local = local.ok_or_else(|| wrong("the file name cannot be sent".to_owned()))?;
-    let bytes = controller_name(encoding, local).map_err(|error| wrong(error.to_string()))?;
-    name::exact(bytes).map_err(|failure| wrong(failure.message))
+    let local = local.ok_or_else(|| invalid("the file name cannot be sent".to_owned()))?;
+    let bytes = controller_name(encoding, local).map_err(|error| invalid(error.to_string()))?;
+    name::exact(bytes).map_err(|failure| invalid(failure.message))
 }
 
 #[cfg(test)]
@@ -156,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_is_checked_before_anything_is_sent() {
+    fn checks_everything_before_sending() {
         let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, bytes: &[u8]| {
             let path = folder.path().join(name);
@@ -181,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn escaped_local_names_become_what_they_were() {
+    fn unescapes_local_names() {
         let file = named_after(Encoding::ShiftJis, Path::new("x/%43ON.JBI")).unwrap();
         assert_eq!(file.as_bytes(), b"CON.JBI");
     }

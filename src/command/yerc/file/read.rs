@@ -1,8 +1,8 @@
 //! Reads small files of the controller for commands that need their content.
 
-use super::lists::{Lists, There};
+use super::lists::{Existence, Lists};
 use super::transfer;
-use crate::command::backup::goes_on;
+use crate::command::backup::continues_after;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::files::FileName;
 use crate::failure::{Failure, Kind};
@@ -39,7 +39,7 @@ pub async fn read_files(
     drop(looking);
     let mut answers = Vec::with_capacity(files.len());
     for (file, name) in files.iter().zip(names) {
-        if lists.tell(file) == There::No {
+        if lists.existence(file) == Existence::No {
             answers.push(FileReading::Missing);
             continue;
         }
@@ -57,8 +57,8 @@ pub async fn read_files(
         match read.await {
             Ok(0) => answers.push(FileReading::Missing),
             Ok(_) => answers.push(FileReading::Read(bytes)),
-            Err(failure) if goes_on(&failure) => answers.push(FileReading::Failed(failure)),
-            Err(failure) => return Err(transfer::about(name, failure)),
+            Err(failure) if continues_after(&failure) => answers.push(FileReading::Failed(failure)),
+            Err(failure) => return Err(transfer::describe_request(name, failure)),
         }
     }
     Ok(Some(answers))

@@ -5,18 +5,18 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use super::content::Content;
-use super::deliver::{self, Delivery, Manner, deliver};
-use super::lists::{Lists, There};
+use super::lists::{Existence, Lists};
 use super::manifest::{Manifest, controller_file};
 use super::name::Shown;
 use super::transfer;
+use super::upload::{self, Delivery, UploadOptions, upload};
 use crate::command::Context;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::Entry;
-use crate::command::backup::{NOT_CHOSEN, Only, Restored, Restoring, would_leave, would_write};
+use crate::command::backup::{NOT_CHOSEN, Only, RestoreSelection, Restored, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::local::own_folder;
+use crate::command::frame::local_names::private_folder;
 use crate::command::robot::file::{FileItem, State};
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
@@ -38,18 +38,18 @@ pub struct Restore {
 }
 
 /// Jobs that the controller does not overwrite by itself are replaced.
-const MANNER: Manner = Manner { verify: false, ignore_header: false, replace: true };
+const OPTIONS: UploadOptions = UploadOptions { verify: false, ignore_header: false, replace: true };
 
 /// Order of sending: jobs need their data and conditions first, and after parameters a controller may need a restart.
 const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
 /// Types that are sent by default. Parameters and system data change the controller itself.
-const USUAL: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
+const DEFAULT_TYPES: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
 
 impl Restore {
     /// Options from those of the `restore` command of all families.
-    pub fn of(restoring: &Restoring) -> Self {
-        let Restoring { folder, only: patterns, machine, force } = restoring.clone();
-        let mut types = USUAL.to_vec();
+    pub fn of(restoring: &RestoreSelection) -> Self {
+        let RestoreSelection { folder, only: patterns, machine, force } = restoring.clone();
+        let mut types = DEFAULT_TYPES.to_vec();
         if patterns != Only::default() || machine {
             types.push(FileType::Lst);
         }
@@ -62,22 +62,22 @@ impl Restore {
     /// Sends what differs.
     pub async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several, authority } = context;
-        let folder = own_folder(&self.folder, &robot.name, several);
-        manifest::check_origin(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
-        let manifest: Manifest = manifest::existing(&folder)?;
-        let (taken_of, model) = (manifest.controller.taken_of(), link.model().await?);
+        let folder = private_folder(&self.folder, &robot.name, several);
+        manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, robot, self.force)?;
+        let manifest: Manifest = manifest::open_existing(&folder)?;
+        let (taken_of, model) = (manifest.controller.description_of(), link.model().await?);
         if taken_of != model.name() && !link.is_dry() && !self.force {
             let message = format!("the backup is of a {taken_of}, {} is a {model}", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
                 .hint("check the model (?model=…); --force sends the files anyway"));
         }
-        let chosen = self.chosen(&manifest)?;
+        let chosen = self.select_entries(&manifest)?;
         let (mut deliveries, mut results) = (Vec::with_capacity(chosen.len()), Vec::with_capacity(chosen.len()));
         for (file, entry) in chosen {
             let Some(copy) = &entry.copy else { continue };
             copy.check(&folder)?;
             if copy.bytes > 0 {
-                results.push(Shown::new(link.encoding, file.as_bytes()).pending().of_copy(&folder, copy));
+                results.push(Shown::new(link.encoding, file.as_bytes()).pending().from_copy(&folder, copy));
                 deliveries.push(Delivery { file, content: Content::open(&folder.join(&copy.file))? });
             } else {
                 screen.note(&format!("{} is empty and cannot be sent", entry.name));
@@ -100,13 +100,15 @@ impl Restore {
             .zip(&mut results)
             .filter(|(_, result)| result.more.state == State::NotTried)
             .collect();
-        deliver::confirm(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery)).await?;
+        upload::confirm_uploads(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery))
+            .await?;
         let mut sent = screen.parts_progress("files sent", open.len());
         for (delivery, result) in &mut open {
             // An unlisted file was not confirmed, so it is not deleted.
-            let replace = lists.tell(&delivery.file) != There::No;
-            let outcome = deliver(link, screen, delivery, Manner { replace, ..MANNER }, &mut result.more.notes).await;
-            if !result.settle(outcome.map(Some)) {
+            let replace = lists.existence(&delivery.file) != Existence::No;
+            let outcome =
+                upload(link, screen, delivery, UploadOptions { replace, ..OPTIONS }, &mut result.more.notes).await;
+            if !result.finish(outcome.map(Some)) {
                 break;
             }
             sent.advance(1);
@@ -119,14 +121,14 @@ impl Restore {
 impl Restore {
     /// Notes each file of the backup in a dry run.
     fn plan_items(link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
-        let on = "whether the controller's file differs";
+        let enabled = "whether the controller's file differs";
         for entry in &manifest.files {
             let Some(copy) = &entry.copy else { continue };
             let file = controller_file(entry).ok();
             let is_sent = deliveries.iter().any(|delivery| Some(&delivery.file) == file.as_ref());
-            let is_usual = file.and_then(|file| file.file_type()).is_some_and(|kind| USUAL.contains(&kind));
+            let is_usual = file.and_then(|file| file.file_type()).is_some_and(|kind| DEFAULT_TYPES.contains(&kind));
             link.plan_item(match (is_sent, is_usual) {
-                (true, _) => would_write(&entry.name, ("bytes", copy.bytes), on),
+                (true, _) => would_write(&entry.name, ("bytes", copy.bytes), enabled),
                 (false, true) => would_leave(&entry.name, NOT_CHOSEN),
                 (false, false) => would_leave(&entry.name, "parameters or system data; written only with --machine"),
             });
@@ -134,7 +136,7 @@ impl Restore {
     }
 
     /// Files to send, in the order of sending.
-    fn chosen<'a>(&self, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
+    fn select_entries<'a>(&self, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
         let copied = || manifest.files.iter().filter(|entry| entry.copy.is_some());
         self.patterns.check(&copied().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
         let mut chosen = Vec::new();
@@ -163,10 +165,10 @@ async fn compare(
     results: &mut [FileItem],
 ) -> Result<bool, Failure> {
     for (Delivery { file, content }, result) in deliveries.iter_mut().zip(results) {
-        if lists.tell(file) == There::No {
+        if lists.existence(file) == Existence::No {
             continue;
         }
-        match transfer::is_same(link, screen, file, content, MANNER.ignore_header).await {
+        match transfer::is_same(link, screen, file, content, OPTIONS.ignore_header).await {
             Ok(true) => result.succeed(State::Kept),
             Ok(false) => {}
             Err(failure) => {
@@ -188,7 +190,7 @@ async fn plan(link: &mut Link, deliveries: &mut [Delivery], authority: &Authorit
     }
     let reason = Reason::about("if it differs").depending_on("whether the file differs");
     for delivery in deliveries {
-        deliver::plan(link, delivery, MANNER, reason)?;
+        upload::plan(link, delivery, OPTIONS, reason)?;
     }
     Ok(())
 }

@@ -6,8 +6,8 @@ use super::compare::Comparer;
 use super::content::Content;
 use crate::command::backup::manifest::Hash;
 use crate::command::frame::dry_run::Reason;
-pub use crate::command::frame::items::about;
-use crate::command::frame::local::Target;
+pub use crate::command::frame::items::describe_request;
+use crate::command::frame::local_names::Target;
 use crate::command::yerc::link::{Link, Refusal};
 use crate::controller::yerc::files::{self, FileName, FileType, split_list};
 use crate::controller::yerc::request::Request;
@@ -50,7 +50,7 @@ pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>,
             Ok(Vec::new())
         }
         end => {
-            taken(service::LIST, &end)?;
+            name_taken(service::LIST, &end)?;
             let names = split_list(&data).map_err(|error| {
                 Failure::new(Kind::Malformed, error.to_string()).hint("record it with --trace and report it")
             })?;
@@ -65,7 +65,7 @@ pub async fn fetch(
     file: &FileName,
     take: impl FnMut(&[u8]) -> Result<(), Failure>,
 ) -> Result<u64, Failure> {
-    taken(service::SAVE, &link.download(&file.save(), MAX_FILE, None, take).await?)
+    name_taken(service::SAVE, &link.download(&file.save(), MAX_FILE, None, take).await?)
 }
 
 /// Like [`fetch`], for a file that was just listed: without content it is empty, not missing.
@@ -76,7 +76,7 @@ pub async fn fetch_listed(
 ) -> Result<u64, Failure> {
     match link.download(&file.save(), MAX_FILE, None, take).await? {
         DownloadEnd::Nothing(Status { added: NO_FILE_OR_EMPTY, .. }) => Ok(0),
-        end => taken(service::SAVE, &end),
+        end => name_taken(service::SAVE, &end),
     }
 }
 
@@ -143,7 +143,7 @@ pub async fn fetch_backup(
 ) -> Result<Option<u64>, Failure> {
     match link.download(&files::batch_backup(), MAX_FILE, Some(wait), take).await? {
         DownloadEnd::Finished => Ok(None),
-        end => taken(service::SAVE, &end).map(Some),
+        end => name_taken(service::SAVE, &end).map(Some),
     }
 }
 
@@ -180,7 +180,7 @@ pub async fn send(
     let name = link.encoding.decode(file.as_bytes());
     match end {
         UploadEnd::Unnumbered { .. } if is_listed(link, file).await => {}
-        end => drop(given(&end, total, &name, &path)?),
+        end => drop(name_sent(&end, total, &name, &path)?),
     }
     Ok(pieces.hash)
 }
@@ -196,10 +196,11 @@ pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason
     let mut pieces = content.pieces()?;
     link.plan_upload(&file.load(), reason, || pieces.next_piece())?;
     let Some(kind) = file.file_type() else { return Ok(()) };
-    let unnumbered = Reason::about("whether the file exists, if the last acknowledgement has no block number");
+    let without_block_number =
+        Reason::about("whether the file exists, if the last acknowledgement has no block number");
     let mark = "whether the last acknowledgement has a block number";
     let depends_on = reason.depends_on.map_or_else(|| mark.to_owned(), |before| format!("{before}, and {mark}"));
-    Ok(link.plan_download(&files::list(kind), unnumbered.depending_on(&depends_on))?)
+    Ok(link.plan_download(&files::list(kind), without_block_number.depending_on(&depends_on))?)
 }
 
 /// Notes in a dry run several downloads, one after the other.
@@ -222,14 +223,14 @@ pub fn not_listed() -> Failure {
 }
 
 /// Received size, or the failure of the transfer.
-pub fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
+pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
     match *end {
         DownloadEnd::Complete { bytes, .. } => Ok(bytes),
         DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => {
             Err(Refusal::of_file(service, status).into())
         }
         DownloadEnd::Refused { status, bytes } => {
-            Err(about(&format!("aborted after {bytes} bytes"), Refusal::of_file(service, status).into()))
+            Err(describe_request(&format!("aborted after {bytes} bytes"), Refusal::of_file(service, status).into()))
         }
         DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller reported success but sent nothing")
             .hint("`yerc file list` shows whether the file exists; it may be empty")),
@@ -248,7 +249,7 @@ pub fn taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
     }
 }
 
-fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Failure> {
+fn name_sent(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Failure> {
     let unknown = |message: String| {
         Err(Failure::new(Kind::OutcomeUnknown, message)
             .hint(format!("`yerc file diff {name} {path}` shows what the controller has now")))
@@ -270,9 +271,10 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
         UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => {
             Err(Refusal::of_file(service::LOAD, status).into())
         }
-        UploadEnd::Refused { status, taken, .. } => {
-            Err(about(&format!("after {taken} of {total} bytes"), Refusal::of_file(service::LOAD, status).into()))
-        }
+        UploadEnd::Refused { status, taken, .. } => Err(describe_request(
+            &format!("after {taken} of {total} bytes"),
+            Refusal::of_file(service::LOAD, status).into(),
+        )),
         UploadEnd::OutcomeUnknown { sent: 0, counters, .. } => {
             let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
             unknown(format!(
@@ -296,10 +298,10 @@ mod tests {
     use crate::controller::yerc::table::service;
 
     #[test]
-    fn a_refusal_of_a_repeated_last_block_leaves_the_outcome_open() {
+    fn refused_repeat_of_the_last_block_leaves_the_outcome_unknown() {
         let status = Status::refused(0xE4A1);
         let end = |sent, repeated| {
-            given(&UploadEnd::Refused { status, sent, taken: 0, repeated }, 9, "A.JBI", "a.jbi").unwrap_err()
+            name_sent(&UploadEnd::Refused { status, sent, taken: 0, repeated }, 9, "A.JBI", "a.jbi").unwrap_err()
         };
         assert_eq!(end(9, true).kind, Kind::OutcomeUnknown);
         assert_eq!(
@@ -309,32 +311,32 @@ mod tests {
         assert_eq!(end(9, false).kind, Kind::Refused);
         assert_eq!(end(0, true).kind, Kind::Refused);
         let counters = Counters::default();
-        let lost = given(&UploadEnd::OutcomeUnknown { sent: 9, taken: 0, counters }, 9, "A.JBI", "a.jbi");
+        let lost = name_sent(&UploadEnd::OutcomeUnknown { sent: 9, taken: 0, counters }, 9, "A.JBI", "a.jbi");
         assert_eq!(lost.unwrap_err().kind.exit(), 6);
     }
 
     #[test]
-    fn a_missing_file_is_a_refusal_with_a_hint() {
+    fn missing_file_is_a_refusal_with_a_hint() {
         for status in
             [Status { code: 0, added_size: 1, added: 0xE29C }, Status::refused(0x4040), Status::refused(0xE2B3)]
         {
             let end =
                 if status.is_ok() { DownloadEnd::Nothing(status) } else { DownloadEnd::Refused { status, bytes: 0 } };
-            let failure = taken(service::SAVE, &end).unwrap_err();
+            let failure = name_taken(service::SAVE, &end).unwrap_err();
             assert_eq!(failure.kind, Kind::Refused);
             assert!(failure.hint.unwrap().contains("file list"));
         }
     }
 
     #[test]
-    fn a_broken_transfer_is_never_a_file() {
+    fn broken_transfer_creates_no_file() {
         let status = Status::refused(0xE28B);
         for (end, kind) in [
             (DownloadEnd::Refused { status, bytes: 479 }, Kind::Refused),
             (DownloadEnd::Finished, Kind::Malformed),
             (DownloadEnd::TooLarge { limit: 5, bytes: 4 }, Kind::Malformed),
         ] {
-            assert_eq!(taken(service::SAVE, &end).unwrap_err().kind, kind);
+            assert_eq!(name_taken(service::SAVE, &end).unwrap_err().kind, kind);
         }
     }
 }

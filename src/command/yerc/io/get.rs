@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use clap::Args;
 
-use super::super::orders::usage;
-use super::super::parts::{Parts, read_in_parts};
+use super::super::batch_split::{BatchSplit, read_in_batches};
+use super::super::switch_commands::usage;
 use super::{group_item, item, signal};
 use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
@@ -50,14 +50,17 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
         let Context { link, robot, screen, .. } = context;
-        let names = names::of(robot, screen);
-        let signals: Vec<Signal> = once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));
-        let groups: Vec<u16> = once(self.groups.iter().flat_map(|groups| groups.0.iter().copied()));
+        let names = names::of_robot(robot, screen);
+        let signals: Vec<Signal> =
+            read_each_group_once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));
+        let groups: Vec<u16> = read_each_group_once(self.groups.iter().flat_map(|groups| groups.0.iter().copied()));
         let wanted: Vec<u16> = signals.iter().map(|signal| signal.group()).chain(groups.iter().copied()).collect();
-        let model = link.model_for(|model| signal::reads(model, &wanted, false)).await?;
-        signal::reads(model, &wanted, false)?;
+        let model = link.model_for(|model| signal::is_readable(model, &wanted, false)).await?;
+        signal::is_readable(model, &wanted, false)?;
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
-        let bytes = read_in_parts(link, plan, &once(wanted.into_iter()), |_| Parts::Halves, |_, _| {}).await?;
+        let bytes =
+            read_in_batches(link, plan, &read_each_group_once(wanted.into_iter()), |_| BatchSplit::Halves, |_, _| {})
+                .await?;
         let byte = |group| Some(bytes.get(&group)?.clone().map_err(Failure::from));
         let signals = signals.into_iter().filter_map(|signal| {
             let on = byte(signal.group())?.map(|byte| signal.is_on(byte));
@@ -76,7 +79,7 @@ impl Watchable for Get {
     const WATCHED: Watched = WATCHED;
 }
 
-fn once<T: Copy + Eq + std::hash::Hash>(items: impl Iterator<Item = T>) -> Vec<T> {
-    let mut seen = HashSet::new();
-    items.filter(|item| seen.insert(*item)).collect()
+fn read_each_group_once<T: Copy + Eq + std::hash::Hash>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut by_group = HashSet::new();
+    items.filter(|item| by_group.insert(*item)).collect()
 }

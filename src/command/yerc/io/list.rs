@@ -2,8 +2,8 @@
 
 use clap::Args;
 
-use super::super::orders::usage;
-use super::super::parts::{Parts, read_in_parts};
+use super::super::batch_split::{BatchSplit, read_in_batches};
+use super::super::switch_commands::usage;
 use super::{item, kind, signal};
 use crate::command::frame::names;
 use crate::command::robot::io::{Filter, IoRow, Signals};
@@ -28,18 +28,18 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
         let Context { link, robot, screen, .. } = context;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let groups = |model| -> Vec<u16> {
             let all = signal::groups(model).filter(|(_, span)| self.filter.has(kind(span.meaning)));
             all.map(|(group, _)| group).collect()
         };
-        let model = link.model_for(|model| signal::reads(model, &groups(model), false)).await?;
+        let model = link.model_for(|model| signal::is_readable(model, &groups(model), false)).await?;
         let wanted = groups(model);
         let progress = screen.spinner("reading signals");
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
         let say =
             |_: &[u16], known: usize| progress.say(&format!("reading signals: {known} of {} groups", wanted.len()));
-        let bytes = read_in_parts(link, plan, &wanted, |_| Parts::Halves, say).await?;
+        let bytes = read_in_batches(link, plan, &wanted, |_| BatchSplit::Halves, say).await?;
         if let Some(Err(denied)) = bytes.values().find(|_| bytes.values().all(Result::is_err)) {
             return Err(denied.clone().into());
         }

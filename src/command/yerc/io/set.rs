@@ -5,9 +5,9 @@ use std::str::FromStr;
 
 use clap::Args;
 
-use super::super::orders::usage;
-use super::super::parts::{Parts, plan_in_parts, read_in_parts};
-use super::super::writes::{WriteOrder, before, write_all};
+use super::super::batch_split::{BatchSplit, plan_in_batches, read_in_batches};
+use super::super::switch_commands::usage;
+use super::super::write_all::{WriteOrder, old_value, write_all};
 use super::{group_item, item, signal};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::names;
@@ -38,7 +38,7 @@ pub struct Set {
     signals: Vec<Switch>,
     /// Eight signals of a group, the first one lowest, such as 2701=0xA5 (repeatable)
     #[arg(long = "group", value_name = "GROUP=VALUE")]
-    groups: Vec<Whole>,
+    groups: Vec<GroupValue>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,17 +53,17 @@ impl FromStr for Switch {
     fn from_str(text: &str) -> Result<Self, String> {
         let (signal, state) = typed::setting(text, "a signal", "a state", "27010=on")?;
         let on = typed::state(state)?;
-        Ok(Self { signal: signal::single(signal)?, on })
+        Ok(Self { signal: signal::parse_single(signal)?, on })
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Whole {
+struct GroupValue {
     group: u16,
     value: u8,
 }
 
-impl FromStr for Whole {
+impl FromStr for GroupValue {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -97,19 +97,19 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenSignals, Failure> {
         let Context { link, screen, robot, .. } = context;
-        let names = names::of(robot, screen);
+        let names = names::of_robot(robot, screen);
         let changes = self.changes()?;
         let groups: Vec<u16> = changes.keys().copied().collect();
-        let model = link.model_for(|model| signal::reads(model, &groups, true)).await?;
-        signal::reads(model, &groups, true)?;
+        let model = link.model_for(|model| signal::is_readable(model, &groups, true)).await?;
+        signal::is_readable(model, &groups, true)?;
         let (whole, partial): (Vec<u16>, Vec<u16>) =
             changes.keys().partition(|group| changes.get(group).is_some_and(|change| change.mask == u8::MAX));
-        let mut found = before(link, &plan_io_reads(model, &whole).map_err(usage)?).await?;
+        let mut found = old_value(link, &plan_io_reads(model, &whole).map_err(usage)?).await?;
         if link.is_dry() && !partial.is_empty() {
             return Err(plan(link, model, &partial, &changes)?);
         }
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
-        for (group, outcome) in read_in_parts(link, plan, &partial, |_| Parts::Halves, |_, _| {}).await? {
+        for (group, outcome) in read_in_batches(link, plan, &partial, |_| BatchSplit::Halves, |_, _| {}).await? {
             let byte = outcome.map_err(|denied| {
                 let failure = Failure::from(denied);
                 Failure { message: format!("group {group}: {}; nothing was written", failure.message), ..failure }
@@ -127,7 +127,7 @@ impl Command for Set {
             let old = old(signal.group()).map(|byte| IoValue::State(signal.is_on(byte)));
             Ok(WrittenSignal::new(item(model, *signal, names)?, old, IoValue::State(*on)))
         });
-        let groups = self.groups.iter().map(|Whole { group, value }| {
+        let groups = self.groups.iter().map(|GroupValue { group, value }| {
             let old = old(*group).map(|byte| IoValue::Number(byte.into()));
             Ok(WrittenSignal::new(group_item(model, *group)?, old, IoValue::Number((*value).into())))
         });
@@ -160,7 +160,7 @@ impl Set {
 fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
     let reads = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
     let about = |groups: &[u16]| Some(format!("reads group {}", typed::runs(groups, "..")));
-    plan_in_parts(link, reads, partial, |_| Parts::Halves, about)?;
+    plan_in_batches(link, reads, partial, |_| BatchSplit::Halves, about)?;
     let writes = |byte: u8| {
         let values: Vec<(u16, u8)> = changes.iter().map(|(group, change)| (*group, change.apply(byte))).collect();
         plan_io_writes(model, &values).map_err(usage)
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_of_a_group_join_and_leave_the_others_alone() {
+    fn combines_signals_of_a_group_and_keeps_the_others() {
         let changes = set(&["27010=on", "#27017=off", "27020=1"], &["2703=0xA5"]).unwrap();
         assert_eq!(changes[&2701], Change { mask: 0x81, value: 0x01 });
         assert_eq!(changes[&2701].apply(0xF0), 0x71);
@@ -211,11 +211,11 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_given_twice() {
+    fn rejects_repeated_signals() {
         assert_eq!(set(&["27013=on", "27013=off"], &[]).unwrap_err().message, "#27013 is given twice");
         assert!(set(&["27013=on"], &["2701=0"]).is_err());
         assert!("27018=on".parse::<Switch>().is_err());
         assert!("27010=yes".parse::<Switch>().unwrap_err().contains("on or off"));
-        assert!("2701=256".parse::<Whole>().unwrap_err().contains("0 to 255"));
+        assert!("2701=256".parse::<GroupValue>().unwrap_err().contains("0 to 255"));
     }
 }

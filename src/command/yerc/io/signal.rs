@@ -1,6 +1,6 @@
 //! Signal and group arguments.
 
-use super::super::orders::usage;
+use super::super::switch_commands::usage;
 use crate::command::frame::names;
 use crate::controller::names::Kind;
 use crate::controller::typed;
@@ -14,8 +14,10 @@ use crate::failure::Failure;
 const ANY: &str = "10010";
 
 /// Parses a single signal: `20010`, `#20010`, or its name.
-pub fn single(text: &str) -> Result<Signal, String> {
-    names::read(&[Kind::Signal], ANY, text, |text| text.parse().map_err(|error: SignalError| error.to_string()))
+pub fn parse_single(text: &str) -> Result<Signal, String> {
+    names::parse_or_name(&[Kind::Signal], ANY, text, |text| {
+        text.parse().map_err(|error: SignalError| error.to_string())
+    })
 }
 
 /// A signal or a range of them, as typed.
@@ -25,7 +27,7 @@ pub struct Signals(pub Vec<Signal>);
 impl Signals {
     /// Parses `20010`, `#20010`, `20010..20027` (inclusive), or a name.
     pub fn parse(text: &str) -> Result<Self, String> {
-        names::read(&[Kind::Signal], ANY, text, Self::addresses)
+        names::parse_or_name(&[Kind::Signal], ANY, text, Self::addresses)
     }
 
     fn addresses(text: &str) -> Result<Self, String> {
@@ -48,7 +50,7 @@ pub fn class(model: Model, group: u16) -> Result<&'static Span, Failure> {
 }
 
 /// Meanings of groups (all writable if `to_write` is set), and the read requests for them.
-pub fn reads(model: Model, groups: &[u16], to_write: bool) -> Result<(Vec<&'static str>, Vec<IoStep>), Failure> {
+pub fn is_readable(model: Model, groups: &[u16], to_write: bool) -> Result<(Vec<&'static str>, Vec<IoStep>), Failure> {
     let class = if to_write { writable } else { class };
     let meanings = groups.iter().map(|group| Ok(class(model, *group)?.meaning)).collect::<Result<_, Failure>>()?;
     Ok((meanings, plan_io_reads(model, groups).map_err(usage)?))
@@ -82,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_leave_out_what_does_not_exist() {
+    fn ranges_omit_missing_addresses() {
         let Signals(signals) = Signals::parse("20016..#20021").unwrap();
         let names: Vec<String> = signals.iter().map(ToString::to_string).collect();
         assert_eq!(names, ["#20016", "#20017", "#20020", "#20021"]);
@@ -91,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_written_is_said_with_what_can() {
+    fn rejects_read_only_signals_with_the_writable_ones() {
         let failure = writable(Model::Dx200, 1001).unwrap_err();
         assert_eq!(failure.message, "group 1001 (#10010) is robot user output, which can only be read on a dx200");
         assert!(failure.hint.unwrap().contains("#27010 to #29567 (network input)"));

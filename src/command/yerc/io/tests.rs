@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::command::yerc::testing::{Bench, DX200, dry_run};
 
 #[test]
-fn a_change_of_one_signal_is_foreseen() {
+fn plans_the_change_of_one_signal() {
     let plan = dry_run(DX200, &["io", "set", "27010=on", "27011=off"]).unwrap();
     let [read, write] = &plan[..] else { panic!("{plan:?}") };
     assert_eq!(read["about"], "reads group 2701");
@@ -15,7 +15,7 @@ fn a_change_of_one_signal_is_foreseen() {
 }
 
 #[test]
-fn one_signal_is_switched_and_the_others_stay() {
+fn switches_one_signal_and_keeps_the_others() {
     let mut bench = Bench::new("sim:?model=fs100");
     bench.data(&["io", "set", "--group", "2501=0xF0"]);
     let data = bench.data(&["io", "set", "25010=on", "25017=off", "25020=on"]);

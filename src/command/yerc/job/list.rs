@@ -4,9 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::yerc::chosen::Chosen;
 use crate::command::yerc::file::{LISTS, Shown, list, plan_all};
 use crate::command::yerc::link::Yerc;
+use crate::command::yerc::selected_job::SelectedJob;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::files::{self, FileType};
 use crate::failure::Failure;
@@ -23,7 +23,7 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
         let Context { link, screen, .. } = context;
-        let selected = Chosen::ask(link).await?;
+        let selected = SelectedJob::ask(link).await?;
         if link.is_dry() {
             plan_all(link, LISTS, [files::list(FileType::Jbi)])?;
             return Ok(Listing::default());

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_count_from_nop() {
+    fn counts_lines_from_nop() {
         let file = b"/JOB\r\n//NAME A\r\n//INST\r\nNOP\r\nMOVJ C00000 VJ=0.78\r\n'NOTE\r\nEND\r\n";
         assert_eq!(line(file, 0), Some(&b"NOP"[..]));
         assert_eq!(line(file, 1), Some(&b"MOVJ C00000 VJ=0.78"[..]));

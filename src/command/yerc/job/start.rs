@@ -11,13 +11,13 @@ use tokio::time::Instant;
 use super::{Select, about, without_suffix};
 use crate::command::frame::cycle::{Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, unknown};
-use crate::command::frame::ending::ProgramEnd;
+use crate::command::frame::wait_arguments::ProgramEnd;
 use crate::command::robot::program::{Program, ProgramState};
-use crate::command::yerc::chosen::Chosen;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::{Link, Yerc};
-use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
-use crate::command::yerc::numbers::within;
+use crate::command::yerc::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
+use crate::command::yerc::numbers::parse_in_range;
+use crate::command::yerc::selected_job::SelectedJob;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
@@ -41,7 +41,7 @@ pub struct Start {
     #[arg(add = complete::JOB)]
     name: Option<String>,
     /// Start line
-    #[arg(long, value_name = "N", requires = "name", conflicts_with = "repeat", value_parser = within::<u32>(0, 9999))]
+    #[arg(long, value_name = "N", requires = "name", conflicts_with = "repeat", value_parser = parse_in_range::<u32>(0, 9999))]
     line: Option<u32>,
     #[command(flatten)]
     end: ProgramEnd,
@@ -60,7 +60,7 @@ impl Command for Start {
     }
 
     fn intent(&self) -> String {
-        let times = self.repeat.in_words();
+        let times = self.repeat.describe();
         match &self.name {
             Some(name) => format!("select and start job {}{times}", without_suffix(name)),
             None => format!("start the selected job{times}"),
@@ -76,33 +76,33 @@ impl Command for Start {
         if self.repeat.repeat.is_some() {
             check_cycle(link).await?;
         }
-        let mut chosen = Chosen::ask(link).await?;
+        let mut selected = SelectedJob::ask(link).await?;
         let is_asked = authority.asks();
-        authority.confirm(&self.change(&chosen, link)).await?;
+        authority.confirm(&self.change(&selected, link)).await?;
         if is_asked {
-            chosen.check_again(link).await?;
+            selected.check_unchanged(link).await?;
         }
         if let Some((name, select)) = named {
-            let selected = link.for_purpose("selects it").ask(&select).await;
-            selected.map_err(|failure| about(self.name.as_deref().unwrap_or_default(), failure))?;
-            if let Some(now) = Chosen::ask(link.for_purpose("selected job")).await.known()?
+            let outcome = link.for_purpose("selects it").ask(&select).await;
+            outcome.map_err(|failure| about(self.name.as_deref().unwrap_or_default(), failure))?;
+            if let Some(now) = SelectedJob::ask(link.for_purpose("selected job")).await.known()?
                 && !link.is_dry()
             {
-                check_selected(link, &name, &chosen, &now)?;
-                chosen = now;
+                check_selected(link, &name, &selected, &now)?;
+                selected = now;
             }
         }
-        let job = chosen.name(link.encoding);
+        let job = selected.name(link.encoding);
         let limit = self.end.limit().or(self.repeat.repeat.map(|_| None));
         let mut runs = Runs::new(self.repeat);
         let mut line = None;
         for _ in 0..self.repeat.count() {
-            let early = |failure| runs.early(failure);
+            let too_early = |failure| runs.add_to_failure(failure);
             // A job is started again only if its state is the same as before.
             if runs.last_ms().is_some() {
-                chosen.check_again(link).await.map_err(early)?;
+                selected.check_unchanged(link).await.map_err(too_early)?;
             }
-            link.for_purpose("starts it").ask(&StartJob).await.map_err(early)?;
+            link.for_purpose("starts it").ask(&StartJob).await.map_err(too_early)?;
             let Some(limit) = limit else {
                 return Ok(Started {
                     accepted: true,
@@ -113,8 +113,8 @@ impl Command for Start {
                 return Err(self.plan(link).await?);
             }
             let what = runs.next().unwrap_or_else(|| "the job is running".to_owned());
-            let (elapsed_ms, at) = wait(link, screen, limit, &what, &chosen).await.map_err(early)?;
-            runs.ended(elapsed_ms);
+            let (elapsed_ms, at) = wait(link, screen, limit, &what, &selected).await.map_err(too_early)?;
+            runs.add(elapsed_ms);
             line = at;
         }
         let elapsed_ms = runs.last_ms();
@@ -133,12 +133,12 @@ impl Start {
     }
 
     /// Text of the confirmation.
-    fn change(&self, chosen: &Chosen, link: &Link) -> Change {
-        let times = self.repeat.in_words();
+    fn change(&self, chosen: &SelectedJob, link: &Link) -> Change {
+        let times = self.repeat.describe();
         let Some(name) = &self.name else { return chosen.change(link.encoding, &times) };
         let from = self.line.filter(|line| *line > 0).map(|line| format!(" from line {line}")).unwrap_or_default();
         let change = Change::new(format!("select and start job {}{from}{times}", without_suffix(name)));
-        chosen.noted(change, link.encoding)
+        chosen.item_name(change, link.encoding)
     }
 
     /// Notes in a dry run what follows a start.
@@ -173,8 +173,8 @@ async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
 }
 
 /// Rejects the start if another job is selected than the confirmed one.
-fn check_selected(link: &Link, name: &[u8], before: &Chosen, now: &Chosen) -> Result<(), Failure> {
-    let shown = |chosen: &Chosen| chosen.name(link.encoding).unwrap_or_else(|| "an unknown job".to_owned());
+fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &SelectedJob) -> Result<(), Failure> {
+    let shown = |chosen: &SelectedJob| chosen.name(link.encoding).unwrap_or_else(|| "an unknown job".to_owned());
     if !now.is(name) {
         return Err(outdated(format!(
             "{} is selected now, not {}; no job was started",
@@ -196,24 +196,25 @@ async fn wait(
     screen: &Screen,
     limit: Option<Duration>,
     what: &str,
-    chosen: &Chosen,
+    chosen: &SelectedJob,
 ) -> Result<(u64, Option<u32>), Failure> {
     let progress = screen.spinner(what);
     let began = Instant::now();
     let mut watch = Watch::new(limit);
     loop {
-        let status = link.ask(&ReadStatus).await.map_err(|failure| lost("the job was started", failure))?;
+        let status = link.ask(&ReadStatus).await.map_err(|failure| lost_contact("the job was started", failure))?;
         let look = watch.look(began.elapsed(), status);
         // A short job may end before the first status read; then its line has changed.
-        if !watch.seen && matches!(look, Look::Running | Look::NotSeen) && has_gone_on(link, chosen).await? {
+        if !watch.was_running && matches!(look, Look::Running | Look::NeverStarted) && has_changed(link, chosen).await?
+        {
             break;
         }
         match look {
             Look::Running => {}
             Look::Ended => break,
             Look::Stopped(trouble) => return Err(trouble.failure(link, "the job was started", None).await),
-            Look::NotSeen => return Err(not_seen()),
-            Look::Late(limit) => {
+            Look::NeverStarted => return Err(never_started()),
+            Look::Timeout(limit) => {
                 let message = format!("the job is still running after {}", duration::display(limit));
                 return Err(Failure::new(Kind::ConditionNotMet, message)
                     .hint("it continues; see `yerc status` and `yerc job show` for the progress"));
@@ -222,7 +223,7 @@ async fn wait(
         if let Some(line) = line(link, screen.can_redraw()).await? {
             progress.say(&format!("{what}: {line}"));
         }
-        tokio::time::sleep(LOOK_EVERY).await;
+        tokio::time::sleep(POLL_INTERVAL).await;
     }
     let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
     // The end is certain even if the controller refuses to report the line.
@@ -232,10 +233,10 @@ async fn wait(
 }
 
 /// Whether the line has changed since the start.
-async fn has_gone_on(link: &mut Link, chosen: &Chosen) -> Result<bool, Failure> {
-    let Chosen::Job(before) = chosen else { return Ok(false) };
+async fn has_changed(link: &mut Link, chosen: &SelectedJob) -> Result<bool, Failure> {
+    let SelectedJob::Job(before) = chosen else { return Ok(false) };
     let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
-    let now = link.try_ask(&question).await.map_err(|failure| lost("the job was started", failure))?;
+    let now = link.ask_optional(&question).await.map_err(|failure| lost_contact("the job was started", failure))?;
     Ok(now.is_ok_and(|now| now.name == before.name && now.line != before.line))
 }
 
@@ -245,15 +246,15 @@ async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure>
         return Ok(None);
     }
     let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
-    let answer = link.try_ask(&question).await.map_err(|failure| lost("the job was started", failure))?;
+    let answer = link.ask_optional(&question).await.map_err(|failure| lost_contact("the job was started", failure))?;
     let encoding = link.encoding;
     Ok(answer.ok().map(|job| format!("{} line {}", encoding.decode(job.name.as_bytes()), job.line)))
 }
 
-fn not_seen() -> Failure {
+fn never_started() -> Failure {
     let message = format!(
         "the start was accepted, but no running job was reported within {}: it may have ended at once or not started",
-        duration::display(START_WITHIN)
+        duration::display(START_TIMEOUT)
     );
     Failure::new(Kind::ConditionNotMet, message)
         .hint("`yerc job show` shows the line, `yerc status` shows what holds the robot")
@@ -263,7 +264,7 @@ fn not_seen() -> Failure {
 #[derive(Debug)]
 pub(super) struct Watch {
     limit: Option<Duration>,
-    seen: bool,
+    was_running: bool,
 }
 
 /// State of the job after a status read.
@@ -276,28 +277,28 @@ pub(super) enum Look {
     /// Stopped by a cause.
     Stopped(StandstillCause),
     /// Not seen running in time.
-    NotSeen,
+    NeverStarted,
     /// Running longer than the limit.
-    Late(Duration),
+    Timeout(Duration),
 }
 
 impl Watch {
     pub(super) fn new(limit: Option<Duration>) -> Self {
-        Self { limit, seen: false }
+        Self { limit, was_running: false }
     }
 
     pub(super) fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
-        self.seen |= status.running();
+        self.was_running |= status.running();
         match StandstillCause::of(status) {
             // An error is a message on the pendant; the job may continue.
             Some(StandstillCause::Error) if status.running() => {}
             Some(trouble) => return Look::Stopped(trouble),
-            None if self.seen && !status.running() => return Look::Ended,
+            None if self.was_running && !status.running() => return Look::Ended,
             None => {}
         }
         match self.limit {
-            _ if !self.seen && elapsed >= START_WITHIN => Look::NotSeen,
-            Some(limit) if elapsed >= limit => Look::Late(limit),
+            _ if !self.was_running && elapsed >= START_TIMEOUT => Look::NeverStarted,
+            Some(limit) if elapsed >= limit => Look::Timeout(limit),
             _ => Look::Running,
         }
     }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -57,5 +57,5 @@ async fn hold(context: Context<'_, Yerc>) -> Result<Done, Failure> {
     context.link.ask(&query::Hold(true)).await?;
     let words = "HOLD is on and the job is stopped; to continue it, use `yerc hold off` and `yerc job start`";
     // A stop must not be delayed by a read, as in `hold on`.
-    Ok(New::of("held", true, words).replaces(Old::UNREAD))
+    Ok(NewValue::of("held", true, words).replaces(Old::UNREAD))
 }

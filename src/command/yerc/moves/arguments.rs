@@ -4,11 +4,11 @@ use std::fmt;
 
 use clap::{Args, ValueEnum};
 
-use crate::command::frame::ending::MotionEnd;
 use crate::command::frame::names;
+use crate::command::frame::wait_arguments::MotionEnd;
 use crate::command::robot::motion;
 use crate::command::yerc::complete;
-use crate::command::yerc::numbers::within;
+use crate::command::yerc::numbers::parse_in_range;
 use crate::command::yerc::position::{extended_words, form_words, in_a_line};
 use crate::controller::names::Kind;
 use crate::controller::units::{self, Unit};
@@ -108,7 +108,7 @@ impl fmt::Display for Destination {
 }
 
 fn typed(text: &str) -> Result<Typed, String> {
-    names::read(&[Kind::Variable], "P0", text, coordinates_or_variable)
+    names::parse_or_name(&[Kind::Variable], "P0", text, coordinates_or_variable)
 }
 
 fn coordinates_or_variable(text: &str) -> Result<Typed, String> {
@@ -204,10 +204,10 @@ pub(super) struct Frame {
     #[arg(long, value_enum)]
     pub(super) coordinate: Option<Coordinate>,
     /// Tool number [default: 0]
-    #[arg(long, value_name = "N", value_parser = within::<u32>(0, 63))]
+    #[arg(long, value_name = "N", value_parser = parse_in_range::<u32>(0, 63))]
     pub(super) tool: Option<u32>,
     /// User coordinate number [default: 0]
-    #[arg(long, value_name = "N", required_if_eq("coordinate", "user"), value_parser = within::<u32>(0, 63))]
+    #[arg(long, value_name = "N", required_if_eq("coordinate", "user"), value_parser = parse_in_range::<u32>(0, 63))]
     pub(super) user: Option<u32>,
 }
 

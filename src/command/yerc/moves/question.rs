@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::arguments::{Speed, Values, base_told, describe};
-use super::going::Goal;
+use super::execution::Goal;
 use crate::command::yerc::position::{axis_names, in_a_line};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;

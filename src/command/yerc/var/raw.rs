@@ -6,9 +6,9 @@ use super::table::{Variables, is_undefined};
 use super::word::with_field;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Known as _;
-use crate::command::frame::orders::{BEFORE, unwritten};
-use crate::command::frame::store::{Differing, overwritten};
-use crate::command::yerc::each::ReadError;
+use crate::command::frame::settings_report::{OLD_VALUE, nothing_written};
+use crate::command::frame::store::{Differing, old_rows};
+use crate::command::yerc::existing_items::ReadError;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::query::ReadVariable;
 use crate::controller::yerc::request::Request;
@@ -36,7 +36,7 @@ pub async fn confirm_raw(
         new.iter().map(|(reference, value)| (*reference, positions.get(reference), value)).collect();
     let is_clear = !has_unread && new.len() == positions.len();
     let table = Variables::with_encoding(link.encoding);
-    authority.confirm(&if is_clear { overwritten(&table, &differing) } else { Change::new(intent) }).await
+    authority.confirm(&if is_clear { old_rows(&table, &differing) } else { Change::new(intent) }).await
 }
 
 /// What positions hold before a write.
@@ -52,7 +52,7 @@ async fn taught(link: &mut Link, references: &[Reference]) -> Result<Taught, Fai
     let mut taught = Taught { positions: HashMap::new(), has_unread: false };
     for reference in references {
         let question = ReadVariable::new(reference.kind, reference.number);
-        match link.for_purpose(BEFORE).try_ask(&question).await.known().map_err(unwritten)? {
+        match link.for_purpose(OLD_VALUE).ask_optional(&question).await.known().map_err(nothing_written)? {
             Some(Ok(value)) => drop(taught.positions.insert(*reference, value)),
             Some(Err(refusal)) => taught.has_unread |= !is_undefined(&ReadError::Refused(refusal)),
             None => {}

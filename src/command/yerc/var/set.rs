@@ -9,8 +9,8 @@ use super::cells::LAST_TOOL;
 use super::table::{Draft, StringForm, Variables};
 use super::word::Word;
 use crate::command::frame::names;
-use crate::command::frame::store::{Row, Store as _, Work, WrittenOf, write};
-use crate::command::frame::teach::printed_position;
+use crate::command::frame::store::{Row, Store as _, TableWrite, WrittenOf, write};
+use crate::command::frame::teach::parse_printed_position;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
@@ -99,7 +99,7 @@ fn reference_of(text: &str) -> Result<(Option<Reference>, Option<&str>), String>
         Some((name, field)) if is_part(field.unwrap_or_default()) || address(name).is_ok() => (name, field),
         _ => (text, None),
     };
-    let (reference, is_open) = names::read_marked(&[Kind::Variable], "B0", name, address)?;
+    let (reference, is_open) = names::parse_or_name_marked(&[Kind::Variable], "B0", name, address)?;
     Ok(((!is_open).then_some(reference), field))
 }
 
@@ -167,7 +167,7 @@ impl Command for Set {
         let keys: Vec<Reference> = self.assignments.iter().map(|assignment| assignment.reference).collect();
         table.prepare(link, &keys).await?;
         let rows = self.rows(&table)?;
-        write(Work { table, robot, link, screen, authority }, rows).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, authority }, rows).await?.or_only_failure()
     }
 }
 
@@ -206,7 +206,7 @@ fn value_of(table: &Variables, reference: Reference, input: &Input) -> Result<Va
         Input::Text(text) => table.parse(reference, text).map_err(|error| {
             wrong(error).hint("full-width characters take two bytes each; --encoding sets the encoding of the robot")
         }),
-        Input::File(path) => table.parse(reference, &printed_position(path)?).map_err(|error| {
+        Input::File(path) => table.parse(reference, &parse_printed_position(path)?).map_err(|error| {
             Failure::usage(format!("{}: {error}", path.display()))
                 .hint(format!("it must be a position of {}", reference.kind.letters()))
         }),

@@ -12,13 +12,13 @@ use super::value::Data;
 use super::word::{Word, unlike};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::orders::{BEFORE, IF_DIFFERENT};
-use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Store, Words, Writable, ids};
+use crate::command::frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
+use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Store, TableWords, Writable, ids};
+use crate::command::yerc::batch_split::{BatchSplit, read_in_batches};
 use crate::command::yerc::complete;
-use crate::command::yerc::each::ReadError;
+use crate::command::yerc::existing_items::ReadError;
 use crate::command::yerc::link::{Link, Yerc};
-use crate::command::yerc::orders::usage;
-use crate::command::yerc::parts::{Parts, read_in_parts};
+use crate::command::yerc::switch_commands::usage;
 use crate::command::yerc::var::position::held;
 use crate::controller::Risk;
 use crate::controller::names::Kind;
@@ -153,7 +153,7 @@ impl Store for Variables {
     type More = More;
     type Options = StringForm;
 
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["variable", "variables"],
         placeholder: "REF",
         range: "B0, I1..I20, D5, R3, S2, P10, BP1, EX1, a kind such as P, or a name",
@@ -261,14 +261,14 @@ impl Store for Variables {
         // Each position can be undefined; the valid numbers of other kinds end somewhere.
         let parts = |run: &[Reference]| {
             let is_position = run.first().is_some_and(|reference| reference.kind.is_position());
-            if is_position { Parts::Single } else { Parts::Halves }
+            if is_position { BatchSplit::Single } else { BatchSplit::Halves }
         };
         let told = |_: &[Reference], known: usize| {
             if let Some(progress) = &progress {
                 progress.say(&format!("reading variables ({known} of {})", keys.len()));
             }
         };
-        let answers = read_in_parts(link, |references| Ok(plan_reads(references)), &wanted, parts, told).await?;
+        let answers = read_in_batches(link, |references| Ok(plan_reads(references)), &wanted, parts, told).await?;
         let missing = || Failure::new(FailureKind::Malformed, "the answer does not have this variable");
         let row = |reference: &Reference| match answers.get(reference) {
             Some(Ok(value)) => Ok(value.clone()),
@@ -317,7 +317,7 @@ impl Writable for Variables {
         }
     }
 
-    fn whole(&self, key: Reference, draft: &Draft, old: Option<&Value>) -> Result<Value, Failure> {
+    fn complete_draft(&self, key: Reference, draft: &Draft, old: Option<&Value>) -> Result<Value, Failure> {
         let wrong = |why: String| Failure::usage(format!("{key}: {why}")).hint("nothing was written");
         match (draft, old) {
             (Draft::Whole(value), _) => Ok(value.clone()),
@@ -336,7 +336,7 @@ impl Writable for Variables {
 
     async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<Value>, Failure> {
         let keys: Vec<Reference> = rows.iter().map(|(key, _)| *key).collect();
-        self.read(link.for_purpose(BEFORE), screen, &keys).await
+        self.read(link.for_purpose(OLD_VALUE), screen, &keys).await
     }
 
     /// Consecutive variables of a kind are one request; so is a single axis of a BP or an EX.

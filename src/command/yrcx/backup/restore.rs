@@ -5,7 +5,7 @@ use super::parts::Part;
 use crate::command::Context;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::LeftOut;
-use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Restored, Restoring, would_leave, would_write};
+use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, RestoreSelection, Restored, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::interrupt::interruptible;
@@ -30,11 +30,11 @@ pub struct Job {
 }
 
 /// Restores a backup.
-pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Result<Restored, Failure> {
+pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
     let Context { link, screen, authority, .. } = context;
-    let Restoring { folder, only, machine, force } = restoring;
+    let RestoreSelection { folder, only, machine, force } = restoring;
     link.no_unit("a backup contains the whole controller")?;
-    let manifest: manifest::Manifest<Controller> = manifest::existing(folder)?;
+    let manifest: manifest::Manifest<Controller> = manifest::open_existing(folder)?;
     let saved = || manifest.files.iter().filter(|entry| entry.copy.is_some());
     only.check(&saved().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
     let (mut jobs, mut items) = (Vec::new(), Vec::new());
@@ -44,7 +44,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
             continue;
         }
         copy.check(folder)?;
-        items.push(FileItem::values(part).of_copy(folder, copy));
+        items.push(FileItem::values(part).from_copy(folder, copy));
         jobs.push(Job { part, called: part.to_string(), stores: content::load(part, folder)? });
     }
     if jobs.is_empty() {

@@ -7,10 +7,10 @@ use clap::Args;
 
 use super::content::{self, Controller, GAP, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
+use crate::command::backup::arguments::BackupOptions;
 use crate::command::backup::manifest::Entry;
-use crate::command::backup::options::BackupOptions;
-use crate::command::backup::saving::{self, Saving, Task, cut_off_by_ctrl_c};
-use crate::command::backup::{BackedUp, Making, Only};
+use crate::command::backup::save::{self, BackupWriter, Task, interrupted_failure};
+use crate::command::backup::{BackedUp, Only, SaveOptions};
 use crate::command::frame::dry_run::unknown;
 use crate::command::robot::file::{FileItem, State};
 use crate::command::yrcx::link::Link;
@@ -56,7 +56,7 @@ impl Command for Backup {
 }
 
 /// Makes a backup.
-pub async fn back_up(context: Context<'_, Yrcx>, making: Making) -> Result<BackedUp, Failure> {
+pub async fn back_up(context: Context<'_, Yrcx>, making: SaveOptions) -> Result<BackedUp, Failure> {
     let Context { link, screen, robot, several, .. } = context;
     link.no_unit("a backup contains the whole controller")?;
     let task = Task::new(making, robot, several)?;
@@ -64,7 +64,7 @@ pub async fn back_up(context: Context<'_, Yrcx>, making: Making) -> Result<Backe
     if link.is_dry() {
         return dry_run(link, &asked);
     }
-    cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task, asked))).await
+    interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task, asked))).await
 }
 
 /// Requested points.
@@ -128,7 +128,7 @@ struct Reading<'a> {
     task: &'a Task<Controller>,
     controller: Controller,
     asked: Asked,
-    list: Saving<'a, Controller>,
+    list: BackupWriter<'a, Controller>,
 }
 
 impl Reading<'_> {
@@ -192,7 +192,13 @@ impl Reading<'_> {
             };
             let (holds, absent) = (Some(text.holds(part)), text.refusals());
             let Text { text, left_out, .. } = text;
-            Ok(saving::Part { content: saving::Content::Text(part.file(), text), holds, left_out, absent, notes })
+            Ok(save::SavedPart {
+                content: save::Content::Text(part.file(), text),
+                holds,
+                left_out,
+                is_absent: absent,
+                notes,
+            })
         };
         list.part(entry, read).await
     }

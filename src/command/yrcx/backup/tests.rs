@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::command::Family as _;
-use crate::command::frame::testing::{self, context, everything};
+use crate::command::frame::testing::{self, context, unlimited_access};
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::testing::{frames, quiet, resolved, risk, words};
@@ -35,7 +35,7 @@ impl Desk {
             format!("sim:?state={}", file.display())
         };
         let (robot, _) = resolved(&target, &["status"]).unwrap();
-        let access = everything();
+        let access = unlimited_access();
         let link = runtime.block_on(Yrcx::connect(&robot, access, &quiet())).unwrap();
         Self { folder, runtime, robot, link }
     }

@@ -1,6 +1,6 @@
 //! `yrcx comment` (4.3.2).
 
-use crate::command::frame::store::{Ids, Words, ids, table_commands};
+use crate::command::frame::store::{Ids, TableWords, ids, table_commands};
 use crate::command::yrcx::backup::{COMMENTS, Records};
 use crate::command::yrcx::stores::{Kind, Numbered};
 use crate::controller::yrcx::value::{Key, Values};
@@ -16,7 +16,7 @@ pub struct Comments;
 
 impl Kind for Comments {
     type Value = String;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["comment of point", "comments"],
         placeholder: "POINT",
         range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::frame::store::{Ids, Words, ids, table_commands};
+use crate::command::frame::store::{Ids, TableWords, ids, table_commands};
 use crate::command::yrcx::backup::{HANDS, Records};
 use crate::command::yrcx::stores::{Kind, Numbered, int, mm};
 use crate::controller::yrcx::value::{Key, Values};
@@ -23,7 +23,7 @@ pub struct Hands;
 
 impl Kind for Hands {
     type Value = Data;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["hand", "hands"],
         placeholder: "HAND",
         range: "Hands, 0 to 31: 1, 0..31 or 1,5",

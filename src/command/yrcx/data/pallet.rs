@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::frame::store::{Ids, Words, ids, table_commands};
+use crate::command::frame::store::{Ids, TableWords, ids, table_commands};
 use crate::command::yrcx::backup::{PALLETS, Records};
 use crate::command::yrcx::stores::{Kind, Numbered, all_zero, int};
 use crate::controller::yrcx::value::{Key, Values};
@@ -19,7 +19,7 @@ pub struct Pallets;
 
 impl Kind for Pallets {
     type Value = Places;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["pallet", "pallets"],
         placeholder: "PALLET",
         range: "Pallets, 0 to 39: 10, 0..39 or 1,5",

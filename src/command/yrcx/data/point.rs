@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::sheet::PointSheet;
 use crate::command::frame::store::{
-    Copy, Dump, Get, Ids, List, Restore, Words, Work, Writable as _, WrittenOf, ids, write,
+    Copy, Dump, Get, Ids, List, Restore, TableWords, TableWrite, Writable as _, WrittenOf, ids, write,
 };
-use crate::command::frame::teach::printed_position;
+use crate::command::frame::teach::parse_printed_position;
 use crate::command::robot::position::Position;
 use crate::command::yrcx::backup::{POINTS, Records};
 use crate::command::yrcx::link::Yrcx;
@@ -46,7 +46,7 @@ pub struct Points;
 
 impl Kind for Points {
     type Value = Position;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["point", "points"],
         placeholder: "POINT",
         range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",
@@ -120,7 +120,7 @@ impl Command for Set {
         let draft = table
             .draft(self.point, &texts)
             .map_err(|why| Failure::usage(format!("point {}: {why}", self.point)).hint("see `yrcx point set -h`"))?;
-        write(Work { table, robot, link, screen, authority }, vec![(self.point, draft)]).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, authority }, vec![(self.point, draft)]).await?.or_only_failure()
     }
 }
 
@@ -152,7 +152,7 @@ fn four(text: &str) -> Result<Four, String> {
 
 /// Point in the output of `position --json` or `point get --json`.
 fn printed_point(file: &Path) -> Result<Given, Failure> {
-    let text = printed_position(file)?;
+    let text = parse_printed_position(file)?;
     let words: Vec<&str> = text.split_whitespace().collect();
     let (unit, axes, hand) = match words[..] {
         ["--mm", axes] => ("mm", axes, None),

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::{Comments, Points};
 use crate::command::frame::store::{
-    Answers, Differing, Field, Ids, Row as TableRow, Single, Store, Words, Writable, ids,
+    Answers, Differing, Field, Ids, Row as TableRow, Single, Store, TableWords, Writable, ids,
 };
 use crate::command::robot::item::Plain;
 use crate::command::robot::position::Position;
@@ -102,7 +102,7 @@ impl Store for PointSheet {
     type More = Plain;
     type Options = Single;
 
-    const WORDS: Words = Points::WORDS;
+    const WORDS: TableWords = Points::WORDS;
     const IDS: Ids = ids!("yrcx.point");
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
@@ -171,14 +171,14 @@ impl Writable for PointSheet {
         Ok(Draft { point, comment })
     }
 
-    fn whole(&self, number: i32, draft: &Draft, old: Option<&Content>) -> Result<Content, Failure> {
+    fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Content>) -> Result<Content, Failure> {
         let held = old.cloned().unwrap_or(Content { point: None, comment: None });
         let point = match &draft.point {
-            Some(texts) => Some(self.points.whole(number, texts, held.point.as_ref())?),
+            Some(texts) => Some(self.points.complete_draft(number, texts, held.point.as_ref())?),
             None => held.point,
         };
         let comment = match &draft.comment {
-            Some(texts) => Some(self.comments.whole(number, texts, held.comment.as_ref())?),
+            Some(texts) => Some(self.comments.complete_draft(number, texts, held.comment.as_ref())?),
             None => held.comment,
         };
         Ok(Content { point, comment })
@@ -241,7 +241,7 @@ mod tests {
     /// Point 7, left-handed in mm, or in pulses.
     fn held(texts: [&str; 6]) -> Content {
         let texts: Vec<Option<String>> = texts.into_iter().map(|text| Some(text.to_owned())).collect();
-        let point = Numbered::<Points>::default().whole(7, &texts, None).unwrap();
+        let point = Numbered::<Points>::default().complete_draft(7, &texts, None).unwrap();
         Content { point: Some(point), comment: Some(Row::new::<Comments>(7, Values::default())) }
     }
 
@@ -250,13 +250,13 @@ mod tests {
         let sheet = PointSheet::default();
         let draft = sheet.draft(7, &[Some("mm"), None, Some("-2.5"), None, None, None, None]).unwrap();
         let old = held(["mm", "1", "2", "3", "4", "right"]);
-        let new = sheet.whole(7, &draft, Some(&old)).unwrap();
+        let new = sheet.complete_draft(7, &draft, Some(&old)).unwrap();
         assert_eq!(sheet.texts(&new)[..6], ["mm", "1.000", "-2.500", "3.000", "4.000", "right"]);
-        assert!(sheet.whole(7, &draft, None).unwrap_err().message.contains("axis_1"));
+        assert!(sheet.complete_draft(7, &draft, None).unwrap_err().message.contains("axis_1"));
         let pulses = held(["pulse", "1", "2", "3", "4", ""]);
-        assert!(sheet.whole(7, &draft, Some(&pulses)).is_err(), "millimetres and pulses are not mixed");
+        assert!(sheet.complete_draft(7, &draft, Some(&pulses)).is_err(), "millimetres and pulses are not mixed");
         let comment = sheet.draft(7, &[None, None, None, None, None, None, Some("WAIT")]).unwrap();
-        let new = sheet.whole(7, &comment, Some(&old)).unwrap();
+        let new = sheet.complete_draft(7, &comment, Some(&old)).unwrap();
         assert_eq!((&new.point, sheet.texts(&new)[6].as_str()), (&old.point, "WAIT"));
         assert!(sheet.draft(7, &[None, Some("1"), None, None, None, None, None]).unwrap_err().contains("column unit"));
     }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::frame::store::{Ids, Words, ids, table_commands};
+use crate::command::frame::store::{Ids, TableWords, ids, table_commands};
 use crate::command::yrcx::backup::{Records, SHIFTS};
 use crate::command::yrcx::stores::{Kind, Numbered, all_zero, mm as mm_of};
 use crate::controller::yrcx::value::{Key, Values};
@@ -19,7 +19,7 @@ pub struct Shifts;
 
 impl Kind for Shifts {
     type Value = Shift;
-    const WORDS: Words = Words {
+    const WORDS: TableWords = TableWords {
         nouns: ["shift", "shifts"],
         placeholder: "SHIFT",
         range: "Shifts, 0 to 39: 5, 0..39 or 1,5",

@@ -31,9 +31,11 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     let (health, frames) = network.health();
     let advice = "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm)";
     match health.state {
-        BusState::Off => layers.wrong("bus", "the adapter is bus-off", advice),
-        BusState::Passive => layers.wrong("bus", "no other node acknowledges frames (adapter error passive)", advice),
-        _ if nodes.is_empty() && frames == 0 => layers.wrong("bus", "no traffic", advice),
+        BusState::Off => layers.fail_with("bus", "the adapter is bus-off", advice),
+        BusState::Passive => {
+            layers.fail_with("bus", "no other node acknowledges frames (adapter error passive)", advice)
+        }
+        _ if nodes.is_empty() && frames == 0 => layers.fail_with("bus", "no traffic", advice),
         _ => layers.ok("bus", count(nodes.len())),
     }
     if !nodes.iter().any(|found| found.mac == node.mac.number()) {
@@ -61,7 +63,9 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         Err(failure) => layers.fail("sizes", &failure),
         Ok(sizes) => match profile(sizes) {
             Some(name) => layers.ok("sizes", name),
-            None => layers.wrong("sizes", format!("{sizes:?} bytes"), "set the unit's I/O size to Normal or Compact"),
+            None => {
+                layers.fail_with("sizes", format!("{sizes:?} bytes"), "set the unit's I/O size to Normal or Compact")
+            }
         },
     }
     let image = board.image().await;

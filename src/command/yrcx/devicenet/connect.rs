@@ -34,7 +34,7 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
         return look(&at, node).await;
     }
     let network = Network::open(&adapter(node), at.tap.clone()).await?;
-    let images = Images { profiles: profiles(), cycle: node.cycle.max(at.bus.calm), rate: node.rate };
+    let images = Images { profiles: profiles(), cycle: node.cycle.max(at.bus.listen_before), rate: node.rate };
     let rate = images.rate.max(images.cycle);
     let settings =
         Settings { slave: node.mac, purpose: For::Images(Images { rate, ..images }), timeout: request_timeout(&at) };
@@ -50,7 +50,7 @@ async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
     }
     drop(silent);
     let network = Network::open(&adapter(node), at.tap.clone()).await?;
-    let reading = Reading::open(&network, node.mac, request_timeout(at), PAUSE.max(at.bus.calm)).await;
+    let reading = Reading::open(&network, node.mac, request_timeout(at), PAUSE.max(at.bus.listen_before)).await;
     match reading {
         Ok(reading) => Ok(ImageLink::over(reading)),
         Err(error) => Err(match LinkError::from(error) {

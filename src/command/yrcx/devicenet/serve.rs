@@ -9,7 +9,7 @@ use clap::Args;
 use super::simulated::{self, Controller, FAULTS, size};
 #[cfg(unix)]
 use crate::command::serve::terminal_link::TerminalLink;
-use crate::command::serve::{address, cannot_listen};
+use crate::command::serve::{address, bind_failure};
 use crate::command::yrcx::fieldbus::{Operator, Serve, Served};
 use crate::command::yrcx::simulated::{faults, faults_of_option};
 use crate::controller::yrcx::simulator::Start;
@@ -63,7 +63,7 @@ impl Serve for ServeArgs {
         let terminal = None;
         let listen: Vec<Listen> = iter::once(Listen::Tcp(self.slcan_bind)).chain(terminal).collect();
         let hub = simulated::serve(start, setup, &listen, faults_of_option(faults, &FAULTS)?);
-        let hub = hub.map_err(|error| cannot_listen(&format!("TCP {}", self.slcan_bind), &error))?;
+        let hub = hub.map_err(|error| bind_failure(&format!("TCP {}", self.slcan_bind), &error))?;
         let place = hub.places().first().map(String::as_str).unwrap_or_default();
         let address: Option<SocketAddr> = place.parse().ok();
         let mut target = format!("{}://{place}?mac={}", SLCAN.name, self.mac);
@@ -79,7 +79,7 @@ impl Serve for ServeArgs {
 #[cfg(unix)]
 fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Link, Failure> {
     let (Some(path), Some(terminal)) = (path, hub.places().get(1)) else { return Ok(None) };
-    TerminalLink::make(path, terminal).map(Some)
+    TerminalLink::create(path, terminal).map(Some)
 }
 
 #[cfg(not(unix))]

@@ -71,7 +71,7 @@ fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) 
     let layer = "connection";
     if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == Presence::Absent) {
         let what = format!("the board has no assembly {instance}");
-        return layers.wrong(layer, what, "find in and out with `yrcx eip probe`");
+        return layers.fail_with(layer, what, "find in and out with `yrcx eip probe`");
     }
     let [(input, from), (output, to)] = found.map(|(instance, presence)| match presence {
         Presence::Readable(assembly) => (instance, assembly.size),
@@ -82,7 +82,7 @@ fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) 
         let size = |size: Option<u16>| size.map_or_else(|| "?".to_owned(), |size| size.to_string());
         let (from, to) = (size(from), size(to));
         let what = format!("the board has {from} bytes from it and {to} bytes to it; the URL has other sizes");
-        return layers.wrong(layer, what, format!("set in_size={from} and out_size={to} in the URL"));
+        return layers.fail_with(layer, what, format!("set in_size={from} and out_size={to} in the URL"));
     }
     let instances = format!("in {input}, out {output}");
     if from.is_none() || to.is_none() {

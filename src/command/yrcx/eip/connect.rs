@@ -44,7 +44,7 @@ const PAUSE: Duration = Duration::from_millis(20);
 async fn look(at: &At<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
     let (client, _) = client(at).await?;
     let assembly = Assembly { instance: eip.input, size: eip.input_size };
-    let refused = match Reading::open(client, assembly, eip.rpi.max(at.bus.calm).max(PAUSE)).await {
+    let refused = match Reading::open(client, assembly, eip.rpi.max(at.bus.listen_before).max(PAUSE)).await {
         Err(error @ EipError::Refused { .. }) => error,
         opened => return Ok(ImageLink::over(opened?)),
     };
@@ -79,7 +79,7 @@ fn settings(at: &At<'_>, eip: &Eip) -> Result<Settings, LinkError> {
         configuration_data: Vec::new(),
         output_size,
         input_size: eip.input_size,
-        rpi: eip.rpi.max(at.bus.calm),
+        rpi: eip.rpi.max(at.bus.listen_before),
         multiplier: Multiplier::of(eip.multiplier).ok_or_else(|| LinkError::Settings(wrong()))?,
         multicast: eip.multicast,
         key: eip.key.map(|key| Key {

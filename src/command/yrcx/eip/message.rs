@@ -8,7 +8,7 @@ use serde_json::json;
 use super::board::{Object, shown};
 use super::{NO_UNIT, board_of};
 use crate::command::frame::dry_run::Known as _;
-use crate::command::frame::orders::{BEFORE, Done, New, Old, unwritten};
+use crate::command::frame::settings_report::{Done, NewValue, OLD_VALUE, Old, nothing_written};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
@@ -99,18 +99,18 @@ impl Command for Set {
         context.link.no_unit(NO_UNIT)?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
-        context.link.plan_frame(json!({ "hex": text::hex(&object.get_bytes()), "about": BEFORE })).known()?;
+        context.link.plan_frame(json!({ "hex": text::hex(&object.get_bytes()), "about": OLD_VALUE })).known()?;
         context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
         context.link.authorize("yrcx.eip.set", self.risk())?;
         let old = match board_of(context.link)?.get(object).await {
             Ok(bytes) => Some(text::hex(&bytes)),
             Err(failure) if failure.kind == Kind::Refused => None,
-            Err(failure) => return Err(unwritten(failure)),
+            Err(failure) => return Err(nothing_written(failure)),
         };
         board_of(context.link)?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
         let words = format!("set {object} to {}", shown(&self.data.0));
-        let new = New::of("attribute", text::hex(&self.data.0), words);
+        let new = NewValue::of("attribute", text::hex(&self.data.0), words);
         let new = new.with("class", self.class).with("instance", self.instance).with("attribute", self.attribute);
         Ok(new.replaces(Old::read(old)))
     }

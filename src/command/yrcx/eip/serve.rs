@@ -6,7 +6,7 @@ use std::path::Path;
 use clap::Args;
 
 use super::simulated::{self, Controller, FAULTS};
-use crate::command::serve::{address, cannot_listen};
+use crate::command::serve::{address, bind_failure};
 use crate::command::yrcx::fieldbus::{Operator, Serve, Served};
 use crate::command::yrcx::simulated::{faults, faults_of_option};
 use crate::controller::yrcx::simulator::Start;
@@ -46,7 +46,7 @@ impl Serve for ServeArgs {
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let server = simulated::serve(start, listen, faults_of_option(faults, &FAULTS)?).map_err(|error| {
             let on = format!("TCP and UDP {}, and UDP {}", self.bind, io_port);
-            cannot_listen(&on, &error).hint("stop the other simulator, or choose free ports with --bind 127.0.0.1:0")
+            bind_failure(&on, &error).hint("stop the other simulator, or choose free ports with --bind 127.0.0.1:0")
         })?;
         let address = server.address();
         Ok(Served {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, Besides, Kind, Nothing, Row, Source};
+use crate::command::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Kind, Nothing, Row, Source};
 use crate::command::yrcx::single::{one_row, shown};
 use crate::controller::yrcx::alarm;
 use crate::controller::yrcx::table::Command;
@@ -28,7 +28,7 @@ pub struct Part {
     part: Option<String>,
 }
 
-impl Besides for Part {
+impl ExtraColumns for Part {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         vec![("place", self.place.clone()), ("part", self.part.clone())]
     }

@@ -41,7 +41,7 @@ impl Command for Arm {
                 Err(failure) => errors.push(ItemError::new(format!("{name} hand system"), failure)),
             }
         }
-        items::nothing(commands.len(), &errors)?;
+        items::all_failed(commands.len(), &errors)?;
         let [selected, current] = arms;
         Ok(Arms { selected, current, errors })
     }

@@ -6,8 +6,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::face::shared::Alike;
-use crate::command::frame::plot::Past;
+use crate::command::face::shared_commands::CommonReport;
+use crate::command::frame::plot::SeriesHistory;
 use crate::command::robot::position::{AllPositions, Joint, Positions};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::position::{Unit, group, position};
@@ -41,7 +41,7 @@ pub struct Where {
     #[arg(long)]
     plot: bool,
     #[arg(skip)]
-    past: Past,
+    past: SeriesHistory,
 }
 
 impl Command for Where {
@@ -83,7 +83,7 @@ pub struct Place {
     elapsed_ms: Option<u64>,
 }
 
-impl Alike for Place {
+impl CommonReport for Place {
     type Core = AllPositions;
 
     fn core(&self) -> AllPositions {

@@ -83,7 +83,7 @@ impl Chosen {
             }
         }
         let columns = Columns { name: "task", values: vec![heading], empty: "no tasks" };
-        Items::new(columns, items).asked(asked).or_only_failure()
+        Items::new(columns, items).asked(asked).single_failure()
     }
 }
 

@@ -30,7 +30,7 @@ impl Command for Get {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
-        let names = names::of(context.robot, context.screen);
+        let names = names::of_robot(context.robot, context.screen);
         let given = context.link.output_image().copied();
         if given.is_none()
             && let Some(signal) = Series::all(&self.signals).find(|signal| signal.side() == Side::Input)

@@ -24,7 +24,7 @@ impl Command for List {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
-        let names = names::of(context.robot, context.screen);
+        let names = names::of_robot(context.robot, context.screen);
         let inputs = context.link.output_image().copied();
         let outputs = context.link.look().await?;
         let inputs = inputs.iter().flat_map(|image| Signal::all(Side::Input).map(move |signal| (signal, image)));

@@ -61,7 +61,7 @@ impl std::fmt::Display for Readable {
 
 /// Parses signals and words, a range of them, or a name.
 fn readables(text: &str) -> Result<Series<Readable>, String> {
-    names::read(&[Kind::Signal], "SO(20)", text, Series::reader(readable))
+    names::parse_or_name(&[Kind::Signal], "SO(20)", text, Series::reader(readable))
 }
 
 fn readable(text: &str) -> Result<Readable, String> {
@@ -81,7 +81,7 @@ fn signal(text: &str) -> Result<Signal, String> {
 
 /// Parses an input of the controller, by number or name. Returns the name if one was typed.
 fn named_input(text: &str) -> Result<(Signal, Option<String>), String> {
-    let signal = names::read(&[Kind::Signal], ANY_INPUT, text, input)?;
+    let signal = names::parse_or_name(&[Kind::Signal], ANY_INPUT, text, input)?;
     Ok((signal, input(text).is_err().then(|| text.to_owned())))
 }
 

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::{ANY_INPUT, called, input, item, named_input, word_item};
 use crate::command::frame::names;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Link;
@@ -62,7 +62,7 @@ fn settable(text: &str) -> Result<Settable, String> {
 
 fn change(text: &str) -> Result<Change, String> {
     let (signal, state) = typed::setting(text, "a signal", "a state", "servo-on=on")?;
-    let (found, is_open) = names::read_marked(&[Kind::Signal], ANY_INPUT, signal, settable)?;
+    let (found, is_open) = names::parse_or_name_marked(&[Kind::Signal], ANY_INPUT, signal, settable)?;
     let name = settable(signal).is_err().then(|| signal.to_owned());
     match found {
         Settable::Word(register) if register.side() == Side::Output => {
@@ -137,7 +137,7 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenSignals, Failure> {
-        let names = names::of(context.robot, context.screen);
+        let names = names::of_robot(context.robot, context.screen);
         let shown = context.link.output_image().copied();
         let mut done = 0;
         for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
@@ -191,7 +191,7 @@ impl Command for Pulse {
         let old = context.link.output_image().map(|image| self.signal.0.is_on(image));
         context.link.carry_out(switching(Procedure::pulse(self.signal.0))?).await?;
         let words = format!("switched {} on and off again", self.called());
-        Ok(New::of(self.signal.0.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
+        Ok(NewValue::of(self.signal.0.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
     }
 }
 

@@ -22,7 +22,7 @@ pub struct Outputs {
 }
 
 fn output(text: &str) -> Result<Signal, String> {
-    names::read(&[Kind::Signal], "SO(20)", text, output_by_address)
+    names::parse_or_name(&[Kind::Signal], "SO(20)", text, output_by_address)
 }
 
 fn output_by_address(text: &str) -> Result<Signal, String> {
@@ -36,7 +36,7 @@ impl Command for Outputs {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
-        let names = names::of(context.robot, context.screen);
+        let names = names::of_robot(context.robot, context.screen);
         let link = context.link;
         // A change that occurred during a wait is reported, however short it was.
         let image = match link.seen.take() {

@@ -6,7 +6,7 @@ use serde_json::Value as Json;
 
 use super::Link;
 use crate::command::frame::dry_run::{Reason, unknown};
-use crate::command::frame::trace::locked;
+use crate::command::frame::trace::lock_writer;
 use crate::command::yrcx::fieldbus::Board;
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
@@ -33,7 +33,7 @@ impl Link {
 
     /// Prints a request and its answer at `-vv`.
     pub fn tell_message(&mut self, sent: &[u8], received: &[u8], about: &str) {
-        let mut trace = locked(&self.trace);
+        let mut trace = lock_writer(&self.trace);
         trace.message(Direction::Sent, sent, about);
         trace.message(Direction::Received, received, "done");
     }

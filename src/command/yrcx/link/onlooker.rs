@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::client::Watcher;
 use crate::client::yrcx::Event;
-use crate::command::frame::trace::locked;
+use crate::command::frame::trace::lock_writer;
 use crate::command::yrcx::failure::failure;
 use crate::command::yrcx::refusal::refused;
 use crate::command::yrcx::trace::Trace;
@@ -24,8 +24,8 @@ impl Watcher<Event> for Onlooker {
     fn event(&mut self, event: Event) {
         let Self { trace, screen, label } = self;
         match event {
-            Event::ImageSent(image) => locked(trace).sent(&image),
-            Event::ImageReceived(image) => locked(trace).received(&image),
+            Event::ImageSent(image) => lock_writer(trace).sent(&image),
+            Event::ImageReceived(image) => lock_writer(trace).received(&image),
             Event::CpuNotOk => screen.note(
                 "warning: CPU OK (SO(01)) is off: the controller is not ready, or the URL selects the wrong input data \
                  (`armctl robots check`)",

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::{MotionReport, go};
-use crate::command::frame::ending::MotionEnd;
+use crate::command::frame::wait_arguments::MotionEnd;
 use crate::command::yrcx::arguments::{Direction, Which};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::overwrite::confirmation;

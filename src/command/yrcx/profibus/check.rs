@@ -33,7 +33,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         ),
     }
     let Some((station, image)) = answered else {
-        layers.wrong(
+        layers.fail_with(
             "station",
             format!("station {} does not answer", settings.station),
             "check station and baud of the URL, wires A and B, the terminators, and that the controller is on. `yrcx \
@@ -44,14 +44,18 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     if station.kind == "slave" {
         layers.ok("station", format!("station {} answers: {}", station.station, station.diagnosis));
     } else {
-        layers.wrong("station", station.kind, "check station of the URL: `yrcx profibus scan` lists the slaves");
+        layers.fail_with("station", station.kind, "check station of the URL: `yrcx profibus scan` lists the slaves");
         return None;
     }
     let wanted = settings.ident.map(|ident| format!("{ident:#06x}"));
     match &station.ident {
-        None => layers.wrong("ident", station.diagnosis.clone(), "check that this is a slave of PROFIBUS DP"),
+        None => layers.fail_with("ident", station.diagnosis.clone(), "check that this is a slave of PROFIBUS DP"),
         Some(ident) if wanted.as_ref().is_some_and(|wanted| wanted != ident) => {
-            layers.wrong("ident", ident.clone(), format!("set ident={ident} in the URL, if this is the controller"));
+            layers.fail_with(
+                "ident",
+                ident.clone(),
+                format!("set ident={ident} in the URL, if this is the controller"),
+            );
         }
         Some(ident) => layers.ok("ident", ident.clone()),
     }
@@ -62,10 +66,10 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
             let sizes =
                 [station.in_size, station.out_size].map(|size| size.map_or("?".to_owned(), |size| size.to_string()));
             let found = format!("{bytes}: {} bytes from it and {} bytes to it, not 48", sizes[0], sizes[1]);
-            layers.wrong("configuration", found, "check station of the URL, and the unit of the controller");
+            layers.fail_with("configuration", found, "check station of the URL, and the unit of the controller");
         }
         (None, false) => {
-            layers.wrong("configuration", "the station does not report it", "set cfg= or gsd= in the URL");
+            layers.fail_with("configuration", "the station does not report it", "set cfg= or gsd= in the URL");
         }
     }
     let found = station.master.map(|master| format!("master {master} owns it"));

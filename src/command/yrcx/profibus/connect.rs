@@ -24,7 +24,7 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     if purpose == Purpose::Look || !profibus.is_owner {
         return listen(profibus, at.tap, at.robot.timeout.value).await;
     }
-    let settings = settings(profibus, at.bus.calm)?;
+    let settings = settings(profibus, at.bus.listen_before)?;
     Ok(ImageLink::over(Master::open(settings, swapped(profibus), opener(profibus)?, at.tap).await?))
 }
 

@@ -57,7 +57,7 @@ impl fieldbus::Serve for ServeArgs {
         let server = simulated::serve(start, options)?;
         // From here on, Ctrl-C must remove the symbolic link.
         crate::command::frame::interrupt::catch_interrupts();
-        let link = link.map(|link| TerminalLink::make(link, server.port())).transpose()?;
+        let link = link.map(|link| TerminalLink::create(link, server.port())).transpose()?;
         let name = link.as_ref().map(|link| link.name().display().to_string());
         Ok(Served {
             target: server.url(name.as_deref()),

@@ -91,7 +91,7 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
         Err(error) => {
             let advice = error.cause().advice.clone().unwrap_or_default();
             let has = identity.modules.as_ref().map_or_else(|_| String::new(), |modules| listed(modules));
-            layers.wrong("modules", format!("{error}{has}"), advice);
+            layers.fail_with("modules", format!("{error}{has}"), advice);
             None
         }
     };

@@ -32,7 +32,7 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
             cause.advice("open a session with `armctl session open`, then read through that session"),
         ));
     }
-    let settings = settings(profinet, at.bus.calm)?;
+    let settings = settings(profinet, at.bus.listen_before)?;
     if let Some(network) = Network::find(&profinet.interface) {
         return Ok(ImageLink::in_process(Box::new(network.open(settings)?)));
     }

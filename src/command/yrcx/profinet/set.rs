@@ -8,7 +8,7 @@ use serde_json::json;
 use super::board::Board;
 use super::{NO_UNIT, board_of, frame_for, plan_search, station_of};
 use crate::command::frame::dry_run::Known as _;
-use crate::command::frame::orders::{Done, New, Old};
+use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context};
 use crate::controller::Risk;
@@ -135,7 +135,7 @@ impl Command for Blink {
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
         let words = format!("station {} blinks for about three seconds", found.mac);
-        Ok(New::of("blinking", true, words).with("mac", found.mac.to_string()).replaces(Old::UNREAD))
+        Ok(NewValue::of("blinking", true, words).with("mac", found.mac.to_string()).replaces(Old::UNREAD))
     }
 }
 
@@ -175,7 +175,7 @@ impl Command for SetName {
         });
         let found = found.await?;
         let words = format!("station {} has the name '{}'{}", found.mac, self.name, kept(self.temporary));
-        let new = New::of("station_name", self.name.as_str(), words).with("mac", found.mac.to_string());
+        let new = NewValue::of("station_name", self.name.as_str(), words).with("mac", found.mac.to_string());
         Ok(new.with("temporary", self.temporary).replaces(Old::read(Some(found.station.name.as_str()))))
     }
 }
@@ -225,7 +225,7 @@ impl Command for SetIp {
         let found = found.await?;
         let words = format!("station {} has the address {address}{}", found.mac, kept(self.temporary));
         let old = found.station.address().map(|old| old.to_string());
-        let new = New::of("address", address.to_string(), words).with("mac", found.mac.to_string());
+        let new = NewValue::of("address", address.to_string(), words).with("mac", found.mac.to_string());
         Ok(new.with("temporary", self.temporary).replaces(Old::read(old)))
     }
 }
@@ -270,7 +270,7 @@ impl Command for Reset {
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
         let words = format!("station {} has no name and no address", found.mac);
-        let new = New::of("station_name", "", words).with("mac", found.mac.to_string());
+        let new = NewValue::of("station_name", "", words).with("mac", found.mac.to_string());
         Ok(new.replaces(Old::read(Some(found.station.name.as_str()))))
     }
 }

@@ -10,7 +10,7 @@ use tokio::time::{Instant, timeout};
 use super::WhichOrAll;
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::ending::ProgramEnd;
+use crate::command::frame::wait_arguments::ProgramEnd;
 use crate::command::robot::alarm::AlarmEntry;
 use crate::command::robot::program::{Program, ProgramState};
 use crate::command::yrcx::alarm;
@@ -52,7 +52,7 @@ impl Command for Run {
     }
 
     fn intent(&self) -> String {
-        format!("run {}{}", self.which.describe(), self.repeat.in_words())
+        format!("run {}{}", self.which.describe(), self.repeat.describe())
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ran, Failure> {
@@ -69,7 +69,7 @@ impl Command for Run {
         let limit = self.end.limit().or(self.repeat.repeat.map(|_| None));
         let mut runs = Runs::new(self.repeat);
         for _ in 0..self.repeat.count() {
-            let early = |failure| runs.early(failure);
+            let early = |failure| runs.add_to_failure(failure);
             let before = match limit {
                 Some(_) => alarm::latest(link).await.map_err(early)?,
                 None => None,
@@ -88,7 +88,7 @@ impl Command for Run {
             alarmed(link, &what, before.as_ref()).await.map_err(early)?;
             let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
             if seen {
-                runs.ended(elapsed_ms);
+                runs.add(elapsed_ms);
             } else if self.repeat.repeat.is_some() {
                 // It is unknown whether the program ended or did not start, so it is not started again.
                 return Err(early(not_seen(&what)));

@@ -6,14 +6,14 @@ use srad_types::payload::property_value::Value as Property;
 use srad_types::payload::{DataType, Metric, PropertySet, PropertyValue};
 
 use super::super::Kind;
-use super::super::also::Also;
-use crate::command::fleet::poll::Look;
+use super::super::extra_topic::ExtraTopic;
+use crate::command::fleet::poll::PollResult;
 use crate::command::robot::state::Mode;
 
 /// Limit of metrics per extra command.
-const MOST: usize = 2000;
+const MAX_METRICS: usize = 2000;
 /// Limit of nesting in its result.
-const DEEPEST: usize = 8;
+const MAX_DEPTH: usize = 8;
 
 /// Units by name suffix, as in reports.
 const UNITS: [(&str, &str); 9] = [
@@ -29,7 +29,7 @@ const UNITS: [(&str, &str); 9] = [
 ];
 
 /// All metrics of a sample, for these kinds and extra commands.
-pub fn of_look(look: &Look, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
+pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -> Vec<Metric> {
     let line = &look.sample.line.state;
     let text = |text: Option<&str>| text.map(|text| Value::StringValue(text.to_owned()));
     let flag = |flag: Option<bool>| flag.map(Value::BooleanValue);
@@ -111,7 +111,7 @@ fn unit(name: &str) -> Option<&'static str> {
 /// Converts every value of a report, with its path as name. List items use their names if they have some. Null has no
 /// type and is skipped.
 fn flatten(path: &str, data: &Json, depth: usize, metrics: &mut Vec<Metric>) {
-    if metrics.len() >= MOST || depth > DEEPEST {
+    if metrics.len() >= MAX_METRICS || depth > MAX_DEPTH {
         return;
     }
     let (kind, value) = match data {
@@ -144,19 +144,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_report_becomes_metrics_with_types_and_units() {
+    fn converts_a_report_to_metrics_with_types_and_units() {
         let data =
             json!({"values": [{"name": "B0", "value": -3, "ok": true}, {"value": 1.5, "x_mm": 2.0}], "why": null});
         let mut metrics = Vec::new();
         flatten("parts", &data, 0, &mut metrics);
-        let told: Vec<String> = metrics
+        let metrics_text: Vec<String> = metrics
             .iter()
             .map(|metric| {
                 format!("{} {:?} {:?}", metric.name.clone().unwrap(), metric.datatype, metric.value.clone().unwrap())
             })
             .collect();
         assert_eq!(
-            told,
+            metrics_text,
             [
                 "parts/values/B0/name Some(12) StringValue(\"B0\")",
                 "parts/values/B0/value Some(4) LongValue(18446744073709551613)",
@@ -170,10 +170,10 @@ mod tests {
     }
 
     #[test]
-    fn a_report_without_end_has_an_end_as_metrics() {
+    fn limits_the_metrics_of_a_report() {
         let mut metrics = Vec::new();
         flatten("a", &Json::Array(vec![json!(1); 10_000]), 0, &mut metrics);
-        assert_eq!(metrics.len(), MOST);
+        assert_eq!(metrics.len(), MAX_METRICS);
         let deep = (0..100).fold(json!(1), |inner, _| json!({ "a": inner }));
         metrics.clear();
         flatten("a", &deep, 0, &mut metrics);

@@ -18,12 +18,12 @@ use srad_types::payload::{DataType, Message as _, Metric, Payload, StateBirthDea
 use srad_types::topic::{DeviceMessage, NodeMessage, device_topic, node_topic, state_host_topic};
 
 use super::Kind;
-use super::also::Also;
+use super::extra_topic::ExtraTopic;
+use super::message_format::{MessageFormat, Reaction};
 use super::outbox::Record;
-use super::speech::{Reaction, Speech};
 use super::topic::Levels;
 use super::uplink::{Message, Will};
-use crate::command::fleet::poll::{Event, Look};
+use crate::command::fleet::poll::{Event, PollResult};
 use crate::output::log::Level;
 use crate::settings::Robot;
 
@@ -49,7 +49,7 @@ struct Device {
     /// Whether hosts consider it online.
     is_born: bool,
     /// Time of the last message with all values.
-    told_ms: u64,
+    data_sent_ms: u64,
 }
 
 /// Names of the node.
@@ -72,7 +72,7 @@ pub type Remember = Box<dyn FnMut(u8)>;
 pub struct Node {
     names: Names,
     kinds: Vec<Kind>,
-    also: Rc<[Also]>,
+    also: Rc<[ExtraTopic]>,
     every_ms: u64,
     /// bdSeq of this connection and of the next one.
     bd_seq: (u8, u8),
@@ -101,7 +101,7 @@ impl Node {
     /// the number of the first connection.
     pub fn new(
         names: Names,
-        (kinds, also): (&[Kind], Rc<[Also]>),
+        (kinds, also): (&[Kind], Rc<[ExtraTopic]>),
         every_ms: u64,
         (bd_seq, remember): (u8, Remember),
     ) -> Self {
@@ -128,16 +128,16 @@ impl Node {
     }
 
     /// A message with the next sequence number.
-    fn numbered(&mut self, topic: String, metrics: Vec<Metric>, now_ms: u64) -> Message {
+    fn with_sequence(&mut self, topic: String, metrics: Vec<Metric>, now_ms: u64) -> Message {
         let seq = self.seq;
         self.seq = seq.wrapping_add(1);
         let payload = Payload { timestamp: Some(now_ms), metrics, seq: Some(seq.into()), uuid: None, body: None };
         Message { topic, payload: payload.encode_to_vec(), retain: false, acknowledged: false }
     }
 
-    fn of_device(&mut self, message: &DeviceMessage, device: &str, metrics: Vec<Metric>, now_ms: u64) -> Message {
+    fn device_message(&mut self, message: &DeviceMessage, device: &str, metrics: Vec<Metric>, now_ms: u64) -> Message {
         let topic = device_topic(&self.names.group, message, &self.names.node, device);
-        self.numbered(topic, metrics, now_ms)
+        self.with_sequence(topic, metrics, now_ms)
     }
 
     /// NDEATH message; it has the bdSeq of its birth and no sequence number.
@@ -158,15 +158,15 @@ impl Node {
         self.seq = 0;
         self.is_born = true;
         self.born_ms = now_ms;
-        let mut rebirth = named(NODE_CONTROL_REBIRTH, DataType::Boolean, Value::BooleanValue(false), now_ms);
+        let mut rebirth = resolve_metric(NODE_CONTROL_REBIRTH, DataType::Boolean, Value::BooleanValue(false), now_ms);
         rebirth.alias = None;
         let software = Value::StringValue(concat!("armctl ", env!("CARGO_PKG_VERSION")).to_owned());
         let metrics = vec![
             bd_seq(self.bd_seq.0, now_ms),
             rebirth,
-            named("Properties/Software", DataType::String, software, now_ms),
+            resolve_metric("Properties/Software", DataType::String, software, now_ms),
         ];
-        let mut messages = vec![self.numbered(self.topic(&NodeMessage::NBirth), metrics, now_ms)];
+        let mut messages = vec![self.with_sequence(self.topic(&NodeMessage::NBirth), metrics, now_ms)];
         let up: Vec<String> =
             self.devices.iter().filter(|(_, device)| device.is_up).map(|(id, _)| id.clone()).collect();
         for device in self.devices.values_mut() {
@@ -182,16 +182,16 @@ impl Node {
         device.is_born = true;
         let whole = |(alias, metric): &(u64, Metric)| Metric { alias: Some(*alias), ..metric.clone() };
         let metrics = device.metrics.values().map(whole).collect();
-        Some(self.of_device(&DeviceMessage::DBirth, id, metrics, now_ms))
+        Some(self.device_message(&DeviceMessage::DBirth, id, metrics, now_ms))
     }
 
     /// Handles a successful poll of a robot.
-    fn looked(&mut self, look: &Look, now_ms: u64) -> Option<Record> {
-        let id = self.names.levels.of(&look.robot).ok()?;
-        let found = metrics::of_look(look, &self.kinds, &self.also);
+    fn data_records(&mut self, look: &PollResult, now_ms: u64) -> Option<Record> {
+        let id = self.names.levels.level_of(&look.robot).ok()?;
+        let found = metrics::metrics_of_poll(look, &self.kinds, &self.also);
         let device = self.devices.entry(id.clone()).or_default();
         let was_up = std::mem::replace(&mut device.is_up, true);
-        let is_due = now_ms.saturating_sub(device.told_ms) >= self.every_ms;
+        let is_due = now_ms.saturating_sub(device.data_sent_ms) >= self.every_ms;
         let mut has_new = !was_up;
         let mut changed = Vec::new();
         for mut metric in found {
@@ -220,14 +220,14 @@ impl Node {
             return None;
         }
         if has_new || is_due {
-            device.told_ms = now_ms;
+            device.data_sent_ms = now_ms;
         }
         Some(self.record(kind, id, metrics, now_ms))
     }
 
     /// The robot does not answer or was removed.
-    fn fell_silent(&mut self, robot: &Robot, now_ms: u64) -> Option<Record> {
-        let id = self.names.levels.of(robot).ok()?;
+    fn death_record(&mut self, robot: &Robot, now_ms: u64) -> Option<Record> {
+        let id = self.names.levels.level_of(robot).ok()?;
         let device = self.devices.get_mut(&id)?;
         std::mem::take(&mut device.is_up).then(|| self.record(kind::DEATH, id, Vec::new(), now_ms))
     }
@@ -243,7 +243,7 @@ impl Node {
         let id = &record.key;
         let device = self.devices.entry(id.clone()).or_default();
         let mut has_new = false;
-        let mut told = Vec::with_capacity(metrics.len());
+        let mut last_sent = Vec::with_capacity(metrics.len());
         for metric in metrics {
             let Some(name) = metric.name.clone() else { continue };
             let (alias, last) = device.metrics.entry(name).or_insert_with(|| {
@@ -256,7 +256,7 @@ impl Node {
             }
             // With datatype, although it is optional (tck-id-payloads-metric-datatype-not-req): a decoder that does not
             // store births needs it.
-            told.push(Metric {
+            last_sent.push(Metric {
                 name: None,
                 alias: Some(*alias),
                 is_historical: is_history.then_some(true),
@@ -264,7 +264,7 @@ impl Node {
                 ..metric
             });
         }
-        if told.is_empty() {
+        if last_sent.is_empty() {
             return Vec::new();
         }
         let (is_up, was_born) = (device.is_up, device.is_born);
@@ -272,22 +272,22 @@ impl Node {
         if has_new || !was_born {
             messages.extend(self.birth(id, now_ms));
         }
-        messages.push(self.of_device(&DeviceMessage::DData, id, told, now_ms));
+        messages.push(self.device_message(&DeviceMessage::DData, id, last_sent, now_ms));
         // It has history, but does not answer now.
         if !is_up {
-            messages.extend(self.dies(id, now_ms));
+            messages.extend(self.device_death(id, now_ms));
         }
         messages
     }
 
     /// DDEATH if hosts consider the device online.
-    fn dies(&mut self, id: &str, now_ms: u64) -> Option<Message> {
+    fn device_death(&mut self, id: &str, now_ms: u64) -> Option<Message> {
         let device = self.devices.get_mut(id)?;
-        std::mem::take(&mut device.is_born).then(|| self.of_device(&DeviceMessage::DDeath, id, Vec::new(), now_ms))
+        std::mem::take(&mut device.is_born).then(|| self.device_message(&DeviceMessage::DDeath, id, Vec::new(), now_ms))
     }
 
     /// Handles a STATE message of the host.
-    fn host_says(&mut self, message: &Message, now_ms: u64) -> Reaction {
+    fn handle_host_state(&mut self, message: &Message, now_ms: u64) -> Reaction {
         let Ok(state) = StateBirthDeathCertificate::try_from(&message.payload[..]) else {
             return ignored("an unreadable state of the host");
         };
@@ -300,7 +300,7 @@ impl Node {
             (true, false) => Reaction {
                 messages: self.births(now_ms),
                 note: Some((Level::Notice, format!("the primary host {name} is online"))),
-                leaves: false,
+                reconnects: false,
             },
             // The node sends its death, and the next connection waits for the host (section 5.4).
             (false, true) => {
@@ -311,7 +311,7 @@ impl Node {
                         Level::Notice,
                         format!("the primary host {name} is offline: armctl stores the data for it"),
                     )),
-                    leaves: true,
+                    reconnects: true,
                 }
             }
             (false, false) => Reaction {
@@ -323,7 +323,7 @@ impl Node {
     }
 
     /// Handles a command of the host. Only rebirth is supported.
-    fn ordered(&mut self, message: &Message, now_ms: u64) -> Reaction {
+    fn handle_command(&mut self, message: &Message, now_ms: u64) -> Reaction {
         let Ok(payload) = Payload::decode(&message.payload[..]) else {
             return ignored("an unreadable command");
         };
@@ -337,7 +337,7 @@ impl Node {
             return ignored("a rebirth command directly after a birth");
         }
         let note = Some((Level::Detail, "a host requested a rebirth".to_owned()));
-        Reaction { messages: self.births(now_ms), note, leaves: false }
+        Reaction { messages: self.births(now_ms), note, reconnects: false }
     }
 }
 
@@ -348,17 +348,17 @@ fn ignored(what: &str) -> Reaction {
     }
 }
 
-fn named(name: &str, kind: DataType, value: Value, now_ms: u64) -> Metric {
+fn resolve_metric(name: &str, kind: DataType, value: Value, now_ms: u64) -> Metric {
     let mut metric = Metric::new();
     metric.set_name(name.to_owned()).set_datatype(kind).set_timestamp(now_ms).set_value(value);
     metric
 }
 
 fn bd_seq(number: u8, now_ms: u64) -> Metric {
-    named(BDSEQ, DataType::Int64, Value::LongValue(number.into()), now_ms)
+    resolve_metric(BDSEQ, DataType::Int64, Value::LongValue(number.into()), now_ms)
 }
 
-impl Speech for Node {
+impl MessageFormat for Node {
     fn client_id(&self) -> String {
         format!("armctl-{}-{}", self.names.group, self.names.node)
     }
@@ -375,35 +375,35 @@ impl Speech for Node {
         std::iter::once(self.topic(&NodeMessage::NCmd)).chain(host).collect()
     }
 
-    fn connected(&mut self, now_ms: u64) -> Vec<Message> {
+    fn first_messages(&mut self, now_ms: u64) -> Vec<Message> {
         self.is_connected = true;
         if self.names.host.is_none() { self.births(now_ms) } else { Vec::new() }
     }
 
-    fn lost(&mut self) {
+    fn connection_lost(&mut self) {
         (self.is_connected, self.is_born) = (false, false);
         for device in self.devices.values_mut() {
             device.is_born = false;
         }
     }
 
-    fn received(&mut self, message: &Message, now_ms: u64) -> Reaction {
+    fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction {
         let is_state = self.names.host.as_deref().is_some_and(|host| message.topic == state_host_topic(host));
         if !self.is_connected {
             Reaction::default()
         } else if is_state {
-            self.host_says(message, now_ms)
+            self.handle_host_state(message, now_ms)
         } else if message.topic == self.topic(&NodeMessage::NCmd) {
-            self.ordered(message, now_ms)
+            self.handle_command(message, now_ms)
         } else {
             ignored("an unexpected topic")
         }
     }
 
-    fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
+    fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
         match event {
-            Event::Looked(look) => self.looked(look, now_ms).into_iter().collect(),
-            Event::Failed { robot, .. } | Event::Gone(robot) => self.fell_silent(robot, now_ms).into_iter().collect(),
+            Event::Polled(look) => self.data_records(look, now_ms).into_iter().collect(),
+            Event::Failed { robot, .. } | Event::Gone(robot) => self.death_record(robot, now_ms).into_iter().collect(),
             Event::Appeared(_) | Event::Inventory(_) => Vec::new(),
         }
     }
@@ -412,19 +412,19 @@ impl Speech for Node {
         self.is_born
     }
 
-    fn told(&mut self, record: Record, now_ms: u64) -> Vec<Message> {
+    fn convert_record(&mut self, record: Record, now_ms: u64) -> Vec<Message> {
         let is_history = record.epoch < self.epoch;
         match record.kind {
             // Historical deaths are not sent.
             kind::DEATH if is_history => Vec::new(),
-            kind::DEATH => self.dies(&record.key, now_ms).into_iter().collect(),
+            kind::DEATH => self.device_death(&record.key, now_ms).into_iter().collect(),
             kind::BIRTH if !is_history => self.birth(&record.key, now_ms).into_iter().collect(),
             kind::BIRTH | kind::DATA => self.data(&record, is_history, now_ms),
             _ => Vec::new(),
         }
     }
 
-    fn farewell(&mut self, now_ms: u64) -> Vec<Message> {
+    fn final_messages(&mut self, now_ms: u64) -> Vec<Message> {
         if self.is_born { vec![self.death(now_ms)] } else { Vec::new() }
     }
 }

@@ -19,7 +19,7 @@ use crate::output::view::Tone;
 #[derive(Debug)]
 pub struct Chart<'a> {
     /// Name of the axis.
-    pub of: &'a str,
+    pub subject: &'a str,
     /// Quantity and unit.
     pub what: &'a str,
     /// Decimals of the scale.
@@ -49,7 +49,7 @@ pub fn draw(painter: &mut Painter<'_>, area: Rect, chart: &Chart<'_>, side: u16,
     let time = window(every);
     let heading = line_of(area, 0);
     painter.paint(heading, style);
-    painter.parts(heading, &[(chart.of, style), ("  ", style), (chart.what, style)]);
+    painter.parts(heading, &[(chart.subject, style), ("  ", style), (chart.what, style)]);
     painter.right(heading, &format!("last {}", whole(time)), style);
     if area.height < 3 || chart.points.is_empty() {
         return;
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_that_stays_has_room_around_it() {
+    fn constant_value_has_a_margin() {
         assert_eq!(range(&VecDeque::from([(0.0, 5.0), (1.0, 5.0)])), (4.0, 6.0));
         assert_eq!(range(&VecDeque::from([(0.0, 5.0), (1.0, -5.0)])), (-5.0, 5.0));
     }

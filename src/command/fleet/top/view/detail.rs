@@ -4,9 +4,9 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::chart::{self, Chart};
-use super::{answer, pace};
+use super::{answer, format_interval};
 use crate::command::face::sample::{Axis, Bank, Indicator, Sample, Whole};
-use crate::command::fleet::top::model::{Contact, Model, Moment, Seen};
+use crate::command::fleet::top::model::{Contact, Model, Moment, RobotRow};
 use crate::command::fleet::top::track::Track;
 use crate::command::robot::alarm::Alarm;
 use crate::output::painter::{Painter, after, line_of, width, wrapped};
@@ -16,12 +16,12 @@ use crate::output::view::Tone;
 const AXES: u16 = 46;
 const CHART: u16 = 24;
 /// Screen height from which the parts are separated by empty lines.
-const AIRY: u16 = 28;
+const MIN_SPACED_HEIGHT: u16 = 28;
 /// Minimum height of a chart.
 const CHART_LINES: u16 = 5;
 
 /// First line: name, state, answer time.
-pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &Seen, now: Moment) {
+pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &RobotRow, now: Moment) {
     let (answered, style) = answer(painter, seen, now, model.every);
     let quiet = painter.palette.quiet();
     let parts = [
@@ -35,42 +35,42 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &Seen, n
         (seen.place.as_str(), quiet),
     ];
     painter.parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
-    pace(painter, line, model);
+    format_interval(painter, line, model);
 }
 
 /// Everything else, from the top, as far as there is room.
-pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, now: Moment) {
+pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRow, now: Moment) {
     let Some(sample) = seen.sample() else { return trouble(painter, area, seen) };
-    let Some(whole) = &sample.whole else {
+    let Some(whole) = &sample.full else {
         let why = if model.is_paused() { "no details before the pause; press Space to continue" } else { "looking" };
         painter.left(after(line_of(area, 1), 2), why, painter.palette.quiet());
         return;
     };
     let mut rest = area;
     // Empty lines, if there is room.
-    let air = u16::from(area.height >= AIRY);
-    rest = below(rest, air);
-    rest = below(rest, indicators(painter, rest, &whole.indicators) + air);
-    rest = below(rest, alarms(painter, rest, sample) + air);
+    let spacing = u16::from(area.height >= MIN_SPACED_HEIGHT);
+    rest = rows_below(rest, spacing);
+    rest = rows_below(rest, indicators(painter, rest, &whole.indicators) + spacing);
+    rest = rows_below(rest, alarms(painter, rest, sample) + spacing);
     let signals = if model.has_signals { signal_lines(&whole.banks, rest.width) } else { 0 };
-    let wanted = u16::try_from(whole.axes.len()).unwrap_or(u16::MAX).saturating_add(1).max(if whole.axes.is_empty() {
+    let needed = u16::try_from(whole.axes.len()).unwrap_or(u16::MAX).saturating_add(1).max(if whole.axes.is_empty() {
         2
     } else {
         2 * (CHART_LINES + 1)
     });
     // Axes have priority; signals are shown completely or not at all.
-    let has_signals = signals > 0 && rest.height >= wanted.min(8).saturating_add(signals);
+    let has_signals = signals > 0 && rest.height >= needed.min(8).saturating_add(signals);
     let middle = rest.height.saturating_sub(if has_signals { signals } else { 0 });
     let middle_area = Rect { height: middle, ..rest };
     axes(painter, middle_area, model, seen, whole, now);
     if has_signals {
-        banks(painter, below(rest, middle), &whole.banks);
+        banks(painter, rows_below(rest, middle), &whole.banks);
     }
 }
 
 /// Draws the reason for missing data.
-fn trouble(painter: &mut Painter<'_>, area: Rect, seen: &Seen) {
-    let Contact::Fails(failure) = &seen.contact else {
+fn trouble(painter: &mut Painter<'_>, area: Rect, seen: &RobotRow) {
+    let Contact::Unreachable(failure) = &seen.contact else {
         painter.left(after(line_of(area, 1), 2), "waiting for the first answer", painter.palette.quiet());
         return;
     };
@@ -118,7 +118,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     let bad = painter.palette.tone(Tone::Bad);
     let line = &sample.line;
     if sample.alarms.is_empty() {
-        let (text, style) = match line.trouble() {
+        let (text, style) = match line.fault_text() {
             Some(what) => (format!(" {what}; the controller does not report which one here"), bad),
             None => (" no alarm".to_owned(), painter.palette.quiet()),
         };
@@ -128,7 +128,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     let mut taken = 0;
     for Alarm { code, text, remedy, .. } in &sample.alarms {
         let place = line_of(area, taken);
-        let [code, text] = [code, text].map(|told| told.as_deref().unwrap_or("?"));
+        let [code, text] = [code, text].map(|text| text.as_deref().unwrap_or("?"));
         let columns = painter.parts(place, &[(" ", bad), (code, bad), ("  ", bad), (text, bad)]);
         if let Some(remedy) = remedy {
             painter.parts(after(place, columns + 2), &[(remedy, Style::new())]);
@@ -139,7 +139,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
 }
 
 /// Draws the axes on the left, and charts of the selected one on the right.
-fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, whole: &Whole, now: Moment) {
+fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRow, whole: &Whole, now: Moment) {
     if whole.axes.is_empty() {
         let why = whole.not_asked.unwrap_or("the controller does not report its position");
         for (line, part) in (1..).zip(wrapped(why, usize::from(area.width.saturating_sub(2)))) {
@@ -159,14 +159,15 @@ fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, whole
     let (Some(axis), Some(track)) = (whole.axes.get(chosen), seen.tracks.get(chosen)) else { return };
     let has_torque = whole.torque_unit.filter(|_| !track.torques.is_empty());
     let lines = if has_torque.is_some() { area.height / 2 } else { area.height };
-    let position = Chart { of: &axis.name, what: axis.unit, decimals: axis.decimals.min(1), points: &track.positions };
+    let position =
+        Chart { subject: &axis.name, what: axis.unit, decimals: axis.decimals.min(1), points: &track.positions };
     let what = format!("torque, {}", has_torque.unwrap_or_default());
-    let torque = Chart { of: &axis.name, what: &what, decimals: 0, points: &track.torques };
+    let torque = Chart { subject: &axis.name, what: &what, decimals: 0, points: &track.torques };
     // The same scale width for both charts, so that equal times are aligned.
     let side = if has_torque.is_some() { position.side().max(torque.side()) } else { position.side() };
     chart::draw(painter, Rect { height: lines, ..right }, &position, side, now, model.every);
     if has_torque.is_some() {
-        chart::draw(painter, below(right, lines), &torque, side, now, model.every);
+        chart::draw(painter, rows_below(right, lines), &torque, side, now, model.every);
     }
 }
 
@@ -235,10 +236,10 @@ fn signal_lines(banks: &[Bank], columns: u16) -> u16 {
 
 /// Width of a bank name, and of eight signals with their label.
 const BANK: u16 = 9;
-const EIGHT: u16 = 17;
+const BANK_WIDTH: u16 = 17;
 
 fn bank_lines(bank: &Bank, columns: u16) -> u16 {
-    let across = (columns.saturating_sub(BANK) / EIGHT).max(1);
+    let across = (columns.saturating_sub(BANK) / BANK_WIDTH).max(1);
     u16::try_from(bank.groups.len()).unwrap_or(u16::MAX).div_ceil(across)
 }
 
@@ -249,10 +250,10 @@ fn banks(painter: &mut Painter<'_>, area: Rect, banks: &[Bank]) {
     painter.left(after(heading, 1), "SIGNALS", painter.palette.heading());
     let mut first = 1;
     for bank in banks {
-        let across = (area.width.saturating_sub(BANK) / EIGHT).max(1);
+        let across = (area.width.saturating_sub(BANK) / BANK_WIDTH).max(1);
         painter.left(after(line_of(area, first), 1), bank.name, painter.palette.quiet());
         for (at, eight) in (0..).zip(&bank.groups) {
-            let place = after(line_of(area, first + at / across), BANK + at % across * EIGHT);
+            let place = after(line_of(area, first + at / across), BANK + at % across * BANK_WIDTH);
             let label = Rect { width: place.width.min(6), ..place };
             painter.right(label, &eight.label, painter.palette.quiet());
             let on = painter.palette.tone(Tone::Good);
@@ -272,7 +273,7 @@ fn number(value: f64, decimals: u8) -> String {
 }
 
 /// The part of an area below `lines` lines.
-fn below(area: Rect, lines: u16) -> Rect {
+fn rows_below(area: Rect, lines: u16) -> Rect {
     let lines = lines.min(area.height);
     Rect { y: area.y + lines, height: area.height - lines, ..area }
 }
@@ -282,7 +283,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn signals_take_as_many_lines_as_they_need() {
+    fn computes_the_lines_of_signals() {
         let bank =
             |groups| Bank { name: "inputs", groups: vec![crate::command::face::sample::SignalByte::default(); groups] };
         assert_eq!(signal_lines(&[bank(4), bank(4)], 80), 3);

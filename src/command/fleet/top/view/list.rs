@@ -3,8 +3,8 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::{answer, pace};
-use crate::command::fleet::top::model::{Contact, Model, Moment, Seen, Severity, Sort};
+use super::{answer, format_interval};
+use crate::command::fleet::top::model::{Contact, Model, Moment, RobotRow, Severity, Sort};
 use crate::output::painter::{self, Painter, after, line_of, width};
 use crate::output::view::Tone;
 
@@ -22,7 +22,7 @@ enum Column {
     },
     Answer,
     /// Last answer times.
-    Past,
+    Trend,
 }
 
 /// Minimum and maximum width of names, and minimum width of alarms.
@@ -44,24 +44,24 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model) {
         (" armctl top".to_owned(), painter.palette.accent()),
         (format!("  {} robot{plural}", robots.len()), Style::new()),
     ];
-    let mut told = |count: usize, what: &str, tone| {
+    let mut count_part = |count: usize, what: &str, tone| {
         if count > 0 {
             parts.push((format!(" · {count} {what}"), painter.palette.tone(tone)));
         }
     };
-    told(robots.len() - silent - waiting, "answer", Tone::Good);
-    told(alarms, if alarms == 1 { "alarm" } else { "alarms" }, Tone::Bad);
-    told(silent, "silent", Tone::Bad);
-    told(waiting, "waiting", Tone::Warning);
+    count_part(robots.len() - silent - waiting, "answer", Tone::Good);
+    count_part(alarms, if alarms == 1 { "alarm" } else { "alarms" }, Tone::Bad);
+    count_part(silent, "silent", Tone::Bad);
+    count_part(waiting, "waiting", Tone::Warning);
     if !model.filter.is_empty() && !model.is_typing {
         parts.push((format!(" · only '{}'", model.filter), painter.palette.accent()));
     }
-    if model.sort != Sort::Given {
+    if model.sort != Sort::Unsorted {
         parts.push((format!(" · {}", model.sort.name()), painter.palette.quiet()));
     }
     let parts: Vec<(&str, Style)> = parts.iter().map(|(text, style)| (text.as_str(), *style)).collect();
     painter.parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
-    pace(painter, line, model);
+    format_interval(painter, line, model);
 }
 
 /// Draws headings and robots, and the full problem of the selected one.
@@ -78,7 +78,7 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
         }
     }
     let room = Rect { y: area.y.saturating_add(1), height: area.height.saturating_sub(2), ..area };
-    let listed = model.listed();
+    let listed = model.visible_robots();
     let cursor = listed.iter().position(|robot| *robot == model.cursor).unwrap_or_default();
     let first = first_line(cursor, listed.len(), room.height.into());
     for (line, robot) in (0..room.height).zip(listed.iter().skip(first)) {
@@ -106,8 +106,8 @@ fn first_line(cursor: usize, robots: usize, lines: usize) -> usize {
 
 /// Draws the problem of the selected robot.
 fn trouble(painter: &mut Painter<'_>, line: Rect, model: &Model) {
-    let Some(seen) = model.chosen() else { return };
-    let (text, tone) = if let Contact::Fails(failure) = &seen.contact {
+    let Some(seen) = model.selected_robot() else { return };
+    let (text, tone) = if let Contact::Unreachable(failure) = &seen.contact {
         let hint = failure.hint.as_ref().map(|hint| format!("; {hint}")).unwrap_or_default();
         (format!("{}{hint}", failure.message), Tone::Bad)
     } else {
@@ -119,7 +119,7 @@ fn trouble(painter: &mut Painter<'_>, line: Rect, model: &Model) {
 }
 
 /// Columns that fit the width, with position and width.
-fn columns(width: u16, robots: &[Seen]) -> Vec<(Column, Rect)> {
+fn columns(width: u16, robots: &[RobotRow]) -> Vec<(Column, Rect)> {
     let name = robots.iter().map(|seen| painter::width(&seen.name)).max().unwrap_or_default();
     let name = u16::try_from(name.clamp(NAME.0, NAME.1)).unwrap_or_default();
     let is_mixed = robots.windows(2).any(|pair| pair[0].family != pair[1].family);
@@ -135,13 +135,13 @@ fn columns(width: u16, robots: &[Seen]) -> Vec<(Column, Rect)> {
         (Column::Position { decimals: 1 }, 26, 110),
         (Column::Position { decimals: 0 }, 17, 80),
         (Column::Answer, 7, 60),
-        (Column::Past, u16::try_from(PAST).unwrap_or_default(), 120),
+        (Column::Trend, u16::try_from(PAST).unwrap_or_default(), 120),
     ];
     let has_fine = width >= 110;
-    let there = all
+    let available = all
         .into_iter()
         .filter(|(column, _, least)| width >= *least && !(has_fine && *column == Column::Position { decimals: 0 }));
-    let mut there: Vec<(Column, u16)> = there.map(|(column, columns, _)| (column, columns)).collect();
+    let mut there: Vec<(Column, u16)> = available.map(|(column, columns, _)| (column, columns)).collect();
     let taken: u16 = 2 + there.iter().map(|(_, columns)| columns + gap).sum::<u16>();
     for (column, columns) in &mut there {
         if *column == Column::Alarm {
@@ -149,12 +149,12 @@ fn columns(width: u16, robots: &[Seen]) -> Vec<(Column, Rect)> {
         }
     }
     let mut x = 2;
-    let mut placed = Vec::with_capacity(there.len());
+    let mut columns_with_area = Vec::with_capacity(there.len());
     for (column, columns) in there {
-        placed.push((column, Rect { x, width: columns.min(width.saturating_sub(x)), ..Rect::ZERO }));
+        columns_with_area.push((column, Rect { x, width: columns.min(width.saturating_sub(x)), ..Rect::ZERO }));
         x += columns + gap;
     }
-    placed
+    columns_with_area
 }
 
 /// Position of a column in a line.
@@ -173,7 +173,7 @@ impl Column {
             Self::Alarm => "ALARM",
             Self::Position { .. } => "X Y Z (mm)",
             Self::Answer => "ANSWER",
-            Self::Past => "LAST ANSWERS",
+            Self::Trend => "LAST ANSWERS",
         }
     }
 
@@ -181,10 +181,10 @@ impl Column {
         matches!(self, Self::Position { .. } | Self::Answer)
     }
 
-    fn draw(self, painter: &mut Painter<'_>, place: Rect, seen: &Seen, now: Moment, model: &Model) {
+    fn draw(self, painter: &mut Painter<'_>, place: Rect, seen: &RobotRow, now: Moment, model: &Model) {
         let palette = painter.palette;
         let line = seen.sample().map(|sample| &sample.line);
-        let is_old = seen.is_old(now, model.every);
+        let is_old = seen.is_stale(now, model.every);
         // Outdated values are dimmed.
         let plain = if is_old { palette.quiet() } else { Style::new() };
         let toned = |tone| if is_old { palette.quiet() } else { palette.tone(tone) };
@@ -216,14 +216,14 @@ impl Column {
                 painter.right(place, &text, style);
                 return;
             }
-            Self::Past => return past(painter, place, seen),
+            Self::Trend => return trend(painter, place, seen),
         };
         painter.left(place, text, style);
     }
 }
 
 /// Draws three coordinates in columns.
-fn position(painter: &mut Painter<'_>, place: Rect, seen: &Seen, decimals: usize, style: Style) {
+fn position(painter: &mut Painter<'_>, place: Rect, seen: &RobotRow, decimals: usize, style: Style) {
     let Some(sample) = seen.sample() else { return painter.right(place, "-", painter.palette.quiet()) };
     let Some(at) = sample.line.state.position else {
         let why = if sample.line.not_asked.is_some() { "not asked" } else { "-" };
@@ -237,7 +237,7 @@ fn position(painter: &mut Painter<'_>, place: Rect, seen: &Seen, decimals: usize
 }
 
 /// Draws the last answer times as bars, relative to the longest.
-fn past(painter: &mut Painter<'_>, place: Rect, seen: &Seen) {
+fn trend(painter: &mut Painter<'_>, place: Rect, seen: &RobotRow) {
     let last = seen.answers.iter().rev().take(PAST).rev();
     let longest = last.clone().max().copied().unwrap_or_default().as_secs_f64();
     let signs = last.map(|time| {
@@ -255,7 +255,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cursor_is_always_in_sight() {
+    fn keeps_the_cursor_visible() {
         assert_eq!(first_line(0, 50, 10), 0);
         assert_eq!(first_line(20, 50, 10), 15);
         assert_eq!(first_line(49, 50, 10), 40);

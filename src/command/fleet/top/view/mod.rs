@@ -12,7 +12,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::keys::KEYS;
-use super::model::{Model, Moment, Seen};
+use super::model::{Model, Moment, RobotRow};
 pub use crate::output::painter::Palette;
 use crate::output::painter::{Painter, after, line_of, to_ascii};
 use crate::output::view::Tone;
@@ -20,13 +20,13 @@ use crate::output::view::Tone;
 /// Draws the screen.
 pub fn draw(frame: &mut Frame<'_>, model: &Model, now: Moment, palette: Palette) {
     let area = frame.area();
-    render(frame.buffer_mut(), area, model, model.moment(now), palette);
+    render(frame.buffer_mut(), area, model, model.displayed_time(now), palette);
 }
 
 fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: Palette) {
     let mut painter = Painter { buffer, palette };
     let [head, body, foot] = rows(area);
-    if let Some(seen) = model.chosen().filter(|_| model.is_open) {
+    if let Some(seen) = model.selected_robot().filter(|_| model.is_open) {
         detail::head(&mut painter, head, model, seen, now);
         detail::body(&mut painter, body, model, seen, now);
     } else {
@@ -45,7 +45,7 @@ fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: 
 
 /// Draws the screen of one robot: its first line, and the rest.
 pub fn robot(painter: &mut Painter<'_>, [head, body]: [Rect; 2], model: &Model, now: Moment) {
-    if let Some(seen) = model.chosen() {
+    if let Some(seen) = model.selected_robot() {
         detail::head(painter, head, model, seen, now);
         detail::body(painter, body, model, seen, now);
     }
@@ -60,7 +60,7 @@ fn rows(area: Rect) -> [Rect; 3] {
 }
 
 /// Draws the polling interval and the pause mark at the end of the first line.
-fn pace(painter: &mut Painter<'_>, line: Rect, model: &Model) {
+fn format_interval(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let pace = format!("every {:?} ", model.every);
     painter.right(line, &pace, painter.palette.quiet());
     if model.is_paused() {
@@ -86,9 +86,9 @@ fn keys(painter: &mut Painter<'_>, line: Rect, model: &Model) {
 }
 
 /// Time of the last answer: `4.1 ms`, or `12s ago` if it is late.
-fn answer(painter: &Painter<'_>, seen: &Seen, now: Moment, every: Duration) -> (String, Style) {
+fn answer(painter: &Painter<'_>, seen: &RobotRow, now: Moment, every: Duration) -> (String, Style) {
     let Some(age) = seen.age(now) else { return ("-".to_owned(), painter.palette.quiet()) };
-    if seen.sample().is_none() || seen.is_old(now, every) {
+    if seen.sample().is_none() || seen.is_stale(now, every) {
         let tone = if seen.sample().is_none() { Tone::Bad } else { Tone::Warning };
         return (format!("{} ago", short(age)), painter.palette.tone(tone));
     }

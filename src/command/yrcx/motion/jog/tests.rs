@@ -44,11 +44,11 @@ fn a_jog_is_stopped_even_if_an_interrupt_shall_leave_what_moves() {
 
     let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]));
     bench.interrupt(&JOG, Duration::from_secs(1));
-    assert!(Yrcx::must_halt(&bench.link));
+    assert!(Yrcx::needs_halt(&bench.link));
     bench.halt().unwrap();
     let mut bench = Bench::new(Scripted::new([ends(u32::MAX, &[0])]));
     bench.interrupt(&["move", "--point", "1"], Duration::from_secs(1));
-    assert!(!Yrcx::must_halt(&bench.link));
+    assert!(!Yrcx::needs_halt(&bench.link));
 }
 
 #[test]

@@ -1,0 +1,128 @@
+//! `armctl alarm list|history|watch|reset` for robots of any family.
+
+use std::time::Duration;
+
+use clap::{Args, Subcommand};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Shared;
+use super::line::SharedLine;
+use crate::command::face::shared_commands::SharedVerb;
+use crate::command::fleet::status::{Fleet, Link};
+use crate::command::frame::settings_report::Done;
+use crate::command::frame::watch::Changes;
+use crate::command::robot::alarm::AllAlarms;
+use crate::command::{AnyCommand, Command, ConnectMode, Context, Report, SchemaEntry};
+use crate::failure::Failure;
+use crate::output::envelope::Envelope;
+use crate::output::view::View;
+use crate::settings::{alarms, duration};
+
+/// Alarms of all robots.
+#[derive(Debug, Subcommand)]
+pub enum Alarm {
+    /// Show the present alarms of robots
+    List(List),
+    /// Alarm history, newest first
+    History,
+    /// Print alarms as they come and go
+    Watch(Watch),
+    /// Reset the alarms of robots
+    Reset,
+}
+
+/// Prints the active alarms, and then each change, until Ctrl-C, --for, or --count reports.
+#[derive(Debug, Args)]
+pub struct Watch {
+    /// Stop after this time
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
+    within: Option<Duration>,
+}
+
+impl Alarm {
+    /// Whether it only reads. Without a selection it then applies to all robots.
+    pub fn reads(&self) -> bool {
+        !matches!(self, Self::Reset)
+    }
+
+    /// Command for robots of any family.
+    ///
+    /// # Errors
+    /// A family without this verb; a test excludes that.
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+        Ok(match self {
+            Self::List(_) => Box::new(List {}),
+            Self::History => Box::new(Shared::new("alarm.history", SharedVerb::AlarmHistory)),
+            Self::Watch(_) => Box::new(SharedLine::new("alarm.watch", ["alarm", "watch"].map(Into::into).into())?),
+            Self::Reset => Box::new(Shared::new("alarm.reset", SharedVerb::AlarmReset)),
+        })
+    }
+}
+
+/// Schemas of the reports.
+pub fn schemas() -> [SchemaEntry; 4] {
+    [
+        SchemaEntry::of::<Present>("alarm.list"),
+        SchemaEntry::of::<AllAlarms>("alarm.history"),
+        SchemaEntry::of::<Changes>("alarm.watch"),
+        SchemaEntry::of::<Done>("alarm.reset"),
+    ]
+}
+
+/// The active alarms. Reads that take control of a controller are not sent: without a session, a YRCX
+/// reports no alarm code.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "`armctl explain FAMILY CODE` explains a code. `armctl FAMILY alarm list` shows all details of the \
+                  controller."
+)]
+pub struct List {}
+
+impl Command for List {
+    type Family = Fleet;
+    type Report = Present;
+    const ID: &'static str = "alarm.list";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
+
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<Present, Failure> {
+        let Context { robot, link, screen, several, .. } = context;
+        link.open_link(screen).await?;
+        let found = match link {
+            Link::Open(face, connection) => face.alarms(&mut **connection).await?,
+            Link::Absent(absent) => return Err(absent.failure.clone()),
+        };
+        let mut alarms = Vec::with_capacity(found.len());
+        for alarm in found {
+            let site = alarm.code.as_deref().map(|code| alarms::find(robot, code)).transpose()?.flatten();
+            alarms.push(alarm.with(site));
+        }
+        Ok(Present { alarms: AllAlarms::present(alarms), several })
+    }
+
+    /// Summary line: `3 robots, 1 with an alarm`.
+    fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
+        let has_alarm = |envelope: &&Envelope| {
+            envelope.data.as_ref().and_then(|data| data["alarms"].as_array()).is_some_and(|alarms| !alarms.is_empty())
+        };
+        let (robots, with) = (envelopes.len(), envelopes.iter().filter(has_alarm).count());
+        let plural = if robots == 1 { "" } else { "s" };
+        Some(format!("{robots} robot{plural}, {with} with an alarm"))
+    }
+}
+
+/// The alarms that are present.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Present {
+    #[serde(flatten)]
+    alarms: AllAlarms,
+    /// Whether the report has other robots too.
+    #[serde(skip)]
+    several: bool,
+}
+
+impl Report for Present {
+    fn view(&self) -> View {
+        if self.several { self.alarms.view() } else { self.alarms.for_robot() }
+    }
+}

@@ -1,0 +1,123 @@
+//! Verbs that every family has. Each robot gets the command of its family.
+
+pub mod alarm;
+pub mod io;
+pub mod line;
+
+use futures_util::future::LocalBoxFuture;
+
+use crate::command::face::shared_commands::SharedVerb;
+use crate::command::families::{self, FAMILIES};
+use crate::command::frame::command::AnyContext;
+use crate::command::frame::settings_report::Done;
+use crate::command::robot::position::AllPositions;
+use crate::command::{Access, AnyCommand, ConnectMode, Connection, Driver, Entry, Outcome, SchemaEntry};
+use crate::failure::Failure;
+use crate::gate::Intent;
+use crate::output::Screen;
+use crate::output::csv::Sheet;
+use crate::settings::Robot;
+use crate::settings::target::{Address, Family};
+
+/// A verb with the command of each family.
+pub struct Shared {
+    id: &'static str,
+    commands: [(Family, Box<dyn AnyCommand>); FAMILIES.len()],
+}
+
+impl Shared {
+    /// Creates a verb; `id` is its command id in envelopes and schemas.
+    pub fn new(id: &'static str, verb: SharedVerb) -> Self {
+        Self { id, commands: FAMILIES.map(|face| (face.family(), face.shared(verb))) }
+    }
+
+    fn of(&self, robot: &Robot) -> &dyn AnyCommand {
+        let found = self.commands.iter().find(|(family, _)| *family == robot.family);
+        found.map_or(&*self.commands[0].1, |(_, command)| &**command)
+    }
+}
+
+impl AnyCommand for Shared {
+    fn id(&self) -> &'static str {
+        self.id
+    }
+
+    fn intent(&self, robot: Option<&Robot>) -> Intent {
+        if let Some(robot) = robot {
+            return self.of(robot).intent(Some(robot));
+        }
+        let [first, rest @ ..] = &self.commands;
+        let most = |most: Intent, (_, command): &(Family, Box<dyn AnyCommand>)| {
+            let intent = command.intent(None);
+            if intent.risk > most.risk { intent } else { most }
+        };
+        rest.iter().fold(first.1.intent(None), most)
+    }
+
+    fn driver(&self) -> Option<&'static dyn Driver> {
+        Some(&PerRobot)
+    }
+
+    fn connect_mode(&self, robot: &Robot) -> ConnectMode {
+        self.of(robot).connect_mode(robot)
+    }
+
+    fn sheet(&self) -> Option<Sheet> {
+        self.commands[0].1.sheet()
+    }
+
+    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+        self.of(context.robot).run(context)
+    }
+}
+
+/// `armctl stop`: the stop command of each family.
+pub fn stop() -> Shared {
+    Shared::new("stop", SharedVerb::Stop)
+}
+
+/// `armctl position`: current position of each robot.
+pub fn position() -> Shared {
+    Shared::new("position", SharedVerb::Position)
+}
+
+/// Schemas of the reports.
+pub fn schemas() -> Vec<SchemaEntry> {
+    let stop = SchemaEntry::of::<Done>("stop");
+    let position = SchemaEntry::of::<AllPositions>("position");
+    alarm::schemas().into_iter().chain(io::schemas()).chain([position, stop]).collect()
+}
+
+/// Connects to each robot with the driver of its family.
+struct PerRobot;
+
+impl Driver for PerRobot {
+    fn family(&self) -> Option<Family> {
+        None
+    }
+
+    fn stop(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
+        families::of(robot.family).driver().entry(robot, mode)
+    }
+
+    fn takes_one_client(&self, robot: &Robot) -> bool {
+        families::of(robot.family).driver().takes_one_client(robot)
+    }
+
+    fn addresses(&self, robot: &Robot) -> Result<Vec<Address>, Failure> {
+        families::of(robot.family).driver().addresses(robot)
+    }
+
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
+        families::of(robot.family).driver().connect(robot, access, screen)
+    }
+}

@@ -1,0 +1,608 @@
+//! Pump from poller to broker: puts data into the outbox, and sends it while the broker is connected. After a loss it
+//! connects again with a growing backoff.
+
+use std::collections::{HashMap, VecDeque};
+use std::future::{Future, pending};
+use std::pin::pin;
+use std::time::Duration;
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+use jiff::Timestamp;
+use tokio::task::coop::consume_budget;
+use tokio::time::{Instant, sleep_until, timeout_at};
+
+use super::broker::Url;
+use super::error_text;
+use super::message_format::{MessageFormat, Reaction};
+use super::outbox::{Outbox, Ticket};
+use super::uplink::{Event, Loss, Message, Refusal, SendError, Will};
+use crate::command::fleet::poll::Event as Found;
+use crate::command::fleet::service::END_TIMEOUT;
+use crate::failure::{Failure, Kind, plain};
+use crate::output::log::Level;
+use crate::settings::duration;
+
+/// Limits of messages in transit: with and without acknowledgement.
+const WINDOW: usize = 64;
+const UNCONFIRMED_WINDOW: usize = 1000;
+/// Limit of unsent bytes on the connection.
+const UNSENT_LIMIT: usize = 256 * 1024;
+/// Minimum interval of pings that confirm messages without acknowledgement.
+const PING_INTERVAL: Duration = Duration::from_millis(500);
+/// Time limit for an acknowledgement, while the broker answers pings.
+const ACKNOWLEDGE_TIMEOUT: Duration = Duration::from_secs(30);
+/// First and longest backoff.
+const BACKOFF_RANGE: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(60)];
+/// Lifetime of a connection after which the backoff starts again.
+const STABLE_AFTER: Duration = Duration::from_secs(10);
+/// Time limits at the end: for queued records, and for the acknowledgement of the last message. DISCONNECT gets the
+/// rest.
+const DELIVERY_TIMEOUT: Duration = Duration::from_millis(500);
+const FINAL_TIMEOUT: Duration = Duration::from_millis(700);
+/// Interval after which an ongoing failure is reported again.
+const REMINDER_INTERVAL: Duration = Duration::from_secs(600);
+
+/// Opens connections to a broker.
+pub trait Broker {
+    /// Connection type.
+    type Uplink: Uplink;
+    /// Connects and sends CONNECT. The first event is the broker's answer.
+    async fn open(&self, client_id: String, will: Will) -> Result<Self::Uplink, Loss>;
+}
+
+/// A connection to a broker.
+pub trait Uplink {
+    /// Waits for the next event. Cancel safe.
+    async fn next(&mut self) -> Event;
+    /// Sends a message. Returns the number of its acknowledgement, if it gets one.
+    fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError>;
+    /// Subscribes to topics.
+    fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
+    /// Sends a ping, and returns its number.
+    fn ping(&mut self) -> u64;
+    /// How many more unacknowledged messages the broker accepts, if it has set a limit.
+    fn room(&self) -> Option<u16>;
+    /// Number of unsent bytes.
+    fn unsent(&mut self) -> usize;
+    /// Disconnects.
+    async fn close(self);
+}
+
+/// Backoff between attempts to connect.
+#[derive(Debug)]
+pub struct Backoff {
+    next: Duration,
+    random: fastrand::Rng,
+}
+
+impl Backoff {
+    /// Creates the backoff with a random seed.
+    pub fn new(seed: u64) -> Self {
+        Self { next: BACKOFF_RANGE[0], random: fastrand::Rng::with_seed(seed) }
+    }
+
+    /// Next pause: twice the last one, up to a minute, with a random factor. So clients that lost a broker together do
+    /// not return together.
+    pub fn pause(&mut self) -> Duration {
+        let pause = self.next.mul_f64(0.75 + self.random.f64() / 2.0);
+        self.next = (self.next * 2).min(BACKOFF_RANGE[1]);
+        pause
+    }
+
+    fn reset(&mut self) {
+        self.next = BACKOFF_RANGE[0];
+    }
+}
+
+/// Receiver of broker events.
+pub trait Listener {
+    /// A message for the log.
+    fn log(&self, level: Level, text: &str);
+    /// The broker accepted this client, or is gone.
+    fn set_connected(&self, is_there: bool);
+}
+
+/// Counters of a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Records that have arrived.
+    pub published: u64,
+    /// Records that the broker rejected.
+    pub refused: u64,
+    /// Records dropped because the queue was full.
+    pub dropped: u64,
+    /// Connections after the first one.
+    pub reconnects: u64,
+    /// Records left for the next process, or lost.
+    pub undelivered: u64,
+}
+
+/// An open connection with its messages in transit.
+struct Open<U> {
+    uplink: U,
+    is_accepted: bool,
+    /// Messages with acknowledgement, by number.
+    acknowledged: HashMap<u64, Option<Ticket>>,
+    /// Records without acknowledgement that no ping has confirmed yet.
+    unconfirmed: VecDeque<Ticket>,
+    /// Number of the current ping, and the records that it will confirm.
+    pending_ping: Option<(u64, Vec<Ticket>)>,
+    since: Instant,
+    last_ping: Instant,
+    /// Time of the last acknowledgement, or when nothing was in transit.
+    progress: Instant,
+}
+
+impl<U> Open<U> {
+    fn new(uplink: U) -> Self {
+        let now = Instant::now();
+        Self {
+            uplink,
+            is_accepted: false,
+            acknowledged: HashMap::new(),
+            unconfirmed: VecDeque::new(),
+            pending_ping: None,
+            since: now,
+            last_ping: now,
+            progress: now,
+        }
+    }
+
+    /// Notes progress. Returns whether the connection counts as stable.
+    fn note_progress(&mut self) -> bool {
+        self.progress = Instant::now();
+        self.progress - self.since >= STABLE_AFTER
+    }
+
+    fn is_idle(&self) -> bool {
+        self.acknowledged.is_empty() && self.unconfirmed.is_empty() && self.pending_ping.is_none()
+    }
+}
+
+/// State of the connection.
+enum ConnectionState<'a, B: Broker> {
+    Waiting(Instant),
+    Opening(LocalBoxFuture<'a, Result<B::Uplink, Loss>>),
+    Open(Open<B::Uplink>),
+}
+
+/// Next step of the connection.
+enum Step<U> {
+    Connect,
+    Opened(Result<U, Loss>),
+    Event(Event),
+    Stuck,
+    Ping,
+}
+
+/// The pump.
+pub struct Delivery<'a, B: Broker> {
+    broker: &'a B,
+    url: &'a Url,
+    format: Box<dyn MessageFormat>,
+    outbox: Outbox,
+    listener: &'a dyn Listener,
+    connection: ConnectionState<'a, B>,
+    backoff: Backoff,
+    counts: Counts,
+    /// Whether the broker has ever accepted this client, and the time of the last loss.
+    was_accepted: bool,
+    lost_since: Option<Instant>,
+    /// Last reported failure and its time.
+    last_failure: Option<(String, Instant)>,
+    /// Whether a missing broker ends the run.
+    ends_without_broker: bool,
+    /// Number of messages that the broker rejected.
+    rejected: u32,
+}
+
+impl<'a, B: Broker + 'a> Delivery<'a, B> {
+    /// Creates a pump.
+    pub fn new(
+        (broker, url): (&'a B, &'a Url),
+        format: Box<dyn MessageFormat>,
+        outbox: Outbox,
+        (listener, backoff): (&'a dyn Listener, Backoff),
+        ends_without_broker: bool,
+    ) -> Self {
+        Self {
+            broker,
+            url,
+            format,
+            outbox,
+            listener,
+            connection: ConnectionState::Waiting(Instant::now()),
+            backoff,
+            counts: Counts::default(),
+            was_accepted: false,
+            lost_since: None,
+            last_failure: None,
+            ends_without_broker,
+            rejected: 0,
+        }
+    }
+
+    /// Runs until it is stopped, or until `found` has ended and everything has arrived. Call [`end`](Self::end) next.
+    ///
+    /// # Errors
+    /// A bounded run without a broker, or the broker refuses this client.
+    pub async fn run(
+        &mut self,
+        mut found: impl AsyncFnMut() -> Option<Found>,
+        stop: impl Future<Output = ()>,
+    ) -> Result<(), Failure> {
+        let mut stop = pin!(stop);
+        let mut has_more = true;
+        loop {
+            if !has_more && self.outbox.is_empty() && self.is_idle() {
+                return Ok(());
+            }
+            let next_event = async { if has_more { found().await } else { pending().await } };
+            tokio::select! {
+                biased;
+                () = &mut stop => return Ok(()),
+                next = step(&mut self.connection) => self.handle_step(next)?,
+                event = next_event => match event {
+                    None => has_more = false,
+                    Some(event) => self.handle_event(&event),
+                },
+            }
+            self.fill();
+        }
+    }
+
+    fn is_idle(&self) -> bool {
+        matches!(&self.connection, ConnectionState::Open(open) if open.is_accepted && open.is_idle())
+    }
+
+    /// Handles an event of the poller.
+    fn handle_event(&mut self, event: &Found) {
+        for record in self.format.convert_event(event, now_ms()) {
+            self.outbox.push(record);
+        }
+        if let Some(error) = self.outbox.take_disk_error() {
+            let why = plain(&error);
+            self.listener.log(
+                Level::Error,
+                &format!("cannot write messages to disk ({why}): messages that do not fit into memory are dropped"),
+            );
+        }
+        // Without a connection, each drop would be reported. The sum is reported with the next connection.
+        if matches!(self.connection, ConnectionState::Open(_)) {
+            self.report_dropped();
+        }
+    }
+
+    fn report_dropped(&mut self) {
+        let dropped = self.outbox.take_dropped();
+        self.counts.dropped += dropped.overflow + dropped.damaged;
+        if dropped.overflow > 0 {
+            let what = if dropped.overflow == 1 { "message was" } else { "messages were" };
+            self.listener.log(
+                Level::Warning,
+                &format!("{} {what} dropped, the oldest first: the buffer was full", dropped.overflow),
+            );
+        }
+        if dropped.damaged > 0 {
+            self.listener.log(Level::Error, "a part of the buffer on disk was damaged and is lost");
+        }
+    }
+
+    /// Handles a step of the connection.
+    fn handle_step(&mut self, step: Step<B::Uplink>) -> Result<(), Failure> {
+        match step {
+            Step::Connect => {
+                let (id, will) = (self.format.client_id(), self.format.will(now_ms()));
+                self.connection = ConnectionState::Opening(self.broker.open(id, will).boxed_local());
+                Ok(())
+            }
+            Step::Opened(Ok(uplink)) => {
+                self.connection = ConnectionState::Open(Open::new(uplink));
+                Ok(())
+            }
+            Step::Opened(Err(loss)) | Step::Event(Event::Lost(loss)) => self.handle_loss(&loss),
+            Step::Stuck => self.handle_loss(&Loss::Silent),
+            Step::Ping => {
+                if let ConnectionState::Open(open) = &mut self.connection {
+                    let tickets = std::mem::take(&mut open.unconfirmed).into();
+                    open.last_ping = Instant::now();
+                    open.pending_ping = Some((open.uplink.ping(), tickets));
+                }
+                Ok(())
+            }
+            Step::Event(Event::Connected) => {
+                self.handle_connected();
+                Ok(())
+            }
+            Step::Event(Event::Refused(refusal)) => self.handle_refusal(&refusal),
+            Step::Event(Event::Acknowledged(id, code)) => {
+                self.handle_acknowledgement(id, code);
+                Ok(())
+            }
+            Step::Event(Event::Pong(number)) => {
+                self.handle_pong(number);
+                Ok(())
+            }
+            Step::Event(Event::Subscribed(is_allowed)) => {
+                if !is_allowed {
+                    self.listener.log(
+                        Level::Warning,
+                        "the broker refuses the subscription: rebirth commands and the state of the primary host do \
+                         not arrive",
+                    );
+                }
+                Ok(())
+            }
+            Step::Event(Event::Message(message)) => {
+                let reaction = self.format.handle_message(&message, now_ms());
+                self.react(reaction);
+                Ok(())
+            }
+        }
+    }
+
+    fn handle_connected(&mut self) {
+        let ConnectionState::Open(open) = &mut self.connection else { return };
+        open.is_accepted = true;
+        self.listener.set_connected(true);
+        let again = std::mem::replace(&mut self.was_accepted, true);
+        self.last_failure = None;
+        let (waiting, on_disk) = self.outbox.waiting();
+        let messages = if waiting == 1 { "message" } else { "messages" };
+        let buffered = match (waiting, on_disk) {
+            (0, 0) => String::new(),
+            // The first polls run while it connects, so some records always wait.
+            (_, 0) if !again => String::new(),
+            (waiting, 0) => format!("; {waiting} {messages} in the buffer"),
+            (0, bytes) => format!("; {} KiB in the buffer on disk", bytes.div_ceil(1024)),
+            (waiting, bytes) => {
+                format!("; {waiting} {messages} in the buffer, and {} KiB on disk", bytes.div_ceil(1024))
+            }
+        };
+        match self.lost_since.take().filter(|_| again) {
+            Some(since) => {
+                self.counts.reconnects += 1;
+                let secs = duration::display(Duration::from_secs(since.elapsed().as_secs()));
+                self.listener.log(Level::Notice, &format!("connected to {} again after {secs}{buffered}", self.url));
+            }
+            None => self.listener.log(Level::Notice, &format!("connected to {}{buffered}", self.url)),
+        }
+        self.report_dropped();
+        let topics = self.format.topics();
+        if let (false, ConnectionState::Open(open)) = (topics.is_empty(), &mut self.connection)
+            && open.uplink.subscribe(&topics).is_err()
+        {
+            self.listener.log(Level::Warning, "cannot send the subscription to the broker");
+        }
+        let messages = self.format.first_messages(now_ms());
+        self.send(None, &messages);
+    }
+
+    fn react(&mut self, reaction: Reaction) {
+        if let Some((level, note)) = reaction.note {
+            self.listener.log(level, &note);
+        }
+        self.send(None, &reaction.messages);
+        if reaction.reconnects {
+            // The next connection has a new last will.
+            self.leave();
+            self.connection = ConnectionState::Waiting(Instant::now() + BACKOFF_RANGE[0]);
+        }
+    }
+
+    /// The connection has ended. Records that have not arrived stay in the queue.
+    fn leave(&mut self) {
+        self.listener.set_connected(false);
+        self.outbox.requeue();
+        self.format.connection_lost();
+        self.lost_since = self.lost_since.or_else(|| self.was_accepted.then(Instant::now));
+    }
+
+    fn handle_loss(&mut self, loss: &Loss) -> Result<(), Failure> {
+        self.leave();
+        self.fail(error_text::loss(self.url, loss))
+    }
+
+    fn handle_refusal(&mut self, refusal: &Refusal) -> Result<(), Failure> {
+        self.leave();
+        self.fail(error_text::refusal(self.url, refusal))
+    }
+
+    /// Waits before the next attempt, for any failure: even a refusal or a certificate error can be over a minute
+    /// later. Only a bounded run gives up.
+    fn fail(&mut self, failure: Failure) -> Result<(), Failure> {
+        if self.ends_without_broker {
+            self.connection = ConnectionState::Waiting(Instant::now());
+            return Err(failure);
+        }
+        let pause = self.backoff.pause();
+        self.connection = ConnectionState::Waiting(Instant::now() + pause);
+        let is_known = self
+            .last_failure
+            .as_ref()
+            .is_some_and(|(said, at)| *said == failure.message && at.elapsed() < REMINDER_INTERVAL);
+        // If it worked before, the settings are probably right, unless the broker reports an error in them.
+        let is_setting = failure.kind == Kind::Usage || !self.was_accepted;
+        let hint = failure.hint.filter(|_| is_setting).map(|hint| format!(" ({hint})")).unwrap_or_default();
+        let level = if is_known { Level::Detail } else { Level::Warning };
+        let again = format!("{}.{}s", pause.as_secs(), pause.subsec_millis() / 100);
+        self.listener.log(level, &format!("{}{hint}; next try in {again}, then repeatedly", failure.message));
+        if !is_known {
+            self.last_failure = Some((failure.message, Instant::now()));
+        }
+        Ok(())
+    }
+
+    fn handle_acknowledgement(&mut self, id: u64, code: Option<u8>) {
+        let ConnectionState::Open(open) = &mut self.connection else { return };
+        let Some(ticket) = open.acknowledged.remove(&id) else { return };
+        if open.note_progress() {
+            self.backoff.reset();
+        }
+        if let Some(code) = code {
+            self.refuse(&format!("the broker refused a message (0x{code:02X}): check the publish rights of this user"));
+        }
+        if let Some(ticket) = ticket {
+            self.counts.published += u64::from(code.is_none());
+            self.counts.refused += u64::from(code.is_some());
+            self.outbox.acknowledge(ticket);
+        }
+    }
+
+    /// Reports the first rejection as a warning, and later ones at `-v`.
+    fn refuse(&mut self, why: &str) {
+        self.listener.log(if self.rejected > 0 { Level::Detail } else { Level::Warning }, why);
+        self.rejected = self.rejected.saturating_add(1);
+    }
+
+    fn handle_pong(&mut self, number: u64) {
+        let ConnectionState::Open(open) = &mut self.connection else { return };
+        if let Some((_, tickets)) = open.pending_ping.take_if(|(ping, _)| *ping <= number) {
+            if open.note_progress() {
+                self.backoff.reset();
+            }
+            for ticket in tickets {
+                self.counts.published += 1;
+                self.outbox.acknowledge(ticket);
+            }
+        }
+    }
+
+    /// Sends records up to the limits.
+    fn fill(&mut self) {
+        loop {
+            let ConnectionState::Open(open) = &mut self.connection else { return };
+            let has_room = open.is_accepted
+                && self.format.is_ready()
+                && open.acknowledged.len() < WINDOW
+                && open.unconfirmed.len() < UNCONFIRMED_WINDOW
+                && open.uplink.room().is_none_or(|room| room > 0)
+                && open.uplink.unsent() < UNSENT_LIMIT;
+            if !has_room {
+                return;
+            }
+            let Some((ticket, record)) = self.outbox.take_next() else { return };
+            let messages = self.format.convert_record(record, now_ms());
+            self.send(Some(ticket), &messages);
+        }
+    }
+
+    /// Sends the messages of a record, or messages without a record.
+    fn send(&mut self, ticket: Option<Ticket>, messages: &[Message]) {
+        let ConnectionState::Open(open) = &mut self.connection else { return };
+        if open.is_idle() {
+            open.progress = Instant::now();
+        }
+        let mut is_confirmed_by_ping = false;
+        let mut is_under_way = false;
+        let mut failed = None;
+        for message in messages {
+            match open.uplink.publish(message) {
+                Ok(Some(id)) => {
+                    is_under_way = true;
+                    open.acknowledged.insert(id, ticket);
+                }
+                Ok(None) => is_confirmed_by_ping = true,
+                Err(error) => failed = Some(format!("{}: {error}", message.topic)),
+            }
+        }
+        if let Some(ticket) = ticket {
+            if is_confirmed_by_ping {
+                open.unconfirmed.push_back(ticket);
+            } else if !is_under_way {
+                // No message of it could be sent, so it is removed.
+                self.outbox.acknowledge(ticket);
+                self.counts.refused += u64::from(failed.is_some());
+            }
+        }
+        if let Some(why) = failed {
+            self.refuse(&why);
+        }
+    }
+
+    /// Ends the run: sends queued records within a time limit, then a last message, and leaves the rest for the next
+    /// process. It always takes less than [`END`]. After a failure it reports less.
+    pub async fn end(mut self, has_failed: bool) -> Counts {
+        let now = Instant::now();
+        let told = async {
+            while let ConnectionState::Open(_) = &self.connection {
+                if self.outbox.is_empty() && self.is_idle() || !self.format.is_ready() {
+                    break;
+                }
+                let next = step(&mut self.connection).await;
+                if self.handle_step(next).is_err() {
+                    break;
+                }
+                self.fill();
+            }
+        };
+        let _in_time = timeout_at(now + DELIVERY_TIMEOUT, told).await;
+        if matches!(&self.connection, ConnectionState::Open(open) if open.is_accepted) {
+            let messages = self.format.final_messages(now_ms());
+            self.send(None, &messages);
+            let heard = async {
+                while matches!(&self.connection, ConnectionState::Open(open) if open.acknowledged.values().any(Option::is_none))
+                {
+                    let next = step(&mut self.connection).await;
+                    if self.handle_step(next).is_err() {
+                        break;
+                    }
+                }
+            };
+            let _in_time = timeout_at(now + FINAL_TIMEOUT, heard).await;
+        }
+        if let ConnectionState::Open(open) =
+            std::mem::replace(&mut self.connection, ConnectionState::Waiting(Instant::now()))
+        {
+            let _in_time = timeout_at(now + END_TIMEOUT, open.uplink.close()).await;
+        }
+        self.report_dropped();
+        let has_left = !self.outbox.is_empty();
+        let outbox = std::mem::replace(&mut self.outbox, Outbox::new(0, None));
+        let (nowhere, trouble) = outbox.save_all();
+        self.counts.undelivered = nowhere;
+        if let Some(error) = trouble {
+            self.listener.log(Level::Error, &format!("cannot store the buffer: {}", plain(&error)));
+        }
+        let or_detail = |level| if has_failed { Level::Detail } else { level };
+        if nowhere > 0 {
+            let what = if nowhere == 1 { "message was" } else { "messages were" };
+            let text = format!("{nowhere} {what} not delivered: the buffer on disk is full or off");
+            self.listener.log(or_detail(Level::Warning), &text);
+        } else if has_left {
+            self.listener.log(or_detail(Level::Notice), "undelivered messages are stored on disk for the next start");
+        }
+        self.counts
+    }
+}
+
+/// Waits for the next step of the connection. Cancel safe.
+async fn step<B: Broker>(line: &mut ConnectionState<'_, B>) -> Step<B::Uplink> {
+    match line {
+        ConnectionState::Waiting(until) => {
+            sleep_until(*until).await;
+            Step::Connect
+        }
+        ConnectionState::Opening(opened) => Step::Opened(opened.await),
+        ConnectionState::Open(open) => {
+            let stuck = open.progress + ACKNOWLEDGE_TIMEOUT;
+            let (wants_ping, is_idle) = (!open.unconfirmed.is_empty() && open.pending_ping.is_none(), open.is_idle());
+            let ping = open.last_ping + PING_INTERVAL;
+            tokio::select! {
+                biased;
+                event = async {
+                    // A broker with endless events must not block other tasks.
+                    consume_budget().await;
+                    open.uplink.next().await
+                } => Step::Event(event),
+                () = sleep_until(ping), if wants_ping => Step::Ping,
+                () = sleep_until(stuck), if !is_idle => Step::Stuck,
+            }
+        }
+    }
+}
+
+fn now_ms() -> u64 {
+    u64::try_from(Timestamp::now().as_millisecond()).unwrap_or_default()
+}

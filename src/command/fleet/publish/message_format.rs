@@ -1,0 +1,44 @@
+//! Trait for a message format: plain topics ([`Plain`](super::plain::Plain)), or a Sparkplug node
+//! ([`Node`](super::sparkplug::Node)). Its input is poller events and broker messages. It knows no connection and no
+//! clock.
+
+use super::uplink::{Message, Will};
+use crate::command::fleet::poll::Event;
+use crate::output::log::Level;
+
+use super::outbox::Record;
+
+/// Reaction to a message of the broker.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Reaction {
+    /// Messages to send at once, before the queue.
+    pub messages: Vec<Message>,
+    /// Text for the log.
+    pub note: Option<(Level, String)>,
+    /// Whether to close the connection and open a new one.
+    pub reconnects: bool,
+}
+
+/// A message format.
+pub trait MessageFormat {
+    /// Client identifier, unique at the broker.
+    fn client_id(&self) -> String;
+    /// Last will of a new connection.
+    fn will(&mut self, now_ms: u64) -> Will;
+    /// Topics to subscribe to.
+    fn topics(&self) -> Vec<String>;
+    /// First messages of a new connection.
+    fn first_messages(&mut self, now_ms: u64) -> Vec<Message>;
+    /// The connection is lost.
+    fn connection_lost(&mut self);
+    /// Handles a message of the broker.
+    fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction;
+    /// Converts a poller event to records.
+    fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record>;
+    /// Whether records can be sent now.
+    fn is_ready(&self) -> bool;
+    /// Converts a record to messages; empty if it is out of date.
+    fn convert_record(&mut self, record: Record, now_ms: u64) -> Vec<Message>;
+    /// Last messages before a normal close.
+    fn final_messages(&mut self, now_ms: u64) -> Vec<Message>;
+}

@@ -1,0 +1,209 @@
+//! Plain message format: one retained topic per robot and kind, `PREFIX/ROBOT/status`, with the envelope of `--json` as
+//! payload.
+//!
+//! A message is sent after a change, and at the latest after a given time. If a robot does not answer, all its topics
+//! report that. So an old position is never taken for the current one.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use jiff::Timestamp;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Kind;
+use super::extra_topic::ExtraTopic;
+use super::message_format::{MessageFormat, Reaction};
+use super::outbox::Record;
+use super::topic::Levels;
+use super::uplink::{Message, Will};
+use crate::command::face::overview::OverviewReport;
+use crate::command::fleet::poll::{Event, PollResult, RobotId};
+use crate::command::robot::alarm::Alarm;
+use crate::command::robot::state::PositionMm;
+use crate::failure::Failure;
+use crate::output::envelope::Envelope;
+use crate::output::log::Level;
+use crate::settings::Robot;
+
+/// The alarms and errors of a robot.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Alarms {
+    /// The active ones, newest first.
+    alarms: Vec<Alarm>,
+}
+
+/// Position of a robot.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Position {
+    /// In base coordinates; null if it was not read, or the controller has none.
+    position: Option<PositionMm>,
+    /// Why it was not read; null if it was.
+    not_asked: Option<&'static str>,
+}
+
+/// Last message of a topic.
+#[derive(Debug)]
+struct SentState {
+    /// The envelope without its time.
+    what: Vec<u8>,
+    at_ms: u64,
+}
+
+/// The plain message format.
+#[derive(Debug)]
+pub struct PlainFormat {
+    prefix: String,
+    node: String,
+    levels: Levels,
+    kinds: Vec<Kind>,
+    also: Rc<[ExtraTopic]>,
+    every_ms: u64,
+    sent: BTreeMap<RobotId, BTreeMap<String, SentState>>,
+}
+
+impl PlainFormat {
+    /// Creates the format for these kinds and extra commands; unchanged data is sent again after `every_ms`. `node` is
+    /// a topic level.
+    pub fn new(
+        (prefix, node, levels): (&str, String, Levels),
+        kinds: &[Kind],
+        also: Rc<[ExtraTopic]>,
+        every_ms: u64,
+    ) -> Self {
+        Self { prefix: prefix.to_owned(), node, levels, kinds: kinds.to_vec(), also, every_ms, sent: BTreeMap::new() }
+    }
+
+    fn state(&self, state: &str) -> Message {
+        Message {
+            topic: format!("{}/{}/state", self.prefix, self.node),
+            payload: state.as_bytes().to_vec(),
+            retain: true,
+            acknowledged: true,
+        }
+    }
+
+    /// Records for data that has changed or is due again.
+    fn changed(&mut self, robot: &Robot, envelopes: Vec<(String, Envelope)>, now_ms: u64) -> Vec<Record> {
+        let Ok(level) = self.levels.level_of(robot) else { return Vec::new() };
+        let told = self.sent.entry(RobotId::for_robot(robot)).or_default();
+        let mut records = Vec::new();
+        for (kind, envelope) in envelopes {
+            let Ok(what) = serde_json::to_vec(&envelope) else { continue };
+            let is_due = told
+                .get(&kind)
+                .is_none_or(|last| last.what != what || now_ms.saturating_sub(last.at_ms) >= self.every_ms);
+            if !is_due {
+                continue;
+            }
+            let time = i64::try_from(now_ms).ok().and_then(|ms| Timestamp::from_millisecond(ms).ok());
+            let Ok(body) = serde_json::to_vec(&Envelope { time, ..envelope }) else { continue };
+            let key = format!("{}/{level}/{kind}", self.prefix);
+            records.push(Record { kind: 0, time_ms: now_ms, key, body, epoch: 0 });
+            told.insert(kind, SentState { what, at_ms: now_ms });
+        }
+        records
+    }
+
+    fn looked(&mut self, look: &PollResult, now_ms: u64) -> Vec<Record> {
+        let robot = &look.robot;
+        let mut line = OverviewReport { family: robot.family.name(), ..look.sample.line.clone() };
+        let at = (line.state.position, line.not_asked);
+        if self.kinds.contains(&Kind::Position) {
+            // Otherwise each step of a motion would be published twice.
+            (line.state.position, line.not_asked) = (None, Some("published in a separate topic"));
+        }
+        let mut envelopes = Vec::new();
+        for kind in &self.kinds {
+            let data = match kind {
+                Kind::Status => serde_json::to_value(&line),
+                Kind::Alarms => serde_json::to_value(Alarms { alarms: look.sample.alarms.clone() }),
+                Kind::Position => serde_json::to_value(Position { position: at.0, not_asked: at.1 }),
+            };
+            let data = data.map_err(|error| Failure::local(format!("report as JSON: {error}")));
+            envelopes.push((kind.name().to_owned(), Envelope::of(robot, kind.id(), data)));
+        }
+        for (text, answer) in &look.extras {
+            if let Some(also) = self.also.iter().find(|also| also.text() == &**text) {
+                envelopes.push((also.level().to_owned(), Envelope::of(robot, also.id(), answer.clone())));
+            }
+        }
+        self.changed(robot, envelopes, now_ms)
+    }
+
+    /// The robot does not answer. Its status reports that with all known data. Its other data is unknown.
+    fn failed(&mut self, robot: &Robot, failure: &Failure, now_ms: u64) -> Vec<Record> {
+        let mut envelopes = Vec::new();
+        for kind in &self.kinds {
+            let failed = Envelope::of(robot, kind.id(), Err(failure.clone()));
+            let silent = OverviewReport { family: robot.family.name(), ..OverviewReport::default() };
+            let data = serde_json::to_value(silent).ok().filter(|_| *kind == Kind::Status);
+            envelopes.push((kind.name().to_owned(), Envelope { data, ..failed }));
+        }
+        for also in self.also.iter().filter(|also| also.family() == robot.family) {
+            envelopes.push((also.level().to_owned(), Envelope::of(robot, also.id(), Err(failure.clone()))));
+        }
+        self.changed(robot, envelopes, now_ms)
+    }
+
+    /// The robot was removed: clears its retained messages.
+    fn gone(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
+        let told = self.sent.remove(&RobotId::for_robot(robot)).unwrap_or_default();
+        let Ok(level) = self.levels.level_of(robot) else { return Vec::new() };
+        let empty = |kind: String| Record {
+            kind: 0,
+            time_ms: now_ms,
+            key: format!("{}/{level}/{kind}", self.prefix),
+            body: Vec::new(),
+            epoch: 0,
+        };
+        told.into_keys().map(empty).collect()
+    }
+}
+
+impl MessageFormat for PlainFormat {
+    fn client_id(&self) -> String {
+        format!("armctl-{}", self.node)
+    }
+
+    fn will(&mut self, _now_ms: u64) -> Will {
+        self.state("offline")
+    }
+
+    fn topics(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn first_messages(&mut self, _now_ms: u64) -> Vec<Message> {
+        vec![self.state("online")]
+    }
+
+    fn connection_lost(&mut self) {}
+
+    fn handle_message(&mut self, message: &Message, _now_ms: u64) -> Reaction {
+        let note = format!("ignored an unexpected message from the broker: {}", message.topic);
+        Reaction { note: Some((Level::Detail, note)), ..Reaction::default() }
+    }
+
+    fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
+        match event {
+            Event::Polled(look) => self.looked(look, now_ms),
+            Event::Failed { robot, failure, .. } => self.failed(robot, failure, now_ms),
+            Event::Gone(robot) => self.gone(robot, now_ms),
+            Event::Appeared(_) | Event::Inventory(_) => Vec::new(),
+        }
+    }
+
+    fn is_ready(&self) -> bool {
+        true
+    }
+
+    fn convert_record(&mut self, record: Record, _now_ms: u64) -> Vec<Message> {
+        let Record { key, body, .. } = record;
+        vec![Message { topic: key, payload: body, retain: true, acknowledged: true }]
+    }
+
+    fn final_messages(&mut self, _now_ms: u64) -> Vec<Message> {
+        vec![self.state("offline")]
+    }
+}

@@ -1,0 +1,20 @@
+//! Interactive questions in a separate thread, so that Ctrl-C and other termination requests are handled during a
+//! question.
+
+use super::interrupt::interruptible;
+use crate::failure::Failure;
+use crate::output::Screen;
+
+/// Answer to a question. An aborted question restores the terminal.
+pub async fn ask<T: Send + 'static>(
+    screen: Screen,
+    question: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> Result<T, Failure> {
+    let answer = match interruptible(tokio::task::spawn_blocking(question)).await {
+        Ok(answer) => {
+            answer.unwrap_or_else(|error| Err(Failure::local(format!("confirmation prompt failed: {error}"))))
+        }
+        Err(failure) => Err(failure),
+    };
+    answer.inspect_err(|_| screen.give_back())
+}
