@@ -7,7 +7,6 @@ use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 
 use super::parts::{Part, Records};
-use super::rows::{self, Row};
 use crate::command::backup::manifest::{About, Entry, LeftOut};
 use crate::command::frame::dry_run::Reason;
 use crate::command::yrcx::link::Link;
@@ -15,6 +14,9 @@ use crate::command::yrcx::numbers::{self, Numbers, runs};
 use crate::command::yrcx::refusal::refused;
 use crate::command::yrcx::several::{check_echo, is_about_commands};
 use crate::command::yrcx::single::shown;
+use crate::command::yrcx::stores::is_number;
+use crate::controller::findings::{Finding, Findings};
+use crate::controller::sheet::{self, Column, Dialect, Sheet};
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table::parameter::PARAMETERS;
@@ -25,6 +27,9 @@ use crate::files;
 use crate::output::Screen;
 use crate::output::progress::Progress;
 use crate::settings::target::Family;
+
+/// Cells of a line.
+type Row = Vec<String>;
 
 /// Controller model and its robots.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -197,8 +202,12 @@ impl Records {
         Ok(self.read.order().with(self.columns[0].1, number).build()?)
     }
 
-    fn names(&self) -> Vec<&'static str> {
-        self.columns.iter().map(|(name, _)| *name).collect()
+    fn columns(&self) -> Vec<Column> {
+        let column = |(name, key): &(&'static str, Key)| match is_number(*key) {
+            true => Column::number(*name),
+            false => Column::text(*name),
+        };
+        self.columns.iter().map(column).collect()
     }
 
     /// Row of an answer, in the order of the columns.
@@ -355,7 +364,7 @@ pub async fn read_records(
     }
     let mut left_out = Vec::new();
     keep_writable(&mut rows, &mut left_out, |row| records.store(row));
-    Ok(Text { text: rows::write(&records.names(), &rows), numbers: asked, refused, left_out })
+    Ok(Text { text: sheet::write(Dialect::COMMAS, &records.columns(), &rows), numbers: asked, refused, left_out })
 }
 
 /// Removes rows that the controller would refuse, such as a pallet without positions, and lists them.
@@ -428,7 +437,7 @@ async fn settings(link: &mut Link, controller: &Controller) -> Result<(String, V
         }
     }
     keep_writable(&mut rows, &mut left_out, setting_store);
-    Ok((rows::write(&SETTING_COLUMNS, &rows), left_out))
+    Ok((sheet::write(Dialect::COMMAS, &SETTING_COLUMNS.map(Column::text), &rows), left_out))
 }
 
 fn not_told(key: String, alarm: Alarm) -> LeftOut {
@@ -476,7 +485,7 @@ async fn parameters(
         progress.advance(1);
     }
     keep_writable(&mut rows, &mut left_out, parameter_store);
-    Ok((rows::write(&PARAMETER_COLUMNS, &rows), left_out))
+    Ok((sheet::write(Dialect::COMMAS, &PARAMETER_COLUMNS.map(Column::number), &rows), left_out))
 }
 
 fn parameter_key(robot: impl std::fmt::Display, name: &str, axis: &str) -> String {
@@ -523,8 +532,8 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     let path = folder.join(part.file());
     let text = files::text(&path, files::SETTINGS).with_context(|| path.display().to_string())?;
     let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display())).hint("make a new backup");
-    let columns = match (part, part.records()) {
-        (_, Some(records)) => records.names(),
+    let columns: Vec<&str> = match (part, part.records()) {
+        (_, Some(records)) => records.columns.iter().map(|(name, _)| *name).collect(),
         (Part::Settings, _) => SETTING_COLUMNS.into(),
         (Part::Parameters, _) => PARAMETER_COLUMNS.into(),
         _ => return Ok(Vec::new()),
@@ -536,7 +545,7 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     };
     let mut seen = BTreeSet::new();
     let mut stores = Vec::new();
-    for (line, row) in rows::read(&columns, &text).map_err(wrong)? {
+    for (line, row) in rows(&columns, &text).map_err(wrong)? {
         let store = store(&row).map_err(|failure| wrong(format!("line {line}: {}", failure.message)))?;
         if !seen.insert(store.key.clone()) {
             return Err(wrong(format!("line {line}: {} is listed twice", store.key)));
@@ -544,6 +553,21 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
         stores.push(store);
     }
     Ok(stores)
+}
+
+/// Rows of a file that has all of these columns, each with its line.
+fn rows(columns: &[&str], text: &str) -> Result<Vec<(usize, Row)>, String> {
+    let mut findings = Findings::default();
+    let expected = format!("the columns are {}", columns.join(", "));
+    let sheet = Sheet::read(text.as_bytes(), &expected, &mut findings);
+    let places = sheet.as_ref().map(|sheet| sheet.columns(columns, &expected, &mut findings));
+    if let Some(Finding { line, message, .. }) = findings.into_errors().first() {
+        return Err(format!("line {line}: {message}"));
+    }
+    let places: Option<Vec<usize>> = places.and_then(|places| places.into_iter().collect());
+    let (sheet, places) = sheet.zip(places).ok_or(expected)?;
+    let cells = |row: &sheet::Row| places.iter().map(|at| row.string(*at).to_owned()).collect();
+    Ok(sheet.rows().iter().map(|row| (row.line, cells(row))).collect())
 }
 
 fn setting_store(row: &Row) -> Result<Store, Failure> {
