@@ -204,9 +204,8 @@ impl Records {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let column = |(name, key): &(&'static str, Key)| match is_number(*key) {
-            true => Column::number(*name),
-            false => Column::text(*name),
+        let column = |(name, key): &(&'static str, Key)| {
+            if is_number(*key) { Column::number(*name) } else { Column::text(*name) }
         };
         self.columns.iter().map(column).collect()
     }
