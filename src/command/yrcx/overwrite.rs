@@ -146,7 +146,7 @@ trait Overwritten: Writable<Family = Yrcx> {
     fn row(&self, key: Self::Key, values: Values) -> Self::Wire;
 
     /// New content of a row; a text if it is not known in advance.
-    async fn new(
+    async fn replacement(
         &self,
         link: &mut Link,
         order: &Order,
@@ -158,7 +158,7 @@ trait Overwritten: Writable<Family = Yrcx> {
         let (table, key) = Self::target(order)?;
         let about = format!("{}, which is overwritten", Self::asked(key));
         let values = there(link, &table.read_order(key)?, &about).await?;
-        let new = table.new(link, order, values.as_ref()).await?.map(|values| table.row(key, values));
+        let new = table.replacement(link, order, values.as_ref()).await?.map(|values| table.row(key, values));
         let old = values.map(|values| table.row(key, values)).filter(|old| !table.is_blank(old));
         let is_same = old.as_ref().zip(new.as_ref().ok()).is_some_and(|(old, new)| Self::is_equal(old, new));
         let change = match (&old, &new) {
@@ -193,7 +193,7 @@ impl<K: Kind> Overwritten for Numbered<K> {
         Row::new::<K>(number, values)
     }
 
-    async fn new(
+    async fn replacement(
         &self,
         link: &mut Link,
         order: &Order,
@@ -246,7 +246,7 @@ impl Overwritten for Parameters {
         Amount::new(key, values.int(Key::Value).unwrap_or_default())
     }
 
-    async fn new(
+    async fn replacement(
         &self,
         _link: &mut Link,
         order: &Order,

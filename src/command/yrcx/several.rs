@@ -78,9 +78,10 @@ pub async fn read_numbers<V>(
         (number, ItemOutcome::new(format!("{noun} {number}"), outcome.map(|values| of(&values))))
     });
     let outcomes: Vec<_> = outcomes.collect();
-    match &outcomes[..] {
-        [(_, only)] => only.error().map_or(Ok(()), |error| Err(error.failure()))?,
-        _ => {}
+    if let [(_, only)] = &outcomes[..]
+        && let Some(error) = only.error()
+    {
+        return Err(error.failure());
     }
     Ok(outcomes)
 }

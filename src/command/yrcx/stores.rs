@@ -189,7 +189,7 @@ impl<K: Kind> Store for Numbered<K> {
 }
 
 /// Whether a field is a number.
-fn is_number(key: Key) -> bool {
+pub fn is_number(key: Key) -> bool {
     !matches!(key, Key::Unit | Key::HandSystem | Key::Comment)
 }
 

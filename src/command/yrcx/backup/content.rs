@@ -7,17 +7,20 @@ use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 
 use super::parts::{Part, Records};
-use super::rows::{self, Row};
 use crate::command::backup::manifest::{About, Entry, LeftOut};
 use crate::command::frame::dry_run::Reason;
+use crate::command::frame::store::Store as _;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::numbers::{self, Numbers, runs};
+use crate::command::yrcx::param::{Parameters, Setting};
 use crate::command::yrcx::refusal::refused;
 use crate::command::yrcx::several::{check_echo, is_about_commands};
 use crate::command::yrcx::single::shown;
+use crate::command::yrcx::stores::is_number;
+use crate::controller::findings::{Finding, Findings};
+use crate::controller::sheet::{self, Column, Dialect, Sheet};
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::order::{Draft, Order};
-use crate::controller::yrcx::table::parameter::PARAMETERS;
 use crate::controller::yrcx::table::{Command, Field};
 use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
@@ -25,6 +28,9 @@ use crate::files;
 use crate::output::Screen;
 use crate::output::progress::Progress;
 use crate::settings::target::Family;
+
+/// Cells of a line.
+type Row = Vec<String>;
 
 /// Controller model and its robots.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -197,8 +203,11 @@ impl Records {
         Ok(self.read.order().with(self.columns[0].1, number).build()?)
     }
 
-    fn names(&self) -> Vec<&'static str> {
-        self.columns.iter().map(|(name, _)| *name).collect()
+    fn columns(&self) -> Vec<Column> {
+        let column = |(name, key): &(&'static str, Key)| {
+            if is_number(*key) { Column::number(*name) } else { Column::text(*name) }
+        };
+        self.columns.iter().map(column).collect()
     }
 
     /// Row of an answer, in the order of the columns.
@@ -257,8 +266,8 @@ const SETTINGS: [(&str, Command, Key, Command, Key); 5] = [
     ("inching_distance", Command::InchAmountGet, Key::InchingAmount, Command::InchAmountSet, Key::InchingAmount),
     ("hand_system", Command::ArmDesignation, Key::Arm, Command::ArmSelect, Key::Arm),
 ];
-const SETTING_COLUMNS: [&str; 3] = ["robot", "setting", "value"];
-const PARAMETER_COLUMNS: [&str; 4] = ["robot", "parameter", "axis", "value"];
+/// Columns of settings and parameters.
+const OF_ROBOT: [&str; 3] = ["robot", "name", "value"];
 
 /// Notes the read requests of a part in a dry run; `points` is the requested selection.
 pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Result<(), Failure> {
@@ -288,9 +297,9 @@ pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Resu
         }
         (Part::Parameters, _) => {
             for robot in 1..=4 {
-                for (name, axis) in parameters_of(&[1, 2, 3, 4]) {
-                    let about = parameter_key(robot, name, &axis);
-                    let order = parameter(robot, name, &axis)?;
+                let table = Parameters { robot };
+                for key in Parameters::all() {
+                    let (order, about) = (table.read_order(key)?, of_its_robot(&Parameters::name(key), robot));
                     plan_if(link, &order, &about, "its axes: they are read if the robot has them");
                 }
             }
@@ -355,7 +364,7 @@ pub async fn read_records(
     }
     let mut left_out = Vec::new();
     keep_writable(&mut rows, &mut left_out, |row| records.store(row));
-    Ok(Text { text: rows::write(&records.names(), &rows), numbers: asked, refused, left_out })
+    Ok(Text { text: sheet::write(Dialect::COMMAS, &records.columns(), &rows), numbers: asked, refused, left_out })
 }
 
 /// Removes rows that the controller would refuse, such as a pallet without positions, and lists them.
@@ -422,36 +431,17 @@ async fn settings(link: &mut Link, controller: &Controller) -> Result<(String, V
                     let value = shown(command, values, key).unwrap_or_default();
                     rows.push(vec![robot.to_string(), name.to_owned(), value]);
                 }
-                Some((_, Err(alarm))) => left_out.push(not_told(format!("{name} of robot {robot}"), *alarm)),
+                Some((_, Err(alarm))) => left_out.push(not_told(of_its_robot(name, robot), *alarm)),
                 None => {}
             }
         }
     }
     keep_writable(&mut rows, &mut left_out, setting_store);
-    Ok((rows::write(&SETTING_COLUMNS, &rows), left_out))
+    Ok((sheet::write(Dialect::COMMAS, &OF_ROBOT.map(Column::text), &rows), left_out))
 }
 
 fn not_told(key: String, alarm: Alarm) -> LeftOut {
     LeftOut { key, why: format!("refused with alarm {alarm}, {}", alarm.text()) }
-}
-
-fn parameter(robot: u8, name: &str, axis: &str) -> Result<Order, Failure> {
-    let draft = of_robot(Command::ParamGet, robot).with(Key::Parameter, name);
-    Ok(draft.with_some(Key::Axes, Some(axis).filter(|axis| !axis.is_empty())).build()?)
-}
-
-/// All parameters of a robot with these axes, except the payload in kilograms, which is the payload in grams,
-/// rounded.
-fn parameters_of(axes: &[u8]) -> Vec<(&'static str, String)> {
-    let mut all = Vec::new();
-    for parameter in PARAMETERS.iter().filter(|parameter| parameter.name != "WEIGHT") {
-        if parameter.per_axis {
-            all.extend(axes.iter().map(|axis| (parameter.name, axis.to_string())));
-        } else {
-            all.push((parameter.name, String::new()));
-        }
-    }
-    all
 }
 
 async fn parameters(
@@ -461,27 +451,28 @@ async fn parameters(
 ) -> Result<(String, Vec<LeftOut>), Failure> {
     let mut wanted = Vec::new();
     for Robot { robot, axes, .. } in &controller.robots {
-        wanted.extend(parameters_of(axes).into_iter().map(|(name, axis)| (*robot, name, axis)));
+        let exists = |key: &Setting| key.1.is_none_or(|axis| axes.contains(&axis));
+        wanted.extend(Parameters::all().into_iter().filter(exists).map(|key| (*robot, key)));
     }
     let mut progress = bar(screen, "parameters", wanted.len());
     let (mut rows, mut left_out) = (Vec::new(), Vec::new());
-    for (robot, name, axis) in wanted {
-        match ask(link, &parameter(robot, name, &axis)?).await? {
+    for (robot, key) in wanted {
+        let name = Parameters::name(key);
+        match ask(link, &Parameters { robot }.read_order(key)?).await? {
             Ok(values) => {
                 let value = values.int(Key::Value).unwrap_or_default();
-                rows.push(vec![robot.to_string(), name.to_owned(), axis, value.to_string()]);
+                rows.push(vec![robot.to_string(), name, value.to_string()]);
             }
-            Err(alarm) => left_out.push(not_told(parameter_key(robot, name, &axis), alarm)),
+            Err(alarm) => left_out.push(not_told(of_its_robot(&name, robot), alarm)),
         }
         progress.advance(1);
     }
     keep_writable(&mut rows, &mut left_out, parameter_store);
-    Ok((rows::write(&PARAMETER_COLUMNS, &rows), left_out))
+    Ok((sheet::write(Dialect::COMMAS, &OF_ROBOT.map(Column::text), &rows), left_out))
 }
 
-fn parameter_key(robot: impl std::fmt::Display, name: &str, axis: &str) -> String {
-    let of_axis = if axis.is_empty() { String::new() } else { format!(", axis {axis}") };
-    format!("{name} of robot {robot}{of_axis}")
+fn of_its_robot(name: &str, robot: impl std::fmt::Display) -> String {
+    format!("{name} of robot {robot}")
 }
 
 /// A value to be written, unless the controller already has it.
@@ -523,10 +514,9 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     let path = folder.join(part.file());
     let text = files::text(&path, files::SETTINGS).with_context(|| path.display().to_string())?;
     let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display())).hint("make a new backup");
-    let columns = match (part, part.records()) {
-        (_, Some(records)) => records.names(),
-        (Part::Settings, _) => SETTING_COLUMNS.into(),
-        (Part::Parameters, _) => PARAMETER_COLUMNS.into(),
+    let columns: Vec<&str> = match (part, part.records()) {
+        (_, Some(records)) => records.columns.iter().map(|(name, _)| *name).collect(),
+        (Part::Settings | Part::Parameters, _) => OF_ROBOT.into(),
         _ => return Ok(Vec::new()),
     };
     let store = |row: &Row| match part.records() {
@@ -536,7 +526,7 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     };
     let mut seen = BTreeSet::new();
     let mut stores = Vec::new();
-    for (line, row) in rows::read(&columns, &text).map_err(wrong)? {
+    for (line, row) in rows(&columns, &text).map_err(wrong)? {
         let store = store(&row).map_err(|failure| wrong(format!("line {line}: {}", failure.message)))?;
         if !seen.insert(store.key.clone()) {
             return Err(wrong(format!("line {line}: {} is listed twice", store.key)));
@@ -544,6 +534,21 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
         stores.push(store);
     }
     Ok(stores)
+}
+
+/// Rows of a file that has all of these columns, each with its line.
+fn rows(columns: &[&str], text: &str) -> Result<Vec<(usize, Row)>, String> {
+    let mut findings = Findings::default();
+    let expected = format!("the columns are {}", columns.join(", "));
+    let sheet = Sheet::read(text.as_bytes(), &expected, &mut findings);
+    let places = sheet.as_ref().map(|sheet| sheet.columns(columns, &expected, &mut findings));
+    if let Some(Finding { line, message, .. }) = findings.into_errors().first() {
+        return Err(format!("line {line}: {message}"));
+    }
+    let places: Option<Vec<usize>> = places.and_then(|places| places.into_iter().collect());
+    let (sheet, places) = sheet.zip(places).ok_or(expected)?;
+    let cells = |row: &sheet::Row| places.iter().map(|at| row.string(*at).to_owned()).collect();
+    Ok(sheet.rows().iter().map(|row| (row.line, cells(row))).collect())
 }
 
 fn setting_store(row: &Row) -> Result<Store, Failure> {
@@ -554,18 +559,20 @@ fn setting_store(row: &Row) -> Result<Store, Failure> {
     let write = write.order().with(Key::Robot, robot.as_str()).with(*key, value.as_str()).build()?;
     let wanted = Values::from_iter([(*told, write.values().value(*key).cloned().unwrap_or(Value::Int(0)))]);
     let read = read.order().with(Key::Robot, robot.as_str()).build()?;
-    Ok(Store { key: format!("{name} of robot {robot}"), read, write, wanted })
+    Ok(Store { key: of_its_robot(name, robot), read, write, wanted })
 }
 
 fn parameter_store(row: &Row) -> Result<Store, Failure> {
-    let [robot, name, axis, value] = &row[..] else { return Err(Failure::usage("expected four cells")) };
-    let draft = |command: Command| {
-        let draft = command.order().with(Key::Robot, robot.as_str()).with(Key::Parameter, name.as_str());
-        draft.with_some(Key::Axes, Some(axis.as_str()).filter(|axis| !axis.is_empty()))
+    let [robot, name, value] = &row[..] else { return Err(Failure::usage("expected three cells")) };
+    let [key] = Parameters::keys(name).map_err(Failure::usage)?[..] else {
+        return Err(Failure::usage(format!("'{name}' is not a single parameter")));
     };
-    let write = draft(Command::ParamSet).with(Key::Value, value.as_str()).build()?;
-    let wanted = Values::from_iter([(Key::Value, write.values().value(Key::Value).cloned().unwrap_or(Value::Int(0)))]);
-    Ok(Store { key: parameter_key(robot, name, axis), read: draft(Command::ParamGet).build()?, write, wanted })
+    let number = robot.parse().ok().filter(|number| (1..=4).contains(number));
+    let number = number.ok_or_else(|| Failure::usage(format!("robot '{robot}' does not exist")))?;
+    let table = Parameters { robot: number };
+    let write = table.write_order(key, value)?;
+    let wanted = Values::from_iter([(Key::Value, write.values().int(Key::Value).unwrap_or_default())]);
+    Ok(Store { key: of_its_robot(name, robot), read: table.read_order(key)?, write, wanted })
 }
 
 /// Numbers of the points in a file.

@@ -5,7 +5,6 @@
 mod content;
 mod parts;
 mod restore;
-mod rows;
 mod save;
 #[cfg(test)]
 mod tests;

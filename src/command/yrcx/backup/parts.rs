@@ -34,7 +34,7 @@ pub struct Records {
     pub write: Command,
     /// Valid numbers.
     pub numbers: &'static str,
-    /// Columns of the file and their fields; the first is the number.
+    /// Columns of the file and their fields; the first is the number. `restore` of the table reads the same file.
     pub columns: &'static [(&'static str, Key)],
 }
 
@@ -47,7 +47,7 @@ pub static VARIABLES: Records = Records {
     read: Command::VarGet,
     write: Command::VarSet,
     numbers: "SGI0..SGI31,SGR0..SGR31",
-    columns: &[("variable", Key::Variable), ("value", Key::Value)],
+    columns: &[("name", Key::Variable), ("value", Key::Value)],
 };
 /// Pallets (4.3.3).
 pub static PALLETS: Records = Records {
@@ -56,7 +56,7 @@ pub static PALLETS: Records = Records {
     write: Command::PalletSet,
     numbers: "0..39",
     columns: &[
-        ("pallet", Key::Pallet),
+        ("name", Key::Pallet),
         ("nx", Key::CountX),
         ("ny", Key::CountY),
         ("nz", Key::CountZ),
@@ -70,7 +70,7 @@ pub static SHIFTS: Records = Records {
     write: Command::ShiftSet,
     numbers: "0..39",
     columns: &[
-        ("shift", Key::Shift),
+        ("name", Key::Shift),
         ("axis_1_mm", Key::Axis1),
         ("axis_2_mm", Key::Axis2),
         ("axis_3_mm", Key::Axis3),
@@ -84,7 +84,7 @@ pub static HANDS: Records = Records {
     write: Command::HandSet,
     numbers: "0..31",
     columns: &[
-        ("hand", Key::Hand),
+        ("name", Key::Hand),
         ("robot", Key::Owner),
         ("data_1", Key::Data1),
         ("data_2_mm", Key::Data2),
@@ -99,7 +99,7 @@ pub static POINTS: Records = Records {
     write: Command::PointSet,
     numbers: "0..29999",
     columns: &[
-        ("point", Key::Point),
+        ("name", Key::Point),
         ("unit", Key::Unit),
         AXES[0],
         AXES[1],
@@ -114,7 +114,7 @@ pub static COMMENTS: Records = Records {
     read: Command::CommentGet,
     write: Command::CommentSet,
     numbers: "0..29999",
-    columns: &[("point", Key::Point), ("comment", Key::Comment)],
+    columns: &[("name", Key::Point), ("comment", Key::Comment)],
 };
 
 /// Points per file.

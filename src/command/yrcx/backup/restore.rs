@@ -6,7 +6,6 @@ use crate::command::Context;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::LeftOut;
 use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, RestoreSelection, Restored, would_leave, would_write};
-use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::robot::file::{FileItem, State};
@@ -14,19 +13,15 @@ use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::refusal::refused;
 use crate::controller::yrcx::signal::output;
-use crate::controller::yrcx::value::Values;
 use crate::failure::{Failure, Kind};
 use crate::gate::Change;
 use crate::output::Screen;
 
 /// A part with the values to be written.
-pub struct Job {
-    /// Part.
-    pub part: Part,
-    /// Name in progress messages and dry runs.
-    pub called: String,
+struct Job {
+    part: Part,
     /// Values in the order of writing.
-    pub stores: Vec<Store>,
+    stores: Vec<Store>,
 }
 
 /// Restores a backup.
@@ -45,7 +40,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -
         }
         copy.check(folder)?;
         items.push(FileItem::values(part).from_copy(folder, copy));
-        jobs.push(Job { part, called: part.to_string(), stores: content::load(part, folder)? });
+        jobs.push(Job { part, stores: content::load(part, folder)? });
     }
     if jobs.is_empty() {
         return Err(Failure::usage("there is nothing to write in these parts")
@@ -62,28 +57,16 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -
         found.compare(link, screen, job, item).await?;
         compared.advance(1);
     }
-    carry_out((link, screen, &authority), &jobs, &found, &mut items, &folder.display().to_string()).await?;
-    Ok(Restored::new(folder, items))
-}
-
-/// Writes the differing values after confirmation; `by` names their source.
-pub async fn carry_out(
-    (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
-    jobs: &[Job],
-    found: &Comparison,
-    items: &mut [FileItem],
-    by: &str,
-) -> Result<(), Failure> {
-    authority.confirm(&found.change(by)).await?;
+    authority.confirm(&found.change(&folder.display().to_string())).await?;
     // Ctrl-C ends the work here, before the caller handles it, so that the result is reported.
-    match interruptible(write_all(link, screen, jobs, found, items)).await {
-        Ok(outcome) => outcome,
+    match interruptible(write_all(link, screen, &jobs, &found, &mut items)).await {
+        Ok(outcome) => outcome?,
         Err(failure) => {
             let first = items.iter_mut().find(|item| item.more.state == State::NotTried);
             first.ok_or_else(|| failure.clone())?.fail(failure);
-            Ok(())
         }
     }
+    Ok(Restored::new(folder, items))
 }
 
 /// Notes each part of the backup in a dry run.
@@ -121,13 +104,13 @@ async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Resu
 
 /// Comparison of the controller with the backup.
 #[derive(Default)]
-pub struct Comparison {
+struct Comparison {
     /// Indexes of the values to be written, for each part.
-    pub differ: Vec<Vec<usize>>,
+    differ: Vec<Vec<usize>>,
     /// Overwritten values: name, old, new.
-    pub replaced: Vec<(String, String, String)>,
+    replaced: Vec<(String, String, String)>,
     /// Number of values that are new to the controller.
-    pub added: usize,
+    added: usize,
 }
 
 impl Comparison {
@@ -136,36 +119,29 @@ impl Comparison {
         &mut self,
         link: &mut Link,
         screen: &Screen,
-        Job { part, called, stores }: &Job,
+        Job { part, stores }: &Job,
         item: &mut FileItem,
     ) -> Result<(), Failure> {
-        let mut progress = screen.items_progress(&format!("comparing {called}"), stores.len() as u64);
+        let mut progress = screen.items_progress(&format!("comparing {part}"), stores.len() as u64);
         let mut differ = Vec::new();
         for (at, store) in stores.iter().enumerate() {
             let there = content::ask(link, &store.read).await.map_err(|failure| named(store, failure))?;
-            if self.sort(*part, store, there.ok().as_ref(), item) {
-                differ.push(at);
+            match there {
+                Ok(values) if store.is_there(&values) => count(&mut item.more.unchanged),
+                Ok(values) => {
+                    let what = format!("{} {}", part.kind(), store.key);
+                    self.replaced.push((what, store.describe(&values), store.wanted()));
+                    differ.push(at);
+                }
+                Err(_) => {
+                    self.added += 1;
+                    differ.push(at);
+                }
             }
             progress.advance(1);
         }
         self.differ.push(differ);
         Ok(())
-    }
-
-    /// Decides whether a value must be written, and counts it.
-    pub fn sort(&mut self, part: Part, store: &Store, there: Option<&Values>, item: &mut FileItem) -> bool {
-        match there {
-            Some(values) if store.is_there(values) => {
-                count(&mut item.more.unchanged);
-                return false;
-            }
-            Some(values) => {
-                let what = format!("{} {}", part.kind(), store.key);
-                self.replaced.push((what, store.describe(values), store.wanted()));
-            }
-            None => self.added += 1,
-        }
-        true
     }
 
     /// Content of the confirmation.
@@ -208,11 +184,11 @@ async fn write_all(
 async fn write(
     link: &mut Link,
     screen: &Screen,
-    Job { called, stores, .. }: &Job,
+    Job { part, stores }: &Job,
     differ: &[usize],
     item: &mut FileItem,
 ) -> Result<(), Failure> {
-    let mut progress = screen.items_progress(&format!("writing {called}"), differ.len() as u64);
+    let mut progress = screen.items_progress(&format!("writing {part}"), differ.len() as u64);
     let mut refusal = None;
     for store in differ.iter().filter_map(|at| stores.get(*at)) {
         match content::ask(link, &store.write).await.map_err(|failure| named(store, failure))? {
@@ -230,7 +206,7 @@ async fn write(
 }
 
 /// Failure with the name of the value.
-pub fn named(store: &Store, failure: Failure) -> Failure {
+fn named(store: &Store, failure: Failure) -> Failure {
     Failure { message: format!("{}: {}", store.key, failure.message), ..failure }
 }
 
@@ -240,14 +216,14 @@ fn count(counter: &mut Option<usize>) {
 
 fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
     Controller::plan(link)?;
-    for Job { called, stores, .. } in jobs {
+    for Job { part, stores } in jobs {
         for store in stores {
-            link.plan(&store.read, &format!("{called} {}, to compare", store.key));
+            link.plan(&store.read, &format!("{part} {}, to compare", store.key));
         }
     }
-    for Job { called, stores, .. } in jobs {
+    for Job { part, stores } in jobs {
         for store in stores {
-            let about = format!("{called} {}", store.key);
+            let about = format!("{part} {}", store.key);
             link.plan_depending(&store.write, &store.write, Reason::about(&about).depending_on(IF_IT_DIFFERS));
         }
     }
@@ -255,4 +231,4 @@ fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
 }
 
 /// Condition for writing a value, for dry runs.
-pub const IF_IT_DIFFERS: &str = "the comparison: written if different";
+const IF_IT_DIFFERS: &str = "the comparison: written if different";

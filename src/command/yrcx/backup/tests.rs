@@ -119,10 +119,10 @@ fn what_is_restored_is_what_was_saved() {
     let done = data["files"].as_array().unwrap().iter().filter(|file| file["ok"] == true).count();
     assert_eq!((&data["complete"], done), (&json!(true), 9));
     let first = files(&desk.path("first"));
-    assert_eq!(first["pallets.csv"], "pallet,nx,ny,nz,first_point\n1,5,5,1,110\n2,10,15,1,110\n10,10,15,1,110\n");
-    assert_eq!(first["comments-00000.csv"], "point,comment\n50,WAIT ORG\n");
+    assert_eq!(first["pallets.csv"], "name,nx,ny,nz,first_point\n1,5,5,1,110\n2,10,15,1,110\n10,10,15,1,110\n");
+    assert_eq!(first["comments-00000.csv"], "name,comment\n50,WAIT ORG\n");
     assert!(first["points-00000.csv"].contains("\n0,pulse,0,0,0,0,\n1,mm,100.000,100.000,0.000,0.000,none\n"));
-    assert!(first["parameters.csv"].contains("\n2,TOLE,3,80\n"));
+    assert!(first["parameters.csv"].contains("\n2,TOLE.3,80\n"));
     for line in CHANGES {
         let line = if line.ends_with("--unit 2") { line.to_owned() } else { format!("{line} --unit 0") };
         let (robot, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();

@@ -223,9 +223,9 @@ impl Writable for PointSheet {
             }
             if let Some(comment) = new.comment.as_ref().filter(|new| Some(*new) != old_comment) {
                 let written = self.comments.write(link, screen, &[(*number, old_comment, comment)]).await;
-                written.map_err(|failure| match is_half {
-                    true => Failure { message: format!("the point was written; {}", failure.message), ..failure },
-                    false => failure,
+                written.map_err(|failure| {
+                    let message = format!("the point was written; {}", failure.message);
+                    if is_half { Failure { message, ..failure } } else { failure }
                 })?;
             }
         }
