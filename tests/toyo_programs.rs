@@ -132,7 +132,7 @@ fn get_returns_the_source_text_while_the_steps_are_unchanged() {
     let desk = Desk::new();
     desk.put(NAMED, &[]);
     assert_eq!(desk.text(&["get"]), NAMED);
-    assert_eq!(desk.text(&["diff", "program.toyo"]), "the program of task 1 and program.toyo are the same, 6 steps\n");
+    assert_eq!(desk.text(&["diff", "program.toyo"]), "the program of task 1 and program.toyo are equal, 6 steps\n");
     desk.at_pendant("4", "TIMP TN2=3.5\n");
     let text = desk.text(&["get"]);
     assert!(text.contains("TIMP TN2=003.5") && !text.contains("pick and place"), "{text}");

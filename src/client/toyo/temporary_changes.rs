@@ -17,7 +17,7 @@ pub(super) enum HostState {
     /// This client switched the host ON, and must switch it OFF at its end.
     SwitchedOn,
     /// Dry run: the host state is read and the host switched ON only if an earlier answer requires it.
-    Unclear,
+    Conditional,
 }
 
 /// `depends_on` of the order that switches the host ON.
@@ -83,12 +83,12 @@ impl Client {
         let host_read = match (self.host, on) {
             (HostState::SwitchedOn | HostState::AlreadyOn, _) => return,
             (_, Some(on)) => host_read.depending_on(on),
-            (HostState::Unclear, None) => host_read.depending_on("whether the host state was read before"),
+            (HostState::Conditional, None) => host_read.depending_on("whether the host state was read before"),
             (HostState::Unknown, None) => host_read,
         };
         self.note(&status_page(HOST_PAGE), host_read);
         self.note(&Request::bare(Command::Hson), Reason::default().depending_on(HOST));
-        self.host = if on.is_some() { HostState::Unclear } else { HostState::SwitchedOn };
+        self.host = if on.is_some() { HostState::Conditional } else { HostState::SwitchedOn };
     }
 
     /// Plans a temporary change. `back` is the block that undoes it, with `?` for the value found.
@@ -191,7 +191,7 @@ impl Client {
 
     pub(super) fn plan_end(&mut self) {
         self.plan_put_back();
-        if !self.is_dry() || !matches!(self.host, HostState::SwitchedOn | HostState::Unclear) {
+        if !self.is_dry() || !matches!(self.host, HostState::SwitchedOn | HostState::Conditional) {
             return;
         }
         self.host = HostState::Unknown;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::port::{Spot, Spots};
+use super::port::{Signal, SignalRange};
 use super::read::{read, row};
 use super::{BITS, Station, list};
 use crate::command::frame::names;
@@ -20,7 +20,7 @@ use crate::failure::Failure;
 pub struct Get {
     /// Signals, such as IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or names
     #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',', add = complete::SIGNAL)]
-    signals: Vec<Spots>,
+    signals: Vec<SignalRange>,
     #[command(flatten)]
     station: Station,
 }
@@ -35,15 +35,19 @@ impl Command for Get {
     }
 }
 
-async fn get(signals: &[Spots], Station { station }: Station, context: Context<'_, Toyo>) -> Result<Signals, Failure> {
-    if station != 0 && signals.iter().any(|spots| spots.is_named) {
+async fn get(
+    arguments: &[SignalRange],
+    Station { station }: Station,
+    context: Context<'_, Toyo>,
+) -> Result<Signals, Failure> {
+    if station != 0 && arguments.iter().any(|signals| signals.is_named) {
         return Err(Failure::usage("names belong to ports of station 0, the controller itself")
             .hint("type port and bit, as in IN1.3"));
     }
-    let spots: Vec<Spot> = typed::once(signals.iter().flat_map(|spots| spots.spots.iter().copied()));
+    let signals: Vec<Signal> = typed::once(arguments.iter().flat_map(|signals| signals.signals.iter().copied()));
     let names = names::of_robot(context.robot, context.screen);
-    let bytes = read(context.link, station, &spots).await?;
-    Signals::new(spots.into_iter().filter_map(|spot| row(spot, station, &bytes, names)).collect())
+    let bytes = read(context.link, station, &signals).await?;
+    Signals::new(signals.into_iter().filter_map(|signal| row(signal, station, &bytes, names)).collect())
 }
 
 /// Signals for a watch; default: inputs and outputs.
@@ -52,7 +56,7 @@ async fn get(signals: &[Spots], Station { station }: Station, context: Context<'
 pub struct Watched {
     /// Signals, such as IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or names; default: all inputs and outputs
     #[arg(value_name = "SIGNAL", value_delimiter = ',', add = complete::SIGNAL)]
-    signals: Vec<Spots>,
+    signals: Vec<SignalRange>,
     #[command(flatten)]
     station: Station,
 }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::port::{PortBank, Spot};
+use super::port::{PortBank, Signal};
 use super::read::{read, row};
 use super::{BITS, Station};
 use crate::command::frame::names;
@@ -45,15 +45,16 @@ async fn rows(
 ) -> Result<Vec<IoRow>, Failure> {
     let ports =
         banks.into_iter().flat_map(|bank| (bank.first(station)..=bank.last(station)).map(move |port| (bank, port)));
-    let spots: Vec<Spot> = ports.flat_map(|(bank, port)| (1..=8).map(move |bit| Spot { bank, port, bit })).collect();
+    let signals: Vec<Signal> =
+        ports.flat_map(|(bank, port)| (1..=8).map(move |bit| Signal { bank, port, bit })).collect();
     let names = names::of_robot(context.robot, context.screen);
-    let mut bytes = read(context.link, station, &spots).await?;
+    let mut bytes = read(context.link, station, &signals).await?;
     let refused = |byte: &Result<u8, Failure>| byte.as_ref().is_err_and(|failure| failure.kind == Kind::Refused);
     // A controller can have fewer ports. It is an error if it refuses all ports.
     if !bytes.values().all(refused) {
         bytes.retain(|_, byte| !refused(byte));
     }
-    Ok(spots.into_iter().filter_map(|spot| row(spot, station, &bytes, names)).collect())
+    Ok(signals.into_iter().filter_map(|signal| row(signal, station, &bytes, names)).collect())
 }
 
 #[cfg(test)]

@@ -125,9 +125,9 @@ pub fn ports_of(record: &Record) -> Vec<Port> {
     let mut ports: Vec<Port> = record.bits("sy01").map(|byte| Port::new(0, byte)).into_iter().collect();
     for (number, bits) in [("port1", "bits1"), ("port2", "bits2"), ("port3", "bits3"), ("port4", "bits4")] {
         let Some(byte) = record.bits(bits) else { break };
-        let before = ports.last().map(|port| port.number).filter(|number| *number > 0);
+        let previous = ports.last().map(|port| port.number).filter(|number| *number > 0);
         let number = match small(record, number) {
-            number if Some(number) == before => number.saturating_add(1),
+            number if Some(number) == previous => number.saturating_add(1),
             number => number,
         };
         ports.push(Port::new(number, byte));
@@ -137,7 +137,7 @@ pub fn ports_of(record: &Record) -> Vec<Port> {
 
 /// A signal: a bit of a port, from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Spot {
+pub struct Signal {
     /// Type of the port.
     pub bank: PortBank,
     /// 0 for the system port.
@@ -152,7 +152,7 @@ impl std::hash::Hash for PortBank {
     }
 }
 
-impl Spot {
+impl Signal {
     /// Whether the bit is on in the byte of its port.
     pub const fn is_on(self, byte: u8) -> bool {
         byte >> (self.bit - 1) & 1 == 1
@@ -180,30 +180,30 @@ impl Spot {
 
 /// Signals as typed: one signal, all signals of a port, a range, or a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Spots {
+pub struct SignalRange {
     /// Signals in order.
-    pub spots: Vec<Spot>,
+    pub signals: Vec<Signal>,
     /// Whether a name was typed; names belong to station 0.
     pub is_named: bool,
 }
 
-impl FromStr for Spots {
+impl FromStr for SignalRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let spots = names::parse_or_name(&[Kind::Input, Kind::Output], "IN1.1", text, addresses)?;
-        Ok(Self { spots, is_named: addresses(text).is_err() })
+        let signals = names::parse_or_name(&[Kind::Input, Kind::Output], "IN1.1", text, addresses)?;
+        Ok(Self { signals, is_named: addresses(text).is_err() })
     }
 }
 
-fn addresses(text: &str) -> Result<Vec<Spot>, String> {
+fn addresses(text: &str) -> Result<Vec<Signal>, String> {
     let wrong = || format!("'{text}' is not a valid signal such as IN1.3, OUT1.3, INT1.3, or a port such as IN1");
     let (bank, rest) = bank_of(text).ok_or_else(wrong)?;
     let ends = rest.split_once("..").or_else(|| rest.split_once('-'));
     let first = ends.map_or(rest, |(first, _)| first);
     let port_of = |text: &str| typed::unsigned::<u8>(text).filter(|port| *port <= 99);
     // `IN1.3` is port 1, bit 3. The end of a range can omit the part that equals the beginning.
-    let spot = |text: &str| {
+    let parse_signal = |text: &str| {
         let text = bank_of(text).filter(|(other, _)| *other == bank).map_or(text, |(_, rest)| rest);
         let (port, bit) = match text.split_once('.') {
             Some((port, bit)) => (port, Some(bit)),
@@ -223,7 +223,7 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
         Ok::<_, String>((port_of(port).ok_or_else(wrong)?, bit))
     };
     let number = |text: &str| {
-        let (port, bit) = spot(text)?;
+        let (port, bit) = parse_signal(text)?;
         Ok::<_, String>(u16::from(port) * 8 + u16::from(bit.unwrap_or(1)) - 1)
     };
     let (least, most) = match ends {
@@ -233,9 +233,10 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
     if least > most {
         return Err(typed::RangeError { meant: reversed(text) }.to_string());
     }
-    let most = if spot(first)?.1.is_some() { most } else { most + 7 };
-    let place = |at: u16| Some(Spot { bank, port: u8::try_from(at / 8).ok()?, bit: u8::try_from(at % 8 + 1).ok()? });
-    Ok((least..=most).filter_map(place).collect())
+    let most = if parse_signal(first)?.1.is_some() { most } else { most + 7 };
+    let signal_at =
+        |at: u16| Some(Signal { bank, port: u8::try_from(at / 8).ok()?, bit: u8::try_from(at % 8 + 1).ok()? });
+    Ok((least..=most).filter_map(signal_at).collect())
 }
 
 /// The range in reverse order.
@@ -258,7 +259,7 @@ mod tests {
 
     fn names(text: &str) -> Vec<String> {
         let names = Names::default();
-        addresses(text).unwrap().into_iter().map(|spot| spot.item(0, &names).name).collect()
+        addresses(text).unwrap().into_iter().map(|signal| signal.item(0, &names).name).collect()
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::link::Link;
-use super::port::{PortBank, Spot, name, ports_of};
+use super::port::{PortBank, Signal, name, ports_of};
 use crate::command::robot::io::IoRow;
 use crate::controller::names::Names;
 use crate::failure::{Failure, Kind};
@@ -15,8 +15,8 @@ pub type Bytes = BTreeMap<(PortBank, u8), Result<u8, Failure>>;
 ///
 /// # Errors
 /// A port that the station does not have, or a lost connection. A dry run ends here.
-pub async fn read(link: &mut Link, station: u8, spots: &[Spot]) -> Result<Bytes, Failure> {
-    let ports: BTreeSet<(PortBank, u8)> = spots.iter().map(|spot| (spot.bank, spot.port)).collect();
+pub async fn read(link: &mut Link, station: u8, signals: &[Signal]) -> Result<Bytes, Failure> {
+    let ports: BTreeSet<(PortBank, u8)> = signals.iter().map(|signal| (signal.bank, signal.port)).collect();
     for (bank, port) in &ports {
         exists(*bank, station, *port)?;
     }
@@ -48,9 +48,9 @@ pub async fn read(link: &mut Link, station: u8, spots: &[Spot]) -> Result<Bytes,
 }
 
 /// Report item of a signal.
-pub fn row(spot: Spot, station: u8, bytes: &Bytes, names: &Names) -> Option<IoRow> {
-    let byte = bytes.get(&(spot.bank, spot.port))?.clone();
-    Some(IoRow::state(spot.item(station, names), byte.map(|byte| spot.is_on(byte))))
+pub fn row(signal: Signal, station: u8, bytes: &Bytes, names: &Names) -> Option<IoRow> {
+    let byte = bytes.get(&(signal.bank, signal.port))?.clone();
+    Some(IoRow::state(signal.item(station, names), byte.map(|byte| signal.is_on(byte))))
 }
 
 /// Refuses a port that the station does not have.

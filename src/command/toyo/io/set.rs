@@ -8,7 +8,7 @@ use super::super::link::{Link, wrong};
 use super::super::numbers::{number, read_back, stored_otherwise};
 use super::super::refusal;
 use super::Station;
-use super::port::{OUTPUTS, Spot, name, ports_of};
+use super::port::{OUTPUTS, Signal, name, ports_of};
 use crate::command::frame::names;
 use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::robot::io::{IoValue, WrittenSignal, WrittenSignals};
@@ -148,7 +148,7 @@ impl Command for Set {
         for (done, order) in orders.iter().enumerate() {
             let port =
                 order.set(context.link, station).await.map_err(|failure| with_results(failure, &orders, done))?;
-            written.extend(order.bits().map(|spot| port.of(spot, order, station, names)));
+            written.extend(order.bits().map(|signal| port.of(signal, order, station, names)));
         }
         Ok(WrittenSignals::new(written))
     }
@@ -165,10 +165,10 @@ struct PortChange {
 impl PortChange {
     const UNREAD: Self = Self { old: None, now: None, failure: None };
 
-    fn of(&self, spot: Spot, order: &Assignment, station: u8, names: &Names) -> WrittenSignal {
-        let state = |byte: u8| IoValue::State(spot.is_on(byte));
+    fn of(&self, signal: Signal, order: &Assignment, station: u8, names: &Names) -> WrittenSignal {
+        let state = |byte: u8| IoValue::State(signal.is_on(byte));
         let new = state(order.mask.bits);
-        let written = WrittenSignal::new(spot.item(station, names), self.old.map(state), new);
+        let written = WrittenSignal::new(signal.item(station, names), self.old.map(state), new);
         match (self.now.map(state), &self.failure) {
             (Some(now), Some(failure)) if now != new => written.with_error(now, failure.clone()),
             _ => written,
@@ -178,10 +178,10 @@ impl PortChange {
 
 impl Assignment {
     /// Signals of the assignment.
-    fn bits(&self) -> impl Iterator<Item = Spot> {
+    fn bits(&self) -> impl Iterator<Item = Signal> {
         let Self { port, mask, .. } = *self;
-        let spots = (1..=8).map(move |bit| Spot { bank: OUTPUTS, port, bit });
-        spots.filter(move |spot| spot.is_on(mask.care))
+        let signals = (1..=8).map(move |bit| Signal { bank: OUTPUTS, port, bit });
+        signals.filter(move |signal| signal.is_on(mask.care))
     }
 
     /// Sets the port, and reads it back if possible.
@@ -302,7 +302,7 @@ mod tests {
         let message = |orders: &[Assignment], done| with_results(Failure::local("no"), orders, done).message;
         assert_eq!(message(&orders[..1], 0), "no");
         assert_eq!(message(&orders, 1), "PN02: no; set before that: PN01; not set: PN03");
-        let bits: Vec<u8> = orders[0].bits().map(|spot| spot.bit).collect();
+        let bits: Vec<u8> = orders[0].bits().map(|signal| signal.bit).collect();
         assert_eq!(bits, [1, 2]);
     }
 
