@@ -207,9 +207,9 @@ fn sends_a_command_once_and_reports_an_unknown_outcome() {
     std::thread::scope(|scope| {
         for (order, hint) in ORDERS {
             scope.spawn(move || {
-                // A refused read before the command does not prevent the command.
+                // A refused read before the command does not prevent the command: the position is not defined yet.
                 let controller =
-                    Controller::new(|asked| if asked.is_read() { Reaction::Refuse(0xA001) } else { Reaction::Silence });
+                    Controller::new(|asked| if asked.is_read() { Reaction::Refuse(0xB005) } else { Reaction::Silence });
                 let output = controller.run(&format!("{order} --timeout 700ms --retries 9"));
                 assert_eq!(output.status.code(), Some(6), "{order}: {}", stderr(&output));
                 assert_eq!(controller.changes().len(), 1, "{order}");

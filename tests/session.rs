@@ -520,7 +520,7 @@ fn clients_take_turns_on_a_serial_line() {
     let address = simulator.first.trim_start_matches("tcp://").to_owned();
     drop(simulator);
     session.says("the connection was lost");
-    fails(&desk.run("-r cell toyo status"), 4, "the line is gone");
+    fails(&desk.run("-r cell toyo status"), 4, "the connection is lost");
     let _simulator = self::simulator(&desk, "toyo", &address);
     session.says("the connection is open again");
     assert!(desk.run("-r cell toyo status").status.success());

@@ -174,8 +174,9 @@ fn reports_variables_as_typed() {
     let (exit, nothing, error) = at(&target, "var get B300");
     assert_eq!((exit, nothing), (3, Value::Null));
     assert!(error["error"]["message"].as_str().unwrap().starts_with("B300: "), "{error}");
-    let (exit, nothing, all) = at(&target, "var get B300 I300");
-    assert_eq!((exit, nothing, &all["error"]["kind"]), (3, Value::Null, &json!("refused")));
+    let (exit, all, _) = at(&target, "var get B300 I300");
+    assert_eq!((exit, &all["error"]["kind"]), (3, &json!("refused")));
+    assert_eq!((&all["data"]["items"][0]["ok"], &all["data"]["items"][1]["ok"]), (&json!(false), &json!(false)));
 }
 
 #[test]

@@ -122,7 +122,7 @@ fn flooding_and_trickling_peers_do_not_block_commands() {
         let (_port, path) = pty(b"@OK\r\n", manner);
         check(
             &format!("serial://{path}"),
-            &[("toyo position", 5, ""), ("toyo stop", 6, "nothing tells that it stands")],
+            &[("toyo position", 5, ""), ("toyo stop", 6, "it is unknown whether the robot stopped")],
         );
     }
 }

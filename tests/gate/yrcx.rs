@@ -157,7 +157,7 @@ fn dry_runs_plan_to_the_end() {
     let codes: Vec<&str> =
         set["frames"].as_array().unwrap().iter().map(|frame| frame["wi"][0].as_str().unwrap()).collect();
     assert_eq!(codes, ["0x0101", "0x0100"]);
-    assert!(set["frames"][1]["depends_on"].as_str().unwrap().contains("sent if different"));
+    assert!(set["frames"][1]["depends_on"].as_str().unwrap().contains("written if different"));
     let run = desk.data("-r cell yrcx recover --dry-run");
     let edges: Vec<&str> =
         run["frames"].as_array().unwrap().iter().map(|frame| frame["about"].as_str().unwrap()).collect();

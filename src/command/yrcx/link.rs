@@ -11,10 +11,10 @@ use derive_more::{Deref, DerefMut};
 
 use self::onlooker::Onlooker;
 use super::connect::{self, Endpoint, OpenBoard};
+pub use super::done::Done;
 use super::failure::{failure, stopped};
 use super::fieldbus::Fieldbus;
 use super::link_error::not_open;
-pub use super::overwrite::Done;
 use super::trace::{Recorder, Trace};
 use super::unit::Unit;
 use crate::client::yrcx;

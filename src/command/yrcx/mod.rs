@@ -30,6 +30,7 @@ mod data;
 pub mod decode;
 pub mod devicenet;
 pub mod discover;
+mod done;
 pub mod eip;
 mod explain;
 pub mod face;

@@ -1,22 +1,19 @@
 //! Commands that overwrite stored or taught data: read the old data, confirm old and new, then write.
 
-use std::time::Duration;
-
 use serde_json::Value as Json;
 
 use super::before::{before, question};
 use super::data::{Comments, Hands, Pallets, Points, Shifts};
+use super::done::{Done, Replaced};
 use super::link::{Link, Yrcx};
 use super::param::{Amount, Parameters, Setting};
 use super::position::Unit;
 use super::refusal::refused;
 use super::several::{check_echo, is_about_commands};
 use super::stores::{Kind, Numbered, Row};
-use crate::client::yrcx;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::settings_report::Old;
-use crate::command::frame::store::{Writable, old_rows, overwriting};
+use crate::command::frame::store::{Writable, overwriting, old_rows};
 use crate::command::robot::item::{Item, Written, WrittenItems, as_requested};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
@@ -25,36 +22,6 @@ use crate::controller::yrcx::table::parameter::Parameter;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::gate::{Change, Confirmation};
-
-/// Result of a command.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Done {
-    /// Values of the answer.
-    pub values: Values,
-    /// Time from the first transmission of the command to its end.
-    pub elapsed: Duration,
-    /// Overwritten data, if any.
-    pub replaced: Option<Replaced>,
-    /// Old value, for a command that sets one.
-    pub old: Old,
-}
-
-impl From<yrcx::Done> for Done {
-    fn from(yrcx::Done { values, elapsed }: yrcx::Done) -> Self {
-        Self { values, elapsed, replaced: None, old: Old::UNREAD }
-    }
-}
-
-/// Overwritten row and its replacement.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Replaced {
-    kind: &'static str,
-    name: String,
-    /// Old and new value; none if not defined, or not known in advance.
-    values: [Option<Json>; 2],
-    /// Whether old and new are equal, so that no write is necessary.
-    is_there: bool,
-}
 
 /// Kind of confirmation for a remote command.
 pub fn confirmation(command: Command) -> Confirmation {

@@ -60,6 +60,11 @@ pub fn position(values: &Values, unit: Unit) -> Option<Position> {
     })
 }
 
+/// Unit of a point.
+pub(super) fn unit_of(point: &Values) -> Unit {
+    if point.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse }
+}
+
 /// Axes 1 to 4 in millimetres, or degrees for rotary axes.
 pub fn mm(values: &Values) -> Option<[f64; 4]> {
     values.axes().map(|axes| axes.map(|steps| f64::from(steps) / 1000.0))

@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::link::{Link, Yrcx};
 use super::overwrite::{self, confirmation, there};
-use super::position::{Unit, group, position};
+use super::position::{Unit, group, position, unit_of};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::teach::{Taught, mismatch, unverified};
 use crate::command::{Command, Context};
@@ -95,11 +95,6 @@ impl Teach {
         let draft = link.draft(table::Command::Teach)?.with(Key::Point, self.number());
         Ok(draft.with(Key::Unit, i32::from(unit == Unit::Mm)).build()?)
     }
-}
-
-/// Unit of a point.
-pub(super) fn unit_of(point: &Values) -> Unit {
-    if point.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse }
 }
 
 fn is_near(held: &Values, here: &Values) -> bool {

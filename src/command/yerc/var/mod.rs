@@ -2,7 +2,7 @@
 
 mod cells;
 #[cfg(test)]
-mod lines;
+mod command_tests;
 mod position;
 mod raw;
 mod set;
