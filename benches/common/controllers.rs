@@ -8,7 +8,7 @@ use anyhow::ensure;
 use armctl::command::{toyo, yerc, yrcx};
 use armctl::controller::{toyo as toyo_controller, yerc as yerc_controller, yrcx as yrcx_controller};
 use armctl::transport::eip::adapter::server::Listen;
-use armctl::transport::fault::Faults;
+use armctl::transport::fault::{Faults, SimulatorFaults};
 use armctl::transport::line::Pace;
 use armctl::transport::server::Server;
 use armctl::transport::stream_server::StreamServer;
@@ -92,7 +92,7 @@ async fn toyo(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -
 async fn yrcx(tell: impl FnOnce(String) -> anyhow::Result<()>) -> anyhow::Result<()> {
     let start = yrcx_controller::simulator::Start::default();
     // It has threads of its own.
-    let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), Default::default())?;
+    let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), SimulatorFaults::default())?;
     tell(format!("eip://{}", server.address()))?;
     std::future::pending().await
 }

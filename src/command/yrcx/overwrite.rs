@@ -13,7 +13,7 @@ use super::several::{check_echo, is_about_commands};
 use super::stores::{Kind, Numbered, Row};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::store::{Writable, overwriting, old_rows};
+use crate::command::frame::store::{Writable, old_rows, overwriting};
 use crate::command::robot::item::{Item, Written, WrittenItems, as_requested};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;

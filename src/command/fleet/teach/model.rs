@@ -214,7 +214,7 @@ impl Model {
             }
             KeyAction::Store => self.prompt = Some(Prompt::PointNumber(PointUse::Store, String::new())),
             KeyAction::Go if !self.is_too_fast() => {
-                self.prompt = Some(Prompt::PointNumber(PointUse::Go, String::new()))
+                self.prompt = Some(Prompt::PointNumber(PointUse::Go, String::new()));
             }
             KeyAction::Release if self.panel.release.is_some() => self.prompt = Some(Prompt::Release),
             KeyAction::Go | KeyAction::Release => {}

@@ -16,6 +16,9 @@ use crate::output::view::{Table, View};
 use crate::output::{Format, escape, render};
 use crate::settings::Robot;
 
+/// Report or failure of a robot; no robot if there is only one.
+type RobotRow<'r> = (Option<&'r Robot>, Result<&'r dyn AnyReport, &'r Failure>);
+
 /// Position of a report among others.
 #[derive(Debug, Clone, Copy)]
 pub enum ReportPosition<'a> {
@@ -206,12 +209,7 @@ impl Run {
 
     /// Writes reports of one kind as CSV, with a row for each robot that failed. Later rounds of a watch go below the
     /// first header.
-    fn show_csv(
-        &self,
-        sheet: &Sheet,
-        rows: &[(Option<&Robot>, Result<&dyn AnyReport, &Failure>)],
-        place: ReportPosition<'_>,
-    ) -> Result<(), Failure> {
+    fn show_csv(&self, sheet: &Sheet, rows: &[RobotRow<'_>], place: ReportPosition<'_>) -> Result<(), Failure> {
         let is_csv = self.screen.format == Format::Csv;
         let is_round = is_csv
             && self.repeat.is_wanted()

@@ -218,7 +218,7 @@ pub async fn write_each<S: Writable>(
             progress.advance(block.len() as u64);
         }
         for index in block {
-            rows[index].outcome = outcome.clone();
+            rows[index].outcome.clone_from(&outcome);
             rows[index].is_skipped = is_skipped;
         }
     }

@@ -7,7 +7,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::change::{TableWrite, confirmation, intent, write};
+use super::change::{Row, TableWrite, confirmation, intent, write};
 use super::get::{Rows, defined};
 use super::{Store, Writable, WrittenOf, read, read_keys, sheet};
 use crate::command::frame::command::{Command, Context};
@@ -66,13 +66,13 @@ impl<S: Store> Command for Dump<S> {
         for (key, outcome) in keys.iter().zip(answers.rows) {
             let is_wanted = |wire: &S::Wire| S::SAVES_BLANK || old.is_some() || !table.is_blank(wire);
             match kept.add(&table, *key, outcome) {
-                Some(Some(wire)) if is_wanted(&wire) => kept.save(&table, *key, Some(&wire)),
+                Answer::Row(wire) if is_wanted(&wire) => kept.save(&table, *key, Some(&wire)),
                 // A row without values can be restored.
-                Some(None) if old.is_some() && table.fields().iter().all(|field| field.is_optional) => {
+                Answer::Undefined if old.is_some() && table.fields().iter().all(|field| field.is_optional) => {
                     kept.save(&table, *key, None);
                 }
-                Some(None) => undefined.push(*key),
-                Some(Some(_)) | None => {}
+                Answer::Undefined => undefined.push(*key),
+                Answer::Row(_) | Answer::LeftOut => {}
             }
         }
         let Kept { mut rows, left_out, failed } = kept;
@@ -111,25 +111,36 @@ pub struct LeftOut {
     pub why: String,
 }
 
+/// Content of a row for a file.
+#[derive(Debug)]
+pub enum Answer<W> {
+    /// It can be in the file.
+    Row(W),
+    /// The row is not defined.
+    Undefined,
+    /// It cannot be in the file, or was not read.
+    LeftOut,
+}
+
 impl Kept {
-    /// Sorts an answer: `None` for a row that cannot be in a file, `Some(None)` for a row that is not defined.
+    /// Sorts an answer, and records a row that cannot be in a file.
     pub fn add<S: Store>(
         &mut self,
         table: &S,
         key: S::Key,
         outcome: Result<Option<S::Wire>, Failure>,
-    ) -> Option<Option<S::Wire>> {
+    ) -> Answer<S::Wire> {
         match defined::<S>(outcome) {
             Ok(wire) => match table.unsaved(key, wire.as_ref()) {
                 Some(why) => {
                     self.left_out.push(LeftOut { name: S::name(key), why });
-                    None
+                    Answer::LeftOut
                 }
-                None => Some(wire),
+                None => wire.map_or(Answer::Undefined, Answer::Row),
             },
             Err(failure) => {
                 self.failed.push(ItemError::new(as_requested(S::WORDS.nouns[0], &S::name(key)), failure));
-                None
+                Answer::LeftOut
             }
         }
     }
@@ -159,7 +170,7 @@ pub fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &m
 ///
 /// # Errors
 /// All mistakes in the file.
-pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<(S::Key, S::Draft)>, Failure> {
+pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<Row<S>>, Failure> {
     let bytes = text_files::read(path)?;
     let mut findings = Findings::default();
     let rows = parse(table, &bytes, &mut findings);

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use futures_util::future::LocalBoxFuture;
 
 use super::change::{ComparedRow, Row, compare, differing, replaced, write_each};
-use super::file::{Kept, LeftOut, leave_out_unused, parse};
+use super::file::{Answer, Kept, LeftOut, leave_out_unused, parse};
 use super::get::defined;
 use super::{Writable, read, sheet};
 use crate::command::frame::connection::Family;
@@ -171,7 +171,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
                     Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
                     Err(failure) => kept.left_out.push(LeftOut { name: S::name(key), why: failure.message }),
                     Ok(wire) => {
-                        if let Some(Some(wire)) = kept.add(&self.table, key, Ok(wire)) {
+                        if let Answer::Row(wire) = kept.add(&self.table, key, Ok(wire)) {
                             kept.save(&self.table, key, Some(&wire));
                         }
                     }

@@ -113,8 +113,8 @@ impl Asked {
         for part in parts {
             if let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) {
                 copy.check(folder)?;
-                let content = Content::load(part, folder, manifest.controller.letters(), screen)?;
-                contents.push((part, copy.clone(), content));
+                let loaded = Content::load(part, folder, manifest.controller.letters(), screen)?;
+                contents.push((part, copy.clone(), loaded));
             }
         }
         if link.is_dry() {
@@ -343,8 +343,7 @@ fn replacing<'j>(
     speed: Option<&(Cell, Option<u8>)>,
 ) -> Change {
     let lost_of = |part: String, table: &Table| (part, table.nouns(), table.replaced());
-    let mut lost: Vec<(String, [&str; 2], Vec<[String; 3]>)> = Vec::new();
-    lost.extend(machine.map(|table| lost_of("machine".to_owned(), table)));
+    let mut lost: Vec<_> = machine.map(|table| lost_of("machine".to_owned(), table)).into_iter().collect();
     lost.extend(parts.map(|(job, _)| lost_of(job.part.to_string(), &job.table)));
     if let Some((cell, Some(present))) = speed {
         let new = percent(&cell.wanted);
@@ -449,11 +448,9 @@ fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bool {
     };
     (result.more.written, result.more.unchanged) = (Some(written), Some(unchanged));
     result.more.left_out = left_out.into_iter().map(left_out_row).collect();
-    match failure {
-        Some(failure) => result.fail(failure),
-        None => {
-            result.succeed(State::Done);
-            true
-        }
+    if let Some(failure) = failure {
+        return result.fail(failure);
     }
+    result.succeed(State::Done);
+    true
 }

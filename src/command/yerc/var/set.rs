@@ -190,7 +190,9 @@ impl Set {
                         return Err(twice(reference));
                     };
                     let mut value = value_of(table, *reference, input)?;
-                    words.iter().for_each(|word| word.set(&mut value));
+                    for word in words {
+                        word.set(&mut value);
+                    }
                     *draft = Draft::Whole(value);
                 }
             }

@@ -119,7 +119,9 @@ impl Variables {
             Draft::Whole(_) => return Ok(()),
             Draft::Words(words) => {
                 let merged = |mut value: Value| {
-                    words.iter().for_each(|word| word.set(&mut value));
+                    for word in words {
+                        word.set(&mut value);
+                    }
                     value
                 };
                 let given: Vec<String> = words.iter().map(|word| format!("{}={}", word.name(), word.value())).collect();
@@ -324,7 +326,9 @@ impl Writable for Variables {
             (Draft::Fields(cells), old) => cells::over(cells, key.kind, old).map_err(wrong),
             (Draft::Words(words), Some(old)) => {
                 let mut new = old.clone();
-                words.iter().for_each(|word| word.set(&mut new));
+                for word in words {
+                    word.set(&mut new);
+                }
                 Ok(new)
             }
             (Draft::Words(_), None) => {

@@ -69,8 +69,8 @@ impl Word {
         let ((old_kind, old), (new_kind, new)) = (axes(old)?, axes(new)?);
         let mut differing = (0_u8..).zip(old.iter().zip(&new)).filter(|(_, (old, new))| old != new);
         match (differing.next(), differing.next()) {
-            (Some((axis, (_, new))), None) if old_kind == new_kind && word_is_written_alone(variable) => {
-                Some(Self::Axis(axis, *new))
+            (Some((index, (_, new))), None) if old_kind == new_kind && word_is_written_alone(variable) => {
+                Some(Self::Axis(index, *new))
             }
             _ => None,
         }
@@ -81,9 +81,9 @@ fn word_is_written_alone(variable: Reference) -> bool {
     variable.kind.is_position() && variable.kind != VariableKind::P
 }
 
-fn set_axis(axes: &mut Axes, axis: u8, value: i32) {
+fn set_axis(axes: &mut Axes, index: u8, value: i32) {
     let mut values: [i32; MAX_AXES] = axes.padded();
-    if let Some(word) = values.get_mut(usize::from(axis)) {
+    if let Some(word) = values.get_mut(usize::from(index)) {
         *word = value;
     }
     *axes = Axes::full(values);

@@ -33,7 +33,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     match health.state {
         BusState::Off => layers.fail_with("bus", "the adapter is bus-off", advice),
         BusState::Passive => {
-            layers.fail_with("bus", "no other node acknowledges frames (adapter error passive)", advice)
+            layers.fail_with("bus", "no other node acknowledges frames (adapter error passive)", advice);
         }
         _ if nodes.is_empty() && frames == 0 => layers.fail_with("bus", "no traffic", advice),
         _ => layers.ok("bus", count(nodes.len())),
@@ -64,7 +64,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         Ok(sizes) => match profile(sizes) {
             Some(name) => layers.ok("sizes", name),
             None => {
-                layers.fail_with("sizes", format!("{sizes:?} bytes"), "set the unit's I/O size to Normal or Compact")
+                layers.fail_with("sizes", format!("{sizes:?} bytes"), "set the unit's I/O size to Normal or Compact");
             }
         },
     }
