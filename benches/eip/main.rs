@@ -28,6 +28,7 @@ use armctl::transport::eip::settings::Settings;
 use armctl::transport::eip::tap::Tap;
 use armctl::transport::eip::wire::{Cyclic, Identity, Revision};
 use armctl::transport::eip::{IO_PORT, Now, PORT};
+use armctl::transport::fault::SimulatorFaults;
 use tokio::runtime::{Builder, Runtime};
 
 const RPI: Duration = Duration::from_millis(10);
@@ -147,7 +148,8 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
     println!("servo status, from giving it to the report: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
         let runtime = runtime()?;
-        let server = simulated::serve(Start::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), Default::default())?;
+        let server =
+            simulated::serve(Start::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), SimulatorFaults::default())?;
         let target = format!("eip://{}?rpi={}ms", server.address(), rpi.as_millis()).parse()?;
         let sources =
             Sources { selection: Selection { target: Some(target), ..Selection::default() }, ..Sources::default() };
