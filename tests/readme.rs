@@ -170,6 +170,25 @@ fn every_link_has_a_target() {
     assert_eq!(wrong, [""; 0], "links that lead nowhere");
 }
 
+/// Paths of files in the pages for developers; a placeholder such as NAME is not a path.
+#[test]
+fn every_path_in_the_developer_pages_exists() {
+    let mut missing = Vec::new();
+    for page in ["CONTRIBUTING.md", "docs/architecture.md"] {
+        let text = std::fs::read_to_string(root().join(page)).expect("the page exists");
+        // Code in a block is an example.
+        let prose: String = text.split("```").step_by(2).collect();
+        for path in prose.split('`').skip(1).step_by(2).filter(|word| word.contains('/')) {
+            let is_path = path.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-./".contains(c));
+            let folders = ["", "src", "src/command", "tests"];
+            if is_path && !folders.iter().any(|folder| root().join(folder).join(path).exists()) {
+                missing.push(format!("{page}: {path}"));
+            }
+        }
+    }
+    assert_eq!(missing, [""; 0]);
+}
+
 #[test]
 fn recipes_work_with_jq() {
     const PAGE: &str = "docs/scripting.md";
