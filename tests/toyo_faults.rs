@@ -37,7 +37,7 @@ struct Counters {
 }
 
 impl Counters {
-    fn carry_out(&mut self, block: &str) -> String {
+    fn execute_command(&mut self, block: &str) -> String {
         let request = match Request::parse(block) {
             Ok(request) if request.check().is_ok() => request,
             _ => return "@NG".to_owned(),
@@ -67,7 +67,7 @@ impl Peer for Counters {
             if !std::mem::take(&mut self.is_damaged)
                 && let Framed::Block(block) = framed
             {
-                let answer = self.carry_out(&block);
+                let answer = self.execute_command(&block);
                 self.answers.push(format!("{answer}\r\n").into_bytes());
             }
         }
@@ -118,7 +118,7 @@ async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, be
 }
 
 /// A hundred commands, and a read after each.
-async fn talk(faults: &str, seed: u64) -> Tally {
+async fn run_exchange(faults: &str, seed: u64) -> Tally {
     const EXCHANGES: i32 = 100;
     let pace = Pace::new(BAUD, BITS);
     let spec = format!("{faults},seed={seed}").parse().expect("faults");
@@ -188,7 +188,7 @@ fn commands_are_not_duplicated_lost_or_confused() {
     for faults in grid {
         let mut all = Tally::default();
         for seed in 0..25 {
-            let tally = virtual_time().block_on(talk(faults, seed));
+            let tally = virtual_time().block_on(run_exchange(faults, seed));
             assert_eq!((tally.doubled, tally.lost, tally.wrong), (0, 0, 0), "{faults}, seed {seed}: {tally:?}");
             all.answered += tally.answered;
             all.open += tally.open;
@@ -205,7 +205,7 @@ fn damage_never_executes_a_command_twice() {
     for faults in ["noise=0.5%", "noise=5%", "drop=5%,dup=5%", "noise=1%,drop=1%,dup=1%,parity=1%,delay=0..200ms,echo"]
     {
         for seed in 0..25 {
-            let tally = virtual_time().block_on(talk(faults, seed));
+            let tally = virtual_time().block_on(run_exchange(faults, seed));
             assert!(tally.executions <= 100, "{faults}, seed {seed}: {tally:?}");
         }
     }
@@ -215,7 +215,7 @@ fn damage_never_executes_a_command_twice() {
 fn faultless_line_is_as_fast_as_its_characters() {
     let time = virtual_time().block_on(async {
         let began = Instant::now();
-        let tally = talk("drop=0%", 0).await;
+        let tally = run_exchange("drop=0%", 0).await;
         assert_eq!(tally, Tally { answered: 100, executions: 100, ..Tally::default() });
         began.elapsed()
     });

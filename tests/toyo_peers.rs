@@ -58,7 +58,7 @@ fn serve(reach: Reach) -> String {
 }
 
 /// Whether a program is installed; in CI it must be.
-fn is_there(program: &str, ask: &str) -> bool {
+fn is_installed(program: &str, ask: &str) -> bool {
     let asked = Command::new(program).arg(ask).stdout(Stdio::null()).stderr(Stdio::null()).status();
     let is_there = asked.is_ok();
     assert!(is_there || std::env::var_os("CI").is_none(), "{program} must be there in CI");
@@ -88,7 +88,7 @@ fn data(target: &str, words: &[&str]) -> Value {
 }
 
 /// First commands of a technician, over this link.
-fn works(target: &str) {
+fn check_connection(target: &str) {
     assert_eq!(data(target, &["status"])["homed"], false);
     data(target, &["home"]);
     let status = data(target, &["status"]);
@@ -104,7 +104,7 @@ fn works(target: &str) {
 
 #[test]
 fn through_socat() {
-    if !is_there("socat", "-V") {
+    if !is_installed("socat", "-V") {
         return;
     }
     let address = serve(Reach::Tcp);
@@ -122,12 +122,12 @@ fn through_socat() {
     let mut lines = stderr.lines();
     assert!(lines.by_ref().any(|line| line.unwrap().contains("starting data transfer")), "socat ended");
     std::thread::spawn(move || lines.for_each(drop));
-    works(&format!("serial://{}", port.display()));
+    check_connection(&format!("serial://{}", port.display()));
 }
 
 #[test]
 fn through_ser2net() {
-    if !is_there("ser2net", "-v") {
+    if !is_installed("ser2net", "-v") {
         return;
     }
     let terminal = serve(Reach::PseudoTerminal);
@@ -145,7 +145,7 @@ fn through_ser2net() {
     while TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_err() {
         std::thread::yield_now();
     }
-    works(&format!("tcp://127.0.0.1:{port}"));
+    check_connection(&format!("tcp://127.0.0.1:{port}"));
 }
 
 fn start_ser2net(file: &Path) -> Running {

@@ -15,7 +15,7 @@ use crate::support::simulator::Simulator;
 
 /// Fault for a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Peculiar {
+enum Fault {
     No,
     Silence,
     HangUp,
@@ -66,26 +66,26 @@ impl Machine {
 /// A controller behind a device server, and the received blocks.
 struct Controller {
     url: String,
-    news: Receiver<String>,
-    heard: Vec<String>,
+    line_added: Receiver<String>,
+    received: Vec<String>,
     server: JoinHandle<Machine>,
 }
 
 impl Controller {
     /// Serves one connection.
-    fn new(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> Self {
+    fn new(mut peculiar: impl FnMut(&str) -> Fault + Send + 'static) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let url = format!("tcp://{}", listener.local_addr().unwrap());
-        let (tell, news): (Sender<String>, _) = channel();
+        let (tell, line_added): (Sender<String>, _) = channel();
         let server = std::thread::spawn(move || {
             let mut machine = Machine::default();
             let (mut stream, _) = listener.accept().unwrap();
             for block in BufReader::new(stream.try_clone().unwrap()).lines().map_while(Result::ok) {
                 let _gone = tell.send(block.clone());
                 match peculiar(&block) {
-                    Peculiar::Silence => continue,
-                    Peculiar::HangUp => drop(stream.shutdown(Shutdown::Both)),
-                    Peculiar::No => {}
+                    Fault::Silence => continue,
+                    Fault::HangUp => drop(stream.shutdown(Shutdown::Both)),
+                    Fault::No => {}
                 }
                 let answer = machine.answer(&block);
                 if stream.write_all(format!("{answer}\r\n").as_bytes()).is_err() {
@@ -94,7 +94,7 @@ impl Controller {
             }
             machine
         });
-        Self { url, news, heard: Vec::new(), server }
+        Self { url, line_added, received: Vec::new(), server }
     }
 
     fn command(&self, words: &str) -> Command {
@@ -108,20 +108,20 @@ impl Controller {
     /// Waits for this number of blocks of a kind.
     fn wait_for(&mut self, block: &str, count: usize) {
         for _ in 0..count {
-            while let heard = self.news.recv_timeout(Duration::from_secs(30)).expect("the block comes")
+            while let heard = self.line_added.recv_timeout(Duration::from_secs(30)).expect("the block comes")
                 && heard != block
             {
-                self.heard.push(heard);
+                self.received.push(heard);
             }
-            self.heard.push(block.to_owned());
+            self.received.push(block.to_owned());
         }
     }
 
     /// All received blocks, and the final state of the machine.
     fn end(mut self) -> (Vec<String>, Machine) {
         let machine = self.server.join().unwrap();
-        self.heard.extend(self.news.try_iter());
-        (self.heard, machine)
+        self.received.extend(self.line_added.try_iter());
+        (self.received, machine)
     }
 }
 
@@ -142,7 +142,7 @@ fn count(heard: &[String], block: &str) -> usize {
 }
 
 #[track_caller]
-fn stands(controller: Controller) -> Vec<String> {
+fn has_stopped(controller: Controller) -> Vec<String> {
     let (heard, machine) = controller.end();
     assert_eq!(count(&heard, GO), 1, "{heard:?}");
     assert!(heard.iter().rposition(|block| block == STOP) > heard.iter().position(|block| block == GO), "{heard:?}");
@@ -167,7 +167,7 @@ fn every_end_of_the_process_stops_a_jog() {
             continue;
         }
         for flags in ["", " --on-interrupt leave"] {
-            let mut controller = Controller::new(|_| Peculiar::No);
+            let mut controller = Controller::new(|_| Fault::No);
             let child = controller.command(&format!("{JOG}{flags}")).spawn().unwrap();
             controller.wait_for(GO, 1);
             controller.wait_for("@MPST", 3);
@@ -175,7 +175,7 @@ fn every_end_of_the_process_stops_a_jog() {
             let output = child.wait_with_output().unwrap();
             assert_eq!(output.status.code(), Some(130), "{name}{flags}: {}", errors(&output));
             assert!(errors(&output).contains(said), "{name}{flags}: {}", errors(&output));
-            assert_eq!(stands(controller).last().unwrap(), "@HSOF", "the host is given back");
+            assert_eq!(has_stopped(controller).last().unwrap(), "@HSOF", "the host is given back");
         }
     }
 }
@@ -189,9 +189,9 @@ fn ctrl_c_stops_a_jog_of_a_silent_controller() {
             goes |= block == GO;
             if goes && !was_silent && block == silent {
                 was_silent = true;
-                return Peculiar::Silence;
+                return Fault::Silence;
             }
-            Peculiar::No
+            Fault::No
         });
         let child = controller.command(JOG).spawn().unwrap();
         controller.wait_for(GO, 1);
@@ -209,27 +209,27 @@ fn ctrl_c_stops_a_jog_of_a_silent_controller() {
 
 #[test]
 fn closed_stdout_does_not_prevent_the_stop() {
-    let controller = Controller::new(|_| Peculiar::No);
+    let controller = Controller::new(|_| Fault::No);
     let mut child = controller.command("jog X + low --for 200ms").spawn().unwrap();
     drop(child.stdout.take());
     drop(child.stderr.take());
     assert_eq!(child.wait().unwrap().code(), Some(0));
-    stands(controller);
+    has_stopped(controller);
 }
 
 #[test]
 fn lost_line_during_motion_has_a_hint() {
-    let mut goes = false;
+    let mut running_program = false;
     let controller = Controller::new(move |block| {
-        let cut = goes;
-        goes |= block == GO;
-        if cut { Peculiar::HangUp } else { Peculiar::No }
+        let cut_line = running_program;
+        running_program |= block == GO;
+        if cut_line { Fault::HangUp } else { Fault::No }
     });
     let output = controller.command(JOG).output().unwrap();
     assert_eq!(output.status.code(), Some(6), "{}", errors(&output));
-    let told = errors(&output);
-    assert!(told.contains("the axis may still move"), "{told}");
-    assert!(told.contains("press the emergency stop") && told.contains("`toyo stop --jog`"), "{told}");
+    let reported = errors(&output);
+    assert!(reported.contains("the axis may still move"), "{reported}");
+    assert!(reported.contains("press the emergency stop") && reported.contains("`toyo stop --jog`"), "{reported}");
 }
 
 /// From the time when the command is sent: unanswered, accepted, in progress.
@@ -238,11 +238,7 @@ fn ctrl_c_stops_a_running_program() {
     for (words, order) in [("run sequential 1 --wait", "@SPST 0001"), ("home", "@HOME")] {
         for (is_answered, looks) in [(false, 0), (true, 0), (true, 3)] {
             let mut controller =
-                Controller::new(
-                    move |block| {
-                        if block == order && !is_answered { Peculiar::Silence } else { Peculiar::No }
-                    },
-                );
+                Controller::new(move |block| if block == order && !is_answered { Fault::Silence } else { Fault::No });
             let child = controller.command(&format!("{words} --timeout 20s")).spawn().unwrap();
             controller.wait_for(order, 1);
             controller.wait_for("@STAS SNO=0", looks);
@@ -258,7 +254,7 @@ fn ctrl_c_stops_a_running_program() {
 
 #[test]
 fn on_interrupt_leave_does_not_stop() {
-    let mut controller = Controller::new(|_| Peculiar::No);
+    let mut controller = Controller::new(|_| Fault::No);
     let child = controller.command("run sequential 1 --wait --on-interrupt leave").spawn().unwrap();
     controller.wait_for("@SPST 0001", 1);
     controller.wait_for("@STAS SNO=0", 2);
@@ -289,7 +285,7 @@ fn never_sends_a_command_twice() {
         ("card write", "@WMCA"),
         ("card read", "@RMCA"),
     ] {
-        let controller = Controller::new(move |block| if block == order { Peculiar::Silence } else { Peculiar::No });
+        let controller = Controller::new(move |block| if block == order { Fault::Silence } else { Fault::No });
         let output = controller.command(&format!("{words} --timeout 100ms")).output().unwrap();
         assert_eq!(output.status.code(), Some(6), "{words}: {}", errors(&output));
         assert!(errors(&output).contains("hint: "), "{words}: {}", errors(&output));
@@ -300,7 +296,7 @@ fn never_sends_a_command_twice() {
 
 /// A controller behind a device server that accepts one connection after the other, and closes it at the blocks in
 /// `peculiar`; it ends with the test.
-fn lasting(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> String {
+fn long_program(mut peculiar: impl FnMut(&str) -> Fault + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("tcp://{}", listener.local_addr().unwrap());
     std::thread::spawn(move || {
@@ -308,7 +304,7 @@ fn lasting(mut peculiar: impl FnMut(&str) -> Peculiar + Send + 'static) -> Strin
         for stream in listener.incoming().map_while(Result::ok) {
             let mut writer = stream.try_clone().unwrap();
             for block in BufReader::new(stream).lines().map_while(Result::ok) {
-                if peculiar(&block) == Peculiar::HangUp {
+                if peculiar(&block) == Fault::HangUp {
                     writer.shutdown(Shutdown::Both).unwrap_or_default();
                     break;
                 }
@@ -333,20 +329,20 @@ fn toyo(url: &str, state: &std::path::Path, words: &str) -> Command {
 fn reports_state_left_by_a_killed_command() {
     let state = tempfile::tempdir().unwrap();
     let (tell, moves) = channel();
-    let url = lasting(move |block| {
+    let url = long_program(move |block| {
         if block == GO {
             tell.send(()).unwrap_or_default();
         }
-        Peculiar::No
+        Fault::No
     });
     let mut jog = toyo(&url, state.path(), JOG).spawn().unwrap();
     moves.recv_timeout(Duration::from_secs(30)).unwrap();
     signal(&jog, "KILL");
     jog.wait().unwrap();
-    let said = || errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(said().contains("the host is still ON, which was OFF; `toyo host off`"));
+    let messages = || errors(&toyo(&url, state.path(), "position").output().unwrap());
+    assert!(messages().contains("the host is still ON, which was OFF; `toyo host off`"));
     // The guardian stops the jog.
-    assert!((0..1000).any(|_| !said().contains("executed")), "{}", said());
+    assert!((0..1000).any(|_| !messages().contains("executed")), "{}", messages());
     let said = errors(&toyo(&url, state.path(), "position").output().unwrap());
     assert!(!said.contains("executed") && said.contains("the host is still ON"), "{said}");
     assert!(toyo(&url, state.path(), "host off").status().unwrap().success());
@@ -367,7 +363,7 @@ fn another_client(url: &str, block: &str) {
 #[test]
 fn status_reports_state_left_by_another_client() {
     let state = tempfile::tempdir().unwrap();
-    let url = lasting(|_| Peculiar::No);
+    let url = long_program(|_| Fault::No);
     let said = |words: &str| {
         let output = toyo(&url, state.path(), words).output().unwrap();
         assert!(output.status.success(), "{words}: {}", errors(&output));
@@ -403,7 +399,7 @@ fn status_reports_state_left_by_another_client() {
 #[test]
 fn reports_a_task_selected_by_another_client() {
     let state = tempfile::tempdir().unwrap();
-    let url = lasting(|_| Peculiar::No);
+    let url = long_program(|_| Fault::No);
     let said = |words: &str| errors(&toyo(&url, state.path(), words).output().unwrap());
     assert_eq!(said("task get"), "");
     another_client(&url, "@CTSK TASK=02");
@@ -422,9 +418,9 @@ fn reports_a_task_selected_by_another_client() {
 fn watch_continues_when_the_line_returns() {
     let state = tempfile::tempdir().unwrap();
     let mut places = 0;
-    let url = lasting(move |block| {
+    let url = long_program(move |block| {
         places += u32::from(block == "@MPST");
-        if block == "@MPST" && places == 3 { Peculiar::HangUp } else { Peculiar::No }
+        if block == "@MPST" && places == 3 { Fault::HangUp } else { Fault::No }
     });
     let watch = toyo(&url, state.path(), "position --watch=50ms --count 6 -o jsonl").output().unwrap();
     assert!(watch.status.success(), "{}", errors(&watch));
@@ -433,9 +429,9 @@ fn watch_continues_when_the_line_returns() {
     assert_eq!(ok, [true, true, false, true, true, true], "{lines}");
     // `--until` also continues.
     let mut places = 0;
-    let url = lasting(move |block| {
+    let url = long_program(move |block| {
         places += u32::from(block == "@STAS SNO=0");
-        if block == "@STAS SNO=0" && places == 2 { Peculiar::HangUp } else { Peculiar::No }
+        if block == "@STAS SNO=0" && places == 2 { Fault::HangUp } else { Fault::No }
     });
     let mut until = toyo(&url, state.path(), "status --watch=50ms");
     let until = until.args(["--until", ".data.servo_on and false", "--count", "4"]).output().unwrap();
@@ -459,6 +455,6 @@ fn names_the_process_that_uses_a_serial_port() {
     // The hint works: it stops the motion and frees the port.
     signal(&home, "TERM");
     assert_eq!(home.wait().unwrap().code(), Some(130));
-    let looked = toyo(&simulator.url, folder.path(), "status --json --jq .data.running --no-session").output().unwrap();
-    assert_eq!(String::from_utf8_lossy(&looked.stdout).trim(), "false", "{}", errors(&looked));
+    let status = toyo(&simulator.url, folder.path(), "status --json --jq .data.running --no-session").output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&status.stdout).trim(), "false", "{}", errors(&status));
 }

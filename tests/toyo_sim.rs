@@ -40,7 +40,7 @@ impl Served {
     }
 
     /// A line on stderr.
-    fn said(&mut self) -> String {
+    fn messages(&mut self) -> String {
         let mut line = String::new();
         self.stderr.read_line(&mut line).unwrap();
         line
@@ -89,7 +89,7 @@ fn pseudo_terminal_link_exists_while_served() {
 }
 
 /// Envelopes of a watch, up to a success or a failure.
-fn until(lines: &mut impl Iterator<Item = std::io::Result<String>>, ok: bool) {
+fn wait_until(lines: &mut impl Iterator<Item = std::io::Result<String>>, ok: bool) {
     let is_so = |line: &String| line.contains(&format!(r#""ok":{ok}"#));
     assert!(lines.map_while(Result::ok).any(|line| is_so(&line)), "none came that has ok: {ok}");
 }
@@ -106,12 +106,12 @@ fn watch_survives_a_replugged_port() {
         let words = format!("-o jsonl -t {} toyo {words}", served.target);
         let mut watch = armctl(folder.path(), &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut lines = BufReader::new(watch.stdout.take().unwrap()).lines();
-        until(&mut lines, true);
+        wait_until(&mut lines, true);
         assert_eq!(served.end("-INT"), Some(0));
         assert!(!folder.path().join("port").exists(), "the path is gone");
-        until(&mut lines, false);
+        wait_until(&mut lines, false);
         served = Served::start(folder.path(), &format!("--pty --link port{state}"));
-        until(&mut lines, true);
+        wait_until(&mut lines, true);
         if state.is_empty() {
             let pid = watch.id().to_string();
             assert!(Command::new("kill").args(["-INT", pid.as_str()]).status().unwrap().success());
@@ -126,14 +126,14 @@ fn console_sets_states_without_a_command() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 127.0.0.1:0 --console");
     let mut console = served.process.stdin.take().unwrap();
-    assert!(served.said().starts_with("reach it:") && served.said().starts_with("end it:"));
+    assert!(served.messages().starts_with("reach it:") && served.messages().starts_with("end it:"));
     console.write_all(b"input 0/01/3 on\n").unwrap();
-    assert!(served.said().contains("servo on"), "what is now");
+    assert!(served.messages().contains("servo on"), "what is now");
     assert_eq!(served.data(folder.path(), "io get IN1.3")["items"][0]["value"], true);
     console.write_all(b"\ninptu 0/01/3 off\n").unwrap();
-    assert!(served.said().contains("inptu"));
+    assert!(served.messages().contains("inptu"));
     drop(console);
-    assert!(served.said().trim().is_empty() && served.said().contains("`help`"), "a hint follows");
+    assert!(served.messages().trim().is_empty() && served.messages().contains("`help`"), "a hint follows");
     // It continues after the end of the console input.
     assert_eq!(served.data(folder.path(), "io get IN1.3")["items"][0]["value"], true);
 }
@@ -153,6 +153,6 @@ fn simulates_line_speed_and_one_simulator_per_address() {
 fn warns_about_a_reachable_simulator() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 0.0.0.0:0");
-    assert_eq!(served.said(), "warning: others on the network can reach this simulator\n");
+    assert_eq!(served.messages(), "warning: others on the network can reach this simulator\n");
     assert_eq!(served.end("-INT"), Some(0));
 }

@@ -1,15 +1,15 @@
 //! Toyo: questions before replacing, complete dry runs, stops that are always allowed.
 
-use super::desk::Desk;
+use super::desk::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-fn desk(controller: &Simulator, more: &str) -> Desk {
-    Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
+fn desk(controller: &Simulator, more: &str) -> Workspace {
+    Workspace::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
 }
 
 /// Blocks of a dry run.
-fn blocks(desk: &Desk, line: &str) -> Vec<String> {
+fn blocks(desk: &Workspace, line: &str) -> Vec<String> {
     let data = desk.data(&format!("-r cell toyo {line} --dry-run"));
     let frames = data["frames"].as_array().expect("frames").iter();
     frames.map(|frame| frame["text"].as_str().expect("a line").to_owned()).collect()
@@ -20,8 +20,8 @@ fn asks_before_replacing_user_data() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
     for line in ["point set 7 1 2 3 4", "easy set 1 5 6 7", "program insert 1 TAG TAG=005 --yes"] {
-        let came = desk.run(&format!("-r cell toyo {line}"));
-        assert_eq!(came.exit, Some(0), "nobody wrote what is there: {line}: {came:?}");
+        let result = desk.run(&format!("-r cell toyo {line}"));
+        assert_eq!(result.exit, Some(0), "nobody wrote what is there: {line}: {result:?}");
     }
     for (line, part) in [
         ("point set 7 z=5", "overwrite a point of task 1 (point 7: z=3.00 mm -> z=5.00 mm)"),
@@ -56,9 +56,9 @@ fn question_of_a_point_move_has_numbers() {
         for said in
             ["REAL CONTROLLER: cell", "X: 0.00 -> 90.00 mm", "Z: 0.00 -> 5.00 mm", "The speed override is 100 %."]
         {
-            terminal.says(said);
+            terminal.wait_for_text(said);
         }
-        terminal.says("Continue?");
+        terminal.wait_for_text("Continue?");
         terminal.press(key);
         // It has no origin yet, and refuses.
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
@@ -92,10 +92,10 @@ fn question_of_a_program_has_number_step_position_and_speed() {
         ("run easy", "It is easy program 2, at step"),
     ] {
         let mut terminal = Terminal::start(desk.command(&format!("-r cell toyo {line}")), 100, 24).unwrap();
-        terminal.says(which);
-        terminal.says("The axes are at X 0.00, Y 0.00, Z 0.00, R 0.00 (mm).");
-        terminal.says("The speed override is 100 %.");
-        terminal.says("Continue?");
+        terminal.wait_for_text(which);
+        terminal.wait_for_text("The axes are at X 0.00, Y 0.00, Z 0.00, R 0.00 (mm).");
+        terminal.wait_for_text("The speed override is 100 %.");
+        terminal.wait_for_text("Continue?");
         terminal.press("n\n");
         assert_eq!(terminal.end().code(), Some(7), "{line}");
     }
@@ -151,6 +151,6 @@ fn stop_is_allowed_on_a_read_only_robot() {
 
 #[test]
 fn jog_is_refused_without_a_terminal_before_sending() {
-    let desk = Desk::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
+    let desk = Workspace::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
     desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by a small step in plus direction");
 }

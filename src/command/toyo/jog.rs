@@ -449,7 +449,7 @@ impl Live {
         let thread = std::thread::spawn(move || {
             let progress = screen.spinner("jogging");
             for text in said {
-                progress.say(&text);
+                progress.print_line(&text);
             }
         });
         Self { texts, thread }
@@ -510,12 +510,12 @@ impl Jogged {
 impl Report for Jogged {
     fn view(&self) -> View {
         let steps = self.steps.map_or_else(|| "-".into(), Cell::from);
-        let line = |place: &Option<Position>| Cell::maybe(place.as_ref().map(Position::line));
+        let line = |place: &Option<Position>| Cell::optional(place.as_ref().map(Position::line));
         View::fields([
             ("axis", titled(self.axis_number - 1, self.axis).into()),
             ("moved (mm)", Cell::number(format!("{:.2}", self.moved_mm))),
             ("steps", steps),
-            ("elapsed (ms)", Cell::maybe(self.motion.elapsed_ms)),
+            ("elapsed (ms)", Cell::optional(self.motion.elapsed_ms)),
             ("from", line(&self.motion.from)),
             ("to", line(&self.motion.position)),
         ])

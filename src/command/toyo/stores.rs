@@ -115,7 +115,7 @@ pub fn replaced(work: StoreTask, stores: &[Store]) -> Vec<Replaced> {
 /// Change to confirm; `of` names the place: ` of task 1`.
 pub fn overwriting([one, several]: [&str; 2], replaced: &[Replaced], of: &str) -> Change {
     let change = match replaced.len() {
-        0 => return Change::nothing(),
+        0 => return Change::none(),
         1 => Change::new(format!("overwrite {one}{of}")),
         many => Change::new(format!("overwrite {many} {several}{of}")),
     };

@@ -269,7 +269,7 @@ impl Teller {
             _ => None,
         };
         let place = place.map(|place| place.in_a_line()).unwrap_or_default();
-        self.progress.say(&format!("{} {place} {}", halted.unwrap_or(self.doing), self.step));
+        self.progress.print_line(&format!("{} {place} {}", halted.unwrap_or(self.doing), self.step));
         if halted != self.halted {
             self.halted = halted;
             if let Some(halted) = halted {

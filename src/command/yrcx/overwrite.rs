@@ -138,7 +138,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) 
     let (new, after) = new;
     let change = match &old {
         Some(old) if !is_same => Change::new(format!("overwrite {noun}")).replaces(&what, old, &new),
-        _ => Change::nothing(),
+        _ => Change::none(),
     };
     authority.confirm(&change).await?;
     let data = [before, after];

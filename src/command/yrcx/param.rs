@@ -88,7 +88,7 @@ impl Command for Get {
             let value = outcome.map(|values| Some(values.int(Key::Value).unwrap_or_default()));
             let more = Setting { number, axis: *axis, unit, meaning };
             let of_axis = axis.map_or_else(|| "-".into(), Cell::from);
-            let cells = |value: &i32| vec![of_axis.clone(), (*value).into(), Cell::maybe(unit), meaning.into()];
+            let cells = |value: &i32| vec![of_axis.clone(), (*value).into(), Cell::optional(unit), meaning.into()];
             let item = Item::with("parameter", name, more, value);
             if item.ok { item.with_cells(cells) } else { Item { cells: vec![of_axis], ..item } }
         });

@@ -126,29 +126,29 @@ async fn write_selected<S: Writable>(
     }
     let differing: Vec<Differing<'_, S>> =
         compared.iter().filter(|row| row.is_different()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect();
-    authority.confirm(&old_rows(table, &differing)).await?;
+    authority.confirm(&describe_change(table, &differing)).await?;
     write_each(table, link, screen, &mut compared).await;
     Ok(compared)
 }
 
 /// Overwritten user data, for a question.
-pub fn old_rows<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
-    let lost_answer = rows.iter().filter_map(|(key, old, new)| {
+pub fn describe_change<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
+    let overwritten_rows = rows.iter().filter_map(|(key, old, new)| {
         let is_lost = |old: &&S::Wire| S::risk(*key) == S::RISK && !S::is_equal(old, new) && !table.is_blank(old);
         let old = old.filter(is_lost)?;
         let [old, new] = table.difference(old, new);
         Some((S::asked(*key), old, new))
     });
-    let lost: Vec<_> = lost_answer.collect();
+    let overwritten: Vec<_> = overwritten_rows.collect();
     let [one, many] = S::WORDS.nouns;
     let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.address_of());
-    let change = match lost.len() {
-        0 => return Change::nothing(),
+    let change = match overwritten.len() {
+        0 => return Change::none(),
         1 => Change::new(format!("overwrite {article} {one}{place}")),
         count => Change::new(format!("overwrite {count} {many}{place}")),
     };
     let change = table.consequences(rows).into_iter().fold(change, Change::note);
-    lost.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))
+    overwritten.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))
 }
 
 async fn write_each<S: Writable>(

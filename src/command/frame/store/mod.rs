@@ -15,7 +15,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use self::change::{Row, TableWrite, old_rows, write};
+pub use self::change::{Row, TableWrite, describe_change, write};
 pub use self::copy::Copy;
 pub use self::file::{Dump, Restore};
 pub use self::get::{Get, List};

@@ -339,7 +339,7 @@ fn replacing(machine: &[Store], looked: &[Looked<'_>], speed: &[Store]) -> Chang
     let total: usize = parts.iter().map(|(_, _, replaced)| replaced.len()).sum();
     let values = if total == 1 { "a value" } else { &format!("{total} values") };
     let change = match total {
-        0 => return Change::nothing(),
+        0 => return Change::none(),
         _ => Change::new(format!("overwrite {values} by the backup")),
     };
     parts.iter().fold(change, |change, (part, [one, several], replaced)| {
