@@ -1,5 +1,5 @@
-//! Says what a binary was built from, for `armctl --version`. The same sources make the same binary on any day: the date is
-//! that of SOURCE_DATE_EPOCH, or of the commit.
+//! Build information for `armctl --version`. The same sources yield the same binary on every day: the date is
+//! SOURCE_DATE_EPOCH, or that of the commit.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,9 +11,9 @@ fn main() {
     let commit = if is_release { commit() } else { None };
     let date = std::env::var("SOURCE_DATE_EPOCH").ok().and_then(|seconds| date(seconds.trim().parse().ok()?));
     let (hash, day) = commit.unzip();
-    // A development build would have to be made anew at every commit, to say what its builder knows.
+    // Otherwise a development build would be repeated after every commit.
     let missing = if is_release { UNKNOWN } else { "not recorded in a development build" };
-    // Not ARMCTL_…: cargo sets these for what it runs, too, and armctl reads ARMCTL_TARGET as a target.
+    // Not ARMCTL_…: cargo also sets these for the programs that it runs, and armctl reads ARMCTL_TARGET as a target.
     println!("cargo::rustc-env=BUILT_COMMIT={}", hash.as_deref().unwrap_or(missing));
     println!("cargo::rustc-env=BUILT_DATE={}", date.or(day).as_deref().unwrap_or(missing));
     println!("cargo::rustc-env=BUILT_TARGET={}", std::env::var("TARGET").as_deref().unwrap_or(UNKNOWN));
@@ -21,12 +21,13 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
 }
 
-/// Hash and date of the commit, where these sources are a checkout and not merely in one, such as an unpacked archive.
+/// Hash and date of the commit, if these sources are a checkout, and not only inside of one, such as an unpacked
+/// archive.
 fn commit() -> Option<(String, String)> {
     if !Path::new(".git").exists() {
         return None;
     }
-    // What is changed and not committed shows in the hash, and every commit or checkout is a line of this log.
+    // Uncommitted changes are part of the hash, and every commit or checkout is a line of this log.
     let log = git(&["rev-parse", "--git-path", "logs/HEAD"])?;
     for path in ["src", "Cargo.toml", "Cargo.lock", &log].into_iter().filter(|path| Path::new(path).exists()) {
         println!("cargo::rerun-if-changed={path}");
@@ -39,7 +40,7 @@ fn git(arguments: &[&str]) -> Option<String> {
     Some(String::from_utf8(output.stdout).ok()?.trim().to_owned())
 }
 
-/// The day (UTC) of a moment in seconds since 1970.
+/// Day (UTC) of a time in seconds since 1970.
 fn date(seconds: i64) -> Option<String> {
     let is_leap = |year: i64| year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
     let mut day = u32::try_from(seconds.div_euclid(86_400)).ok()?;

@@ -1,5 +1,5 @@
-//! How long a person waits for what needs no robot: help, and the candidates at a Tab. Whole processes, in turn, with the
-//! process beside them that only starts and ends.
+//! Time of commands without a robot: help, and completion candidates. Complete processes, alternating, compared with a
+//! process that only starts and ends.
 //!
 //! `cargo bench --bench startup`
 
@@ -12,13 +12,13 @@ use std::process::{Command, Stdio};
 use anyhow::ensure;
 
 use common::table::{Goal, Row, Table};
-use common::{Work, in_turn, median};
+use common::{Work, median, run_alternately};
 
-/// Runs of each.
+/// Number of runs of each.
 const FULL: usize = 200;
 const QUICK: usize = 2;
 
-/// Longest wait for help or candidates.
+/// Time limit for help or candidates.
 const GOAL: Goal = Goal::AtMost(10.0, "ms");
 
 fn main() -> anyhow::Result<()> {
@@ -82,7 +82,7 @@ fn compare<const N: usize>(
             Ok(())
         }
     });
-    let times = in_turn(rounds, works.each_mut().map(|work| work as &mut dyn Work))?;
+    let times = run_alternately(rounds, works.each_mut().map(|work| work as &mut dyn Work))?;
     let mut table = Table::new(title);
     for ((name, goal), times) in names.into_iter().zip(&times) {
         let ms = median(times) * 1e3;
@@ -92,7 +92,7 @@ fn compare<const N: usize>(
     Ok(table)
 }
 
-/// The binary of the same build, where nothing of this machine matters.
+/// The binary of the same build, in an empty environment.
 fn armctl(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     for name in ["ARMCTL_CONFIG", "ARMCTL_TARGET", "ARMCTL_TIMEOUT", "ARMCTL_RETRIES", "ARMCTL_ENCODING"] {
@@ -102,7 +102,7 @@ fn armctl(args: &[&str]) -> Command {
     command
 }
 
-/// What the scripts in `completions/` run at a Tab.
+/// Command of the scripts in `completions/` at a Tab.
 fn tab(words: &[&str]) -> Command {
     let mut command = armctl(&["--"]);
     command.env("ARMCTL_COMPLETE", "zsh").args(words);

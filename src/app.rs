@@ -43,7 +43,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     if let Some(served) = guardian::serve(&args) {
         return exit(served);
     }
-    if jq::worker::is_meant(&args) {
+    if jq::worker::is_worker(&args) {
         return exit(jq::worker::serve());
     }
     if let Some(answer) = complete::answer(&args) {
@@ -84,7 +84,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         cli.globals.format = cli.globals.format.or(*format);
     }
     let screen = screen(&cli.globals);
-    screen.tells_the_end();
+    screen.use_for_exit();
     files::set_draft_hook(catch_interrupts);
     if let Err(failure) = format {
         return exit(Err(report_failure(&screen, failure.into())));

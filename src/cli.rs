@@ -309,15 +309,15 @@ impl Globals {
     }
 
     /// Robot flags as words of a command line.
-    pub fn whom(&self) -> Vec<String> {
-        let named = |flag: &str, value: String| vec![flag.to_owned(), value];
+    pub fn robot_words(&self) -> Vec<String> {
+        let flag_words = |flag: &str, value: String| vec![flag.to_owned(), value];
         let mut words = Vec::new();
         words.extend(self.sim.then(|| "--sim".to_owned()));
         words.extend(self.all.then(|| "--all".to_owned()));
-        words.extend(self.target.iter().flat_map(|target| named("--target", target.to_string())));
-        words.extend(self.robot.iter().flat_map(|robot| named("--robot", robot.clone())));
-        words.extend(self.tag.iter().flat_map(|tag| named("--tag", tag.clone())));
-        words.extend(self.config.iter().flat_map(|path| named("--config", path.display().to_string())));
+        words.extend(self.target.iter().flat_map(|target| flag_words("--target", target.to_string())));
+        words.extend(self.robot.iter().flat_map(|robot| flag_words("--robot", robot.clone())));
+        words.extend(self.tag.iter().flat_map(|tag| flag_words("--tag", tag.clone())));
+        words.extend(self.config.iter().flat_map(|path| flag_words("--config", path.display().to_string())));
         words
     }
 }

@@ -67,7 +67,7 @@ impl Kind {
 
 /// Ends the process at once with the exit code of `kind`, without waiting for other threads.
 #[expect(clippy::exit, reason = "for those who must not wait for the rest of the process")]
-pub fn end(kind: Kind) -> ! {
+pub fn exit_process(kind: Kind) -> ! {
     std::process::exit(kind.exit().into())
 }
 
@@ -193,13 +193,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exit_codes_are_those_of_the_contract() {
+    fn exit_codes_match_the_contract() {
         let codes: Vec<u8> = Kind::TABLE.iter().map(|(kind, ..)| kind.exit()).collect();
         assert_eq!(codes, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 130]);
     }
 
     #[test]
-    fn a_decimal_comma_is_told() {
+    fn hints_at_a_decimal_comma() {
         for (message, hint) in [
             ("x: '2,5' is not a number, 1 to 9 mm", Some("use a decimal point: 2.5")),
             ("'-12,50mm/s' is not a valid speed", Some("use a decimal point: -12.50mm/s")),
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn context_stands_before_the_message_and_keeps_kind_and_hint() {
+    fn context_precedes_the_message_and_keeps_kind_and_hint() {
         let refused = Failure::new(Kind::Refused, "no").code("0x2060").hint("ask again");
         let told = Failure::from(anyhow::Error::new(refused.clone()).context("job").context("cell3"));
         assert_eq!(told, Failure { message: "cell3: job: no".into(), ..refused });

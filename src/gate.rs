@@ -49,7 +49,7 @@ pub struct Intent {
 
 impl Intent {
     /// Risk that is granted before the command has asked a question itself.
-    pub fn granted_at_first(&self) -> Risk {
+    pub fn initial_risk(&self) -> Risk {
         match self.confirmation {
             Confirmation::WhenKnown => self.risk.min(Risk::Write),
             Confirmation::Question | Confirmation::Word(_) => self.risk,
@@ -81,33 +81,33 @@ impl Gate {
     /// # Errors
     /// A question is needed but not possible, or the robot is read-only.
     pub fn must_ask(&self, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<bool, Failure> {
-        self.admits(robot, intent)?;
+        self.check_read_only(robot, intent)?;
         if !self.needs_yes(robot, intent.risk) {
             return Ok(false);
         }
         // The command may find that it replaces nothing. A motion always needs a question.
         let may_be_nothing = intent.confirmation == Confirmation::WhenKnown && intent.risk < Risk::Motion;
         if !screen.can_ask() && !may_be_nothing {
-            return Err(unasked(robot, intent.risk, &intent.text));
+            return Err(not_confirmed(robot, intent.risk, &intent.text));
         }
         Ok(true)
     }
 
     /// Refuses to change a read-only robot. A stop is always allowed.
-    fn admits(&self, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
+    fn check_read_only(&self, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
         if intent.risk == Risk::Read || self.dry_run || intent.is_stop || !robot.read_only.value {
             return Ok(());
         }
-        let way = |name: &str| {
+        let hint = |name: &str| {
             format!("it is so on purpose; where it may be changed: `armctl robots set {name} read_only=off`")
         };
         Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(
             match &robot.read_only_entry {
-                Some(entry) => format!("its address is that of '{entry}' in robots.toml; {}", way(entry)),
+                Some(entry) => format!("its address is that of '{entry}' in robots.toml; {}", hint(entry)),
                 None if robot.read_only.origin == Origin::Defaults => {
                     "[defaults] in robots.toml make it so, on purpose; `armctl robots edit` changes them".to_owned()
                 }
-                None => way(&robot.name),
+                None => hint(&robot.name),
             },
         ))
     }
@@ -118,14 +118,14 @@ impl Gate {
     }
 
     /// Refuses to move several robots, or to overwrite data on them, unless the line names each of them.
-    pub fn pass_many(robots: &[(&Robot, Intent)], is_named: impl Fn(&Robot) -> bool) -> Result<(), Failure> {
+    pub fn check_named_robots(robots: &[(&Robot, Intent)], is_named: impl Fn(&Robot) -> bool) -> Result<(), Failure> {
         let unnamed =
             robots.iter().filter(|(robot, intent)| intent.risk >= Risk::Destroy && !intent.is_stop && !is_named(robot));
         let unnamed: Vec<&(&Robot, Intent)> = unnamed.collect();
         let Some((_, intent)) = unnamed.first().filter(|_| robots.len() > 1) else { return Ok(()) };
         let names: Vec<&str> = unnamed.iter().map(|(robot, _)| robot.name.as_str()).collect();
-        let counted = format!("{} of {} robots", unnamed.len(), robots.len());
-        let message = format!("not confirmed: on {counted} ({}) this would {}", names.join(", "), intent.text);
+        let count_text = format!("{} of {} robots", unnamed.len(), robots.len());
+        let message = format!("not confirmed: on {count_text} ({}) this would {}", names.join(", "), intent.text);
         Err(Failure::new(Kind::Rejected, message).hint(
             "name each of them with -r; patterns, --tag and --all are not enough for what moves, deletes or overwrites",
         ))
@@ -143,7 +143,7 @@ pub struct Change {
 }
 
 /// Maximum number of items in a question; the others are counted.
-const SHOWN: usize = 12;
+const MAX_ITEMS: usize = 12;
 
 impl Change {
     /// `text` completes "This will …": `delete 2 files`.
@@ -152,7 +152,7 @@ impl Change {
     }
 
     /// A change that overwrites no user data.
-    pub fn nothing() -> Self {
+    pub fn none() -> Self {
         Self { is_empty: true, ..Self::default() }
     }
 
@@ -185,16 +185,16 @@ impl Change {
     /// Lines to print before the question.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![format!("This will {}{}", self.text, if self.items.is_empty() { "." } else { ":" })];
-        lines.extend(self.items.iter().take(SHOWN).map(|item| format!("  {item}")));
-        if self.items.len() > SHOWN {
-            lines.push(format!("  and {} more", self.items.len() - SHOWN));
+        lines.extend(self.items.iter().take(MAX_ITEMS).map(|item| format!("  {item}")));
+        if self.items.len() > MAX_ITEMS {
+            lines.push(format!("  and {} more", self.items.len() - MAX_ITEMS));
         }
         lines.extend(self.notes.iter().cloned());
         lines
     }
 
     /// The change in one line.
-    pub fn in_a_line(&self) -> String {
+    pub fn format_line(&self) -> String {
         match &self.items[..] {
             [] => self.text.clone(),
             [item] => format!("{} ({item})", self.text),
@@ -204,12 +204,12 @@ impl Change {
 }
 
 /// Failure because the data changed while the question was open.
-pub fn outdated(message: impl Into<String>) -> Failure {
+pub fn data_changed(message: impl Into<String>) -> Failure {
     Failure::new(Kind::Rejected, message).hint("somebody else is at work there: look, then repeat the command")
 }
 
 /// Failure because a question is needed but not possible.
-pub fn unasked(robot: &Robot, risk: Risk, text: &str) -> Failure {
+pub fn not_confirmed(robot: &Robot, risk: Risk, text: &str) -> Failure {
     let when = if risk == Risk::Motion { " when nobody is in the cell" } else { "" };
     Failure::new(Kind::Rejected, format!("not confirmed: on {} this would {text}", robot.label()))
         .hint(format!("pass --yes to confirm{when}, or --dry-run to see what would be sent"))
@@ -220,10 +220,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_change_is_counted() {
+    fn counts_the_items_of_a_long_change() {
         let change = (0..20).fold(Change::new("delete 20 files"), |change, n| change.item(format!("{n}.JBI")));
-        assert_eq!(change.lines().len(), 1 + SHOWN + 1);
+        assert_eq!(change.lines().len(), 1 + MAX_ITEMS + 1);
         assert_eq!(change.lines().last().unwrap(), "  and 8 more");
-        assert_eq!(change.in_a_line(), "delete 20 files (0.JBI, and 19 more)");
+        assert_eq!(change.format_line(), "delete 20 files (0.JBI, and 19 more)");
     }
 }

@@ -26,24 +26,24 @@ use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::Robot;
 
 /// Heartbeat interval.
-const BEAT: Duration = Duration::from_millis(500);
+const HEARTBEAT_INTERVAL: Duration = Duration::from_millis(500);
 /// A process without a heartbeat for this time counts as dead.
-const DEAD: Duration = Duration::from_secs(2);
+const DEAD_AFTER: Duration = Duration::from_secs(2);
 
 /// Time limit for the attempts to stop, and the pause after a failed attempt.
-const CONFIRMED_WITHIN: Duration = Duration::from_secs(30);
-const AGAIN_AFTER: Duration = Duration::from_millis(200);
+const STOP_TIMEOUT: Duration = Duration::from_secs(30);
+const RETRY_PAUSE: Duration = Duration::from_millis(200);
 
 /// First argument of a guardian that stops the robot.
-const STOPS: &str = "--guardian=stop";
+const STOP_ARGUMENT: &str = "--guardian=stop";
 /// First argument of a guardian that only kills a hanging process. The session, or the fieldbus adapter, then stops the
 /// robot.
-const ENDS: &str = "--guardian=end";
+const KILL_ARGUMENT: &str = "--guardian=end";
 
 /// Bytes from the guarded process.
 const MOTION: u8 = b'm';
-const REST: u8 = b'r';
-const ALIVE: u8 = b'.';
+const MOTION_END: u8 = b'r';
+const HEARTBEAT: u8 = b'.';
 const DONE: u8 = b'q';
 
 /// This program with the arguments of the command that stops a robot. `words` follow the family name.
@@ -60,9 +60,11 @@ fn stop_command(robot: &Robot, words: &[&str], first: Option<&str>) -> io::Resul
 /// Stops a robot in a separate process, through the session that holds its link. Passes the result to `say`.
 pub fn stop_orphan(robot: &Robot, words: &[&str], say: impl Fn(&str) + Send + 'static) {
     let command = stop_command(robot, words, None);
-    thread::spawn(move || match command.map_err(|error| error.to_string()).and_then(|mut stop| confirm(&mut stop)) {
-        Ok(()) => say("the robot was stopped"),
-        Err(why) => say(&unstopped(&why)),
+    thread::spawn(move || {
+        match command.map_err(|error| error.to_string()).and_then(|mut stop| run_until_stopped(&mut stop)) {
+            Ok(()) => say("the robot was stopped"),
+            Err(why) => say(&stop_failure(&why)),
+        }
     });
 }
 
@@ -71,22 +73,22 @@ pub fn stop_orphan(robot: &Robot, words: &[&str], say: impl Fn(&str) + Send + 's
 ///
 /// # Errors
 /// The error of the last attempt.
-fn confirm(stop: &mut Command) -> Result<(), String> {
-    let until = Instant::now() + CONFIRMED_WITHIN;
+fn run_until_stopped(stop: &mut Command) -> Result<(), String> {
+    let deadline = Instant::now() + STOP_TIMEOUT;
     loop {
         let why = match stop.stdin(Stdio::null()).output() {
             Ok(output) if output.status.success() => return Ok(()),
             Ok(output) => String::from_utf8_lossy(&output.stderr).trim().to_owned(),
             Err(error) => error.to_string(),
         };
-        if Instant::now() >= until {
+        if Instant::now() >= deadline {
             return Err(why);
         }
-        thread::sleep(AGAIN_AFTER);
+        thread::sleep(RETRY_PAUSE);
     }
 }
 
-fn unstopped(why: &str) -> String {
+fn stop_failure(why: &str) -> String {
     format!("the robot may still move, use the pendant or the emergency stop: {why}")
 }
 
@@ -112,7 +114,7 @@ pub struct Guardian {
 impl Guardian {
     /// Starts a guardian. `stops`: it stops the robot itself, because no session or adapter does so.
     pub fn start(robot: &Robot, words: &[&str], stops: bool) -> Result<Self, Failure> {
-        let spawned = spawn(robot, words, if stops { STOPS } else { ENDS });
+        let spawned = spawn(robot, words, if stops { STOP_ARGUMENT } else { KILL_ARGUMENT });
         let (pipe, child) = spawned.context("the guardian of the motion could not be started; nothing was sent")?;
         Ok(Self { pipe, child: Some(child) })
     }
@@ -125,14 +127,14 @@ impl Guardian {
 
     /// Runs the work with heartbeats.
     pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
-        beating(work, || write(&self.pipe, ALIVE)).await
+        with_heartbeats(work, || write(&self.pipe, HEARTBEAT)).await
     }
 }
 
 /// Runs the work with heartbeats.
-async fn beating<T>(work: impl Future<Output = T>, beat: impl Fn()) -> T {
-    let beats = async {
-        let mut beats = interval(BEAT);
+async fn with_heartbeats<T>(work: impl Future<Output = T>, beat: impl Fn()) -> T {
+    let heartbeats = async {
+        let mut beats = interval(HEARTBEAT_INTERVAL);
         beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
             beats.tick().await;
@@ -141,7 +143,7 @@ async fn beating<T>(work: impl Future<Output = T>, beat: impl Fn()) -> T {
     };
     tokio::select! {
         done = work => done,
-        () = beats => unreachable!("the heartbeats never end"),
+        () = heartbeats => unreachable!("the heartbeats never end"),
     }
 }
 
@@ -160,14 +162,14 @@ impl Drop for Guardian {
 /// Guards the motions of session clients. It stops the robot if the session process ends while a client in another process
 /// moves it.
 #[derive(Debug)]
-pub struct HolderGuardian {
+pub struct SessionGuardian {
     robot: Robot,
     words: &'static [&'static str],
     /// `None` before the first motion.
     started: RefCell<Option<(Pipe, Child)>>,
 }
 
-impl HolderGuardian {
+impl SessionGuardian {
     /// Creates the guardian of a session.
     pub fn new(robot: &Robot, words: &'static [&'static str]) -> Self {
         Self { robot: robot.clone(), words, started: RefCell::default() }
@@ -177,28 +179,28 @@ impl HolderGuardian {
     ///
     /// # Errors
     /// Text for the user, if the guardian cannot be started.
-    pub fn moves(&self, is_moving: bool) -> Result<(), String> {
+    pub fn set_moving(&self, is_moving: bool) -> Result<(), String> {
         let mut started = self.started.borrow_mut();
         if started.is_none() && is_moving {
-            let spawned = spawn(&self.robot, self.words, STOPS);
+            let spawned = spawn(&self.robot, self.words, STOP_ARGUMENT);
             *started = Some(spawned.map_err(|error| {
                 format!("the robot is not stopped when this process dies: its guardian could not be started: {error}")
             })?);
         }
         if let Some((pipe, _)) = &*started {
-            write(pipe, if is_moving { MOTION } else { REST });
+            write(pipe, if is_moving { MOTION } else { MOTION_END });
         }
         Ok(())
     }
 
     /// Runs the work with heartbeats.
     pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
-        let beat = || {
+        let heartbeat = || {
             if let Some((pipe, _)) = &*self.started.borrow() {
-                write(pipe, ALIVE);
+                write(pipe, HEARTBEAT);
             }
         };
-        beating(work, beat).await
+        with_heartbeats(work, heartbeat).await
     }
 }
 
@@ -213,52 +215,52 @@ fn write(pipe: &Mutex<Option<ChildStdin>>, byte: u8) {
 /// command in the other arguments. An error if the robot may still move.
 pub fn serve(args: &[OsString]) -> Option<Result<(), Kind>> {
     let stops = match args.get(1)?.to_str()? {
-        STOPS => true,
-        ENDS => false,
+        STOP_ARGUMENT => true,
+        KILL_ARGUMENT => false,
         _ => return None,
     };
-    if !outlives_motion() || !stops {
+    if !was_moving_at_end() || !stops {
         return Some(Ok(()));
     }
     let stopped = this_program().map_err(|error| error.to_string());
-    let stopped = stopped.and_then(|program| confirm(Command::new(program).args(&args[2..])));
+    let stopped = stopped.and_then(|program| run_until_stopped(Command::new(program).args(&args[2..])));
     Some(stopped.map_err(|why| {
-        say(&unstopped(&why));
+        print(&stop_failure(&why));
         Kind::OutcomeUnknown
     }))
 }
 
-fn say(text: &str) {
+fn print(text: &str) {
     Screen::new(Format::Table, ColorChoice::Never, false, 0).note(text);
 }
 
 /// Waits for the end of the guarded process. Returns whether a motion was in progress.
-fn outlives_motion() -> bool {
-    let guarded = guarded();
-    let (heard, bytes) = channel();
+fn was_moving_at_end() -> bool {
+    let guarded = guarded_process();
+    let (sender, bytes) = channel();
     thread::spawn(move || {
         let mut byte = [0];
-        while io::stdin().read_exact(&mut byte).is_ok() && heard.send(byte[0]).is_ok() {}
+        while io::stdin().read_exact(&mut byte).is_ok() && sender.send(byte[0]).is_ok() {}
     });
     let mut is_moving = false;
     let mut is_killed = false;
     loop {
         let byte = if is_moving && !is_killed {
-            bytes.recv_timeout(DEAD)
+            bytes.recv_timeout(DEAD_AFTER)
         } else {
             bytes.recv().map_err(|_| RecvTimeoutError::Disconnected)
         };
         match byte {
             Ok(DONE) => return false,
-            Ok(REST) => is_moving = false,
+            Ok(MOTION_END) => is_moving = false,
             Ok(byte) => is_moving |= byte == MOTION,
             Err(RecvTimeoutError::Disconnected) => return is_moving,
             Err(RecvTimeoutError::Timeout) => {
                 is_killed = kill(guarded);
-                say(&format!(
+                print(&format!(
                     "armctl (process {}) did not respond for {} s while the robot moved: it was ended, to stop the robot",
                     guarded.map_or_else(|| "unknown".to_owned(), |guarded| guarded.to_string()),
-                    DEAD.as_secs()
+                    DEAD_AFTER.as_secs()
                 ));
                 if !is_killed {
                     return true;
@@ -269,7 +271,7 @@ fn outlives_motion() -> bool {
 }
 
 #[cfg(unix)]
-fn guarded() -> Option<rustix::process::Pid> {
+fn guarded_process() -> Option<rustix::process::Pid> {
     rustix::process::getppid()
 }
 
@@ -293,8 +295,11 @@ fn guarded() -> Option<u32> {
 /// Kills the guarded process. Its pipe is open, so its id is still valid.
 #[cfg(not(unix))]
 fn kill(guarded: Option<u32>) -> bool {
-    let Some(guarded) = guarded else { return false };
+    let Some(guarded) = guarded_process else { return false };
     let mut kill = Command::new("taskkill");
-    kill.args(["/F", "/PID", &guarded.to_string()]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    kill.args(["/F", "/PID", &guarded_process.to_string()])
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
     kill.status().is_ok_and(|status| status.success())
 }

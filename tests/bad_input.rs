@@ -22,10 +22,10 @@ fn command(home: &Path, words: &str) -> Command {
 
 #[track_caller]
 fn fails(output: &Output, exit: i32, parts: &[&str]) {
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(exit), "{told}");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(exit), "{message}");
     for part in parts {
-        assert!(told.contains(part), "'{part}' is not in:\n{told}");
+        assert!(message.contains(part), "'{part}' is not in:\n{message}");
     }
 }
 
@@ -125,11 +125,11 @@ fn every_end_of_a_move_holds_the_robot_first() {
         }
         let server = Server::start(home.path());
         let words = format!("-t {} yerc move pulse joint --pulses 90000,0,0,0,0,0 --speed 1% --yes --json", server.url);
-        let going = command(home.path(), &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let until = format!("-t {} yerc status --watch 20ms --until .data.running --for 20s", server.url);
-        succeeds(&armctl(home.path(), &until));
-        signal(&going, name);
-        let output = going.wait_with_output().unwrap();
+        let moving = command(home.path(), &words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let deadline = format!("-t {} yerc status --watch 20ms --until .data.running --for 20s", server.url);
+        succeeds(&armctl(home.path(), &deadline));
+        signal(&moving, name);
+        let output = moving.wait_with_output().unwrap();
         fails(&output, 130, &["the robot was stopped: HOLD is on"]);
         assert!(output.stdout.is_empty());
         assert_eq!(server.data(home.path(), "yerc status")["hold_sources"], serde_json::json!(["command"]), "{name}");

@@ -34,7 +34,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-fn ends(output: &Output, code: i32, says: &str) {
+fn end_within_limit(output: &Output, code: i32, says: &str) {
     assert_eq!(output.status.code(), Some(code), "{} {}", stdout(output), stderr(output));
     assert!(stderr(output).contains(says), "{says}: {}", stderr(output));
 }
@@ -73,7 +73,7 @@ fn limits_the_memory_for_many_small_messages() {
     // Each packet has 2,700 NOP messages of 24 bytes.
     capture(&folder.path().join("nop.pcap"), 30, &vec![0; 24 * 2700]);
     let output = limited(folder.path(), "-v 500000", &["decode", "yrcx", "nop.pcap"]);
-    ends(&output, 0, "");
+    end_within_limit(&output, 0, "");
     assert!(stdout(&output).contains("81000 messages"), "{}", &stdout(&output)[..300]);
 }
 
@@ -85,7 +85,7 @@ fn reads_a_capture_in_pieces() {
     capture(&folder.path().join("large.pcap"), 8000, &vec![b'x'; 65_000]);
     for family in ["yerc", "yrcx", "toyo"] {
         let output = limited(folder.path(), "-v 250000", &["decode", family, "large.pcap"]);
-        ends(&output, 0, "");
+        end_within_limit(&output, 0, "");
         assert!(stdout(&output).contains("8000 packets, 0 of them"), "{}", stdout(&output));
     }
 }
@@ -122,12 +122,12 @@ fn reads_only_regular_files_of_limited_size() {
             }
             let line = if line.contains(".pcap") { line.to_owned() } else { line.replace("FILE", file) };
             let output = limited(folder.path(), "-v 1500000", &line.split(' ').collect::<Vec<_>>());
-            let told = stderr(&output);
-            assert!(told.contains(why) || told.contains("can hold"), "{line}: {told}");
-            assert!([1, 2].contains(&output.status.code().unwrap_or_default()), "{line}: {code} {told}");
+            let message = stderr(&output);
+            assert!(message.contains(why) || message.contains("can hold"), "{line}: {message}");
+            assert!([1, 2].contains(&output.status.code().unwrap_or_default()), "{line}: {code} {message}");
         }
     }
-    ends(&run(folder.path(), &["--sim", "diff", "saved"]), 1, nothing);
+    end_within_limit(&run(folder.path(), &["--sim", "diff", "saved"]), 1, nothing);
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn limits_the_length_of_a_script_line() {
     let mut command = Command::new("sh");
     let script = "ulimit -v 500000; exec \"$0\" repl </dev/zero";
     let output = command.args(["-c", script, env!("CARGO_BIN_EXE_armctl")]).current_dir(folder.path()).output();
-    ends(&output.expect("a shell"), 2, "line 1 of stdin is longer than");
+    end_within_limit(&output.expect("a shell"), 2, "line 1 of stdin is longer than");
 }
 
 #[test]
@@ -147,9 +147,9 @@ fn limits_time_and_memory_of_filters() {
         |filter: &str| limited(folder.path(), "-v 300000", &["--sim", "yerc", "status", &format!("--jq={filter}")]);
     let deep = "(".repeat(20_000) + "1" + &")".repeat(20_000);
     for filter in ["def f: 1 + f; f", "def f: [f]; f", "[repeat(1)]", "reduce range(1000000) as $i (0; [.])", &deep] {
-        ends(&status(filter), 5, "it needs too much memory, or its recursion is too deep");
+        end_within_limit(&status(filter), 5, "it needs too much memory, or its recursion is too deep");
     }
-    ends(&status("reduce range(1000) as $i (0; [.])"), 5, "nested levels");
+    end_within_limit(&status("reduce range(1000) as $i (0; [.])"), 5, "nested levels");
     for (filter, expected) in [
         ("nan, [nan]", "null\n[null]\n"),
         ("infinite, -infinite", "1.7976931348623157e+308\n-1.7976931348623157e+308\n"),
@@ -157,13 +157,13 @@ fn limits_time_and_memory_of_filters() {
         (".ok", "true\n"),
     ] {
         let output = status(filter);
-        ends(&output, 0, "");
+        end_within_limit(&output, 0, "");
         assert_eq!(stdout(&output), expected, "{filter}");
     }
-    ends(&status(".[0]"), 5, "Cannot index object with number");
+    end_within_limit(&status(".[0]"), 5, "Cannot index object with number");
     // As with jq, outputs before an error are printed.
     let output = status("1, error(\"late\")");
-    ends(&output, 5, "late");
+    end_within_limit(&output, 5, "late");
     assert_eq!(stdout(&output), "1\n");
 }
 
@@ -175,16 +175,20 @@ fn filter_failure_after_a_change_is_no_usage_error() {
         &["--config", "robots.toml", "robots", "add", "cell", "udp://127.0.0.1", "--jq", ".[0]"],
     ] {
         let output = run(folder.path(), words);
-        ends(&output, 1, "succeeded, but the report could not be written");
+        end_within_limit(&output, 1, "succeeded, but the report could not be written");
     }
-    ends(&run(folder.path(), &["--config", "robots.toml", "robots", "show", "cell"]), 0, "");
+    end_within_limit(&run(folder.path(), &["--config", "robots.toml", "robots", "show", "cell"]), 0, "");
     // A filter that does not compile is reported before anything is sent.
-    ends(&run(folder.path(), &["--sim", "yerc", "var", "set", "B0=1", "--jq", ".["]), 2, "cannot be parsed");
+    end_within_limit(
+        &run(folder.path(), &["--sim", "yerc", "var", "set", "B0=1", "--jq", ".["]),
+        2,
+        "cannot be parsed",
+    );
 }
 
 /// Ends at one signal, sent while the process computes.
 #[cfg(target_os = "linux")]
-fn ends_at_one(folder: &Path, words: &[&str], name: &str) {
+fn ends_on_first_signal(folder: &Path, words: &[&str], name: &str) {
     let child = armctl(folder, words).spawn().expect("it works here");
     // The filter runs in a separate process, once it has started.
     let pid = child.id();
@@ -224,7 +228,7 @@ fn endless_filter_does_not_delay_signals() {
             &["--sim", "yerc", "status", "--until", "def f: f; f"],
             &["--sim", "toyo", "home", "--yes", "--jq", "def f: f; f"],
         ] {
-            ends_at_one(folder.path(), words, name);
+            ends_on_first_signal(folder.path(), words, name);
         }
     }
 }
@@ -269,7 +273,11 @@ fn inventory_keeps_its_permissions_and_link() {
     std::fs::write(&file, "# ours\n").unwrap();
     std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o664)).unwrap();
     std::os::unix::fs::symlink("real.toml", folder.path().join("robots.toml")).unwrap();
-    ends(&run(folder.path(), &["--config", "robots.toml", "robots", "add", "cell", "udp://127.0.0.1"]), 0, "");
+    end_within_limit(
+        &run(folder.path(), &["--config", "robots.toml", "robots", "add", "cell", "udp://127.0.0.1"]),
+        0,
+        "",
+    );
     assert!(folder.path().join("robots.toml").is_symlink());
     assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o664);
     assert!(std::fs::read_to_string(&file).unwrap().contains("# ours\n"));
@@ -281,7 +289,7 @@ fn reports_a_missing_descriptor_limit() {
     // With fewer, the system cannot load the program.
     for most in 5..12 {
         let output = limited(folder.path(), &format!("-n {most}"), &["--sim", "yerc", "status"]);
-        ends(&output, 1, "ulimit -n");
+        end_within_limit(&output, 1, "ulimit -n");
         assert!(!stderr(&output).contains("panicked"), "{}", stderr(&output));
     }
     for most in [16, 24, 32, 64] {
@@ -297,9 +305,9 @@ fn removes_drafts_of_killed_runs() {
     let saved = folder.path().join("saved");
     std::fs::create_dir(&saved).unwrap();
     std::fs::write(saved.join(".armctl-dead1.part"), "half").unwrap();
-    ends(&run(folder.path(), &["--sim", "toyo", "backup", "saved"]), 0, "");
+    end_within_limit(&run(folder.path(), &["--sim", "toyo", "backup", "saved"]), 0, "");
     assert!(!saved.join(".armctl-dead1.part").exists());
     std::fs::write(folder.path().join(".armctl-dead2.part"), "half").unwrap();
-    ends(&run(folder.path(), &["--sim", "yerc", "file", "get", "TESTJOB.JBI"]), 0, "");
+    end_within_limit(&run(folder.path(), &["--sim", "yerc", "file", "get", "TESTJOB.JBI"]), 0, "");
     assert!(!folder.path().join(".armctl-dead2.part").exists());
 }

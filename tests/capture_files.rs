@@ -21,12 +21,12 @@ fn file(name: &str) -> Vec<u8> {
 /// Packet and bytes of all datagrams.
 fn datagrams(file: &[u8]) -> Vec<(u64, Vec<u8>)> {
     let mut all = Vec::new();
-    let heard = read(file, |message| {
+    let messages = read(file, |message| {
         if let Carrier::Datagram { .. } = message.carrier {
             all.push((message.number, message.bytes.to_vec()));
         }
     });
-    assert_eq!(heard.expect("it is a capture").damage, None);
+    assert_eq!(messages.expect("it is a capture").damage, None);
     all
 }
 
@@ -54,27 +54,27 @@ fn tshark_finds_the_same_datagrams() {
         };
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let text = String::from_utf8_lossy(&output.stdout);
-        let theirs: Vec<(u64, String)> = text
+        let tshark_datagrams: Vec<(u64, String)> = text
             .lines()
             .filter_map(|line| line.split_once('\t').filter(|(_, payload)| !payload.is_empty()))
             .map(|(number, payload)| (number.parse().expect("a number"), payload.to_owned()))
             .collect();
         let hex = |bytes: Vec<u8>| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
-        let ours: Vec<(u64, String)> =
+        let own_datagrams: Vec<(u64, String)> =
             datagrams(&file(name)).into_iter().map(|(number, bytes)| (number, hex(bytes))).collect();
-        assert_eq!(ours, theirs, "{name}");
+        assert_eq!(own_datagrams, tshark_datagrams, "{name}");
     }
 }
 
 #[test]
 fn truncated_file_yields_the_messages_before_the_cut() {
     for name in FILES {
-        let whole = file(name);
-        let all = datagrams(&whole);
+        let complete = file(name);
+        let all = datagrams(&complete);
         let mut problems = BTreeSet::new();
-        for end in 0..whole.len() {
+        for end in 0..complete.len() {
             let mut part = Vec::new();
-            let heard = read(&whole[..end], |message| {
+            let heard = read(&complete[..end], |message| {
                 if let Carrier::Datagram { .. } = message.carrier {
                     part.push((message.number, message.bytes.to_vec()));
                 }

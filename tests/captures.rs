@@ -123,22 +123,22 @@ fn replay(request: &Request, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
     let instance = u8::try_from(request.instance).unwrap_or(u8::MAX);
     match (request.command, instance) {
         (0x70, slot) => {
-            let alarm = decoded(ReadAlarm::new(slot, false).unwrap(), sent, id, answer);
+            let alarm = decode_data(ReadAlarm::new(slot, false).unwrap(), sent, id, answer);
             assert!(alarm.is_none());
         }
         (0x71, number) => {
             let query = ReadAlarmHistory::new(AlarmClass::Major, number, false).unwrap();
-            let alarm = decoded(query, sent, id, answer);
+            let alarm = decode_data(query, sent, id, answer);
             assert!(!alarm.is_none() && alarm.kind.meaning().is_some());
             assert_eq!(alarm.emit(), answer.data);
         }
         (0x72, 1) => {
-            let status = decoded(ReadStatus, sent, id, answer);
+            let status = decode_data(ReadStatus, sent, id, answer);
             assert!(status.cycle().is_some());
             assert_eq!(status.emit(), answer.data);
         }
         (0x73, 1) => {
-            let job = decoded(ReadJob::new(Yrc1000, 0).unwrap(), sent, id, answer);
+            let job = decode_data(ReadJob::new(Yrc1000, 0).unwrap(), sent, id, answer);
             assert!(!job.name.is_empty());
             assert_eq!(job.emit(), answer.data);
         }
@@ -148,27 +148,27 @@ fn replay(request: &Request, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
         }
         (0x74, 1) => {
             let query = ReadAxes::new(Yrc1000, Group::R1, Coordinates::Pulse).unwrap();
-            let names = decoded(query, sent, id, answer);
+            let names = decode_data(query, sent, id, answer);
             assert_eq!(names.emit(), answer.data);
         }
         (0x75, 1) => {
             let query = ReadPosition::new(Yrc1000, Group::R1, Coordinates::Pulse).unwrap();
-            let position = decoded(query, sent, id, answer);
+            let position = decode_data(query, sent, id, answer);
             assert_eq!((position.kind, position.axes.as_slice().len()), (PositionKind::Pulse, 6));
             assert_eq!(position.emit_fitted(), answer.data);
         }
         (0x77, 1) => {
-            let torque = decoded(ReadTorque::new(Yrc1000, Group::R1).unwrap(), sent, id, answer);
+            let torque = decode_data(ReadTorque::new(Yrc1000, Group::R1).unwrap(), sent, id, answer);
             assert_eq!((torque.as_slice().len(), torque.emit().as_slice()), (6, answer.data));
         }
         (0x88, _) => replay_time(request.instance, sent, id, answer),
         (0x89, 11) => {
             let query = ReadSystemInfo::new(Yrc1000, SystemPart::Group(Group::R1)).unwrap();
-            assert_eq!(decoded(query, sent, id, answer).emit(), answer.data);
+            assert_eq!(decode_data(query, sent, id, answer).emit(), answer.data);
         }
         (0x89, instance) => {
             let query = ReadSystemInfo::new(Yrc1000, SystemPart::Application(instance - 100)).unwrap();
-            assert_eq!(decoded(query, sent, id, answer).emit(), answer.data);
+            assert_eq!(decode_data(query, sent, id, answer).emit(), answer.data);
         }
         other => panic!("no replay for {other:x?}"),
     }
@@ -182,12 +182,12 @@ fn replay_time(instance: u16, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
         210 => TimeCounter::Motion(None),
         _ => TimeCounter::Application(1),
     };
-    let time = decoded(ReadManagementTime::new(Yrc1000, counter).unwrap(), sent, id, answer);
+    let time = decode_data(ReadManagementTime::new(Yrc1000, counter).unwrap(), sent, id, answer);
     assert!(time.seconds().is_some());
     assert_eq!(time.emit(), answer.data);
 }
 
-fn decoded<Q: Query>(query: Q, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) -> Q::Answer {
+fn decode_data<Q: Query>(query: Q, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) -> Q::Answer {
     assert_eq!(query.request().frame(id), sent);
     assert!(answer.status.is_ok());
     query.decode(answer.data).unwrap()

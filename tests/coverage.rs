@@ -155,16 +155,16 @@ fn head(frame: &[u8]) -> (u8, Head) {
 }
 
 fn check(target: &str, lines: &[(&str, &[Head])]) -> BTreeSet<(u16, u8)> {
-    let mut reached = BTreeSet::new();
+    let mut reached_services = BTreeSet::new();
     for (line, expected) in lines {
         let sent: Vec<(u8, Head)> = frames(target, line).iter().map(|frame| head(frame)).collect();
         for expected in *expected {
             let division = if expected.0 == 0 { 2 } else { 1 };
             assert!(sent.contains(&(division, *expected)), "{line}: {expected:x?} is not in {sent:x?}");
-            reached.insert((expected.0, expected.3));
+            reached_services.insert((expected.0, expected.3));
         }
     }
-    reached
+    reached_services
 }
 
 #[test]

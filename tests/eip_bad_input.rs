@@ -19,7 +19,7 @@ fn armctl(target: &str, line: &str) -> Command {
 }
 
 /// Exit code, kind, code, message and hint of a failure, which must be the only output.
-fn told(target: &str, line: &str) -> (i32, String, String, String, String) {
+fn error_of(target: &str, line: &str) -> (i32, String, String, String, String) {
     let Output { status, stdout, stderr } = armctl(target, line).output().unwrap();
     let stderr = String::from_utf8(stderr).unwrap();
     assert!(stdout.is_empty() && stderr.lines().count() == 1, "{line}: {stderr}");
@@ -32,8 +32,8 @@ fn told(target: &str, line: &str) -> (i32, String, String, String, String) {
 
 /// Asserts the failure without its kind.
 #[track_caller]
-fn tells(target: &str, line: &str, exit: i32, code: &str, message: &str, hint: &str) {
-    let (found_exit, _, found_code, found_message, found_hint) = told(target, line);
+fn assert_error(target: &str, line: &str, exit: i32, code: &str, message: &str, hint: &str) {
+    let (found_exit, _, found_code, found_message, found_hint) = error_of(target, line);
     let found = (found_exit, &*found_code, &*found_message, &*found_hint);
     assert_eq!(found, (exit, code, message, hint), "{line} on {target}");
 }
@@ -54,7 +54,7 @@ impl Board {
         Self { process, target: target.trim_end().to_owned() }
     }
 
-    fn with(&self, query: &str) -> String {
+    fn start_with(&self, query: &str) -> String {
         format!("{}?{query}", self.target)
     }
 }
@@ -90,7 +90,7 @@ fn reports_wrong_instance_numbers() {
         ("out=151", "0x0117", "ForwardOpen was refused: invalid connection point (0x01/0x0117)", point),
         ("in=150&out=100", "0x0117", "ForwardOpen was refused: invalid connection point (0x01/0x0117)", point),
     ] {
-        tells(&board.with(query), "yrcx info servo", 3, code, message, hint);
+        assert_error(&board.start_with(query), "yrcx info servo", 3, code, message, hint);
     }
     for (query, code, part) in [
         ("config=9", "0x0118", "invalid configuration"),
@@ -101,7 +101,7 @@ fn reports_wrong_instance_numbers() {
         ("key=636:43:5:9.1", "0x0116", "revision"),
         ("role=listen_only&out=237", "0x0119", "no controlling connection"),
     ] {
-        let (exit, kind, found, message, hint) = told(&board.with(query), "yrcx info servo");
+        let (exit, kind, found, message, hint) = error_of(&board.start_with(query), "yrcx info servo");
         assert_eq!((exit, &*kind, &*found), (3, "refused", code), "{query}: {message}");
         assert!(message.contains(part) && !hint.is_empty(), "{query}: {message}; {hint}");
     }
@@ -112,12 +112,19 @@ fn reports_wrong_instance_numbers() {
 #[test]
 fn monitor_connections_report_the_same_errors() {
     let board = Board::start(&[]);
-    let (exit, _, _, message, hint) = told(&board.with("in=101"), "yrcx io get");
+    let (exit, _, _, message, hint) = error_of(&board.start_with("in=101"), "yrcx io get");
     assert_eq!(exit, 3);
     assert!(message.contains("to a read-only client") && hint.contains("role=input_only"), "{message}; {hint}");
     let hint = "check in and in_size of the URL: `yrcx eip probe` finds both";
-    tells(&board.with("in=1"), "yrcx io get", 5, "", "the input assembly has 0 bytes, not 48", hint);
-    tells(&board.with("in_size=50"), "yrcx status", 5, "", "the input assembly has 48 bytes, not 50", hint);
+    assert_error(&board.start_with("in=1"), "yrcx io get", 5, "", "the input assembly has 0 bytes, not 48", hint);
+    assert_error(
+        &board.start_with("in_size=50"),
+        "yrcx status",
+        5,
+        "",
+        "the input assembly has 48 bytes, not 50",
+        hint,
+    );
 }
 
 #[test]
@@ -125,7 +132,7 @@ fn reports_an_existing_owner() {
     let board = Board::start(&[]);
     let mut owner = armctl(&board.target, "yrcx info servo --watch 1h").spawn().unwrap();
     BufReader::new(owner.stdout.take().unwrap()).lines().next().unwrap().unwrap();
-    tells(
+    assert_error(
         &board.target,
         "yrcx info servo",
         3,
@@ -134,7 +141,8 @@ fn reports_an_existing_owner() {
         "`yrcx io get` and `yrcx status` can read its signals at the same time. To command the controller, stop the owner's \
          connection first: remove the controller from the PLC's scan list, or close the session",
     );
-    let (exit, _, code, message, _) = told(&board.target, &format!("yrcx eip set 4 150 3 {} --yes", "00".repeat(48)));
+    let (exit, _, code, message, _) =
+        error_of(&board.target, &format!("yrcx eip set 4 150 3 {} --yes", "00".repeat(48)));
     assert_eq!((exit, &*code), (3, "0x0c"), "{message}");
     let found = armctl(&board.target, "robots check").output().unwrap();
     let found: Value = serde_json::from_slice(&found.stdout).unwrap();
@@ -169,7 +177,7 @@ fn finds_the_owner_from_a_single_report() {
         assert_eq!(owner(&board.target), ("ok".into(), false.into(), false.into()), "{fault}");
         let mut holder = armctl(&board.target, "yrcx info servo --watch 1h").spawn().unwrap();
         BufReader::new(holder.stdout.take().unwrap()).lines().next().unwrap().unwrap();
-        let (exit, _, code, message, _) = told(&board.target, "yrcx info servo");
+        let (exit, _, code, message, _) = error_of(&board.target, "yrcx info servo");
         assert_eq!((exit, &*code), (3, "0x0106"), "{fault}: {message}");
         let layer = if is_said { "warning" } else { "ok" };
         assert_eq!(owner(&board.target), (layer.into(), is_said.into(), true.into()), "{fault}");
@@ -235,32 +243,32 @@ fn only_try_requests_an_owner_connection() {
 #[test]
 fn serializes_concurrent_connections() {
     let board = Board::start(&[]);
-    let mut looks = Vec::new();
+    let mut connections = Vec::new();
     for _ in 0..30 {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
         command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        looks.push(command.args(["-t", &board.target, "--timeout", "20s", "yrcx", "status"]).spawn().unwrap());
+        connections.push(command.args(["-t", &board.target, "--timeout", "20s", "yrcx", "status"]).spawn().unwrap());
     }
-    for look in looks {
+    for look in connections {
         let output = look.wait_with_output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
 }
 
-const NOBODY: &str = "check the address; check that the controller is on and its EtherNet/IP board enabled";
+const NO_ADDRESS: &str = "check the address; check that the controller is on and its EtherNet/IP board enabled";
 
 #[test]
 fn reports_faults_of_the_board() {
     const LINK: &str = "check the connection: `-v` counts received packets";
     for (fault, line, message, hint) in [
-        ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NOBODY),
-        ("mute", "yrcx io get", "no answer to RegisterSession within 400 ms", NOBODY),
-        ("reset", "yrcx info servo", "the TCP connection ended before the answer to ForwardOpen", NOBODY),
+        ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NO_ADDRESS),
+        ("mute", "yrcx io get", "no answer to RegisterSession within 400 ms", NO_ADDRESS),
+        ("reset", "yrcx info servo", "the TCP connection ended before the answer to ForwardOpen", NO_ADDRESS),
         (
             "reset",
             "yrcx io get",
             "the TCP connection ended before the answer to Get_Attribute_Single of the input assembly",
-            NOBODY,
+            NO_ADDRESS,
         ),
         (
             "frozen",
@@ -272,10 +280,10 @@ fn reports_faults_of_the_board() {
         ("wrong-id", "yrcx info servo", "the controller sends no data", LINK),
         ("wrong-size", "yrcx info servo", "the controller sends no data", LINK),
     ] {
-        tells(&Board::start(&["--fault", fault]).target, line, 4, "", message, hint);
+        assert_error(&Board::start(&["--fault", fault]).target, line, 4, "", message, hint);
     }
     for line in ["yrcx info servo", "yrcx io get", "yrcx eip get 4 100 3"] {
-        let (exit, _, _, message, hint) = told(&Board::start(&["--fault", "garbage"]).target, line);
+        let (exit, _, _, message, hint) = error_of(&Board::start(&["--fault", "garbage"]).target, line);
         assert!(exit == 5 && message.contains("cannot decode"), "{line}: {exit} {message}");
         assert_eq!(hint, "check that this is the address of an EtherNet/IP device");
     }
@@ -291,16 +299,16 @@ fn reports_faults_of_the_board() {
 #[test]
 fn never_repeats_a_change_whose_answer_is_lost() {
     let board = Board::start(&["--fault", "frozen"]);
-    let (exit, kind, _, message, hint) = told(&board.target, "yrcx motor off --yes");
+    let (exit, kind, _, message, hint) = error_of(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(hint, "`yrcx status` shows whether servos and motor power are on");
     // The old value is read first; without an answer nothing is written.
     let board = Board::start(&["--fault", "reset"]);
-    let (exit, kind, _, message, _) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
+    let (exit, kind, _, message, _) = error_of(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (4, "no_answer"), "{message}");
     assert!(message.ends_with("nothing was written"), "{message}");
     let board = Board::start(&["--fault", "reset-set"]);
-    let (exit, kind, _, message, hint) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
+    let (exit, kind, _, message, hint) = error_of(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(
         message,
@@ -310,7 +318,7 @@ fn never_repeats_a_change_whose_answer_is_lost() {
 }
 
 /// A TCP server that runs `serve` for each connection; it ends with the process.
-fn stranger(serve: fn(TcpStream)) -> String {
+fn other_server(serve: fn(TcpStream)) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("eip://{}", listener.local_addr().unwrap());
     thread::spawn(move || {
@@ -323,13 +331,13 @@ fn stranger(serve: fn(TcpStream)) -> String {
 
 #[test]
 fn reports_a_target_that_is_not_a_board() {
-    let http = stranger(|mut stream| {
+    let http = other_server(|mut stream| {
         // The client may have disconnected.
         let _ = stream.write_all(b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n");
         let _ = stream.read(&mut [0; 64]);
     });
-    let closes = stranger(drop);
-    let silent = stranger(std::mem::forget);
+    let closes = other_server(drop);
+    let silent = other_server(std::mem::forget);
     for line in ["yrcx info servo", "yrcx io get", "yrcx eip identity", "status", "yrcx eip set 0xF5 1 3 00"] {
         for target in [&http, &closes, &silent] {
             let (exit, kind, _, message, hint) = match line {
@@ -341,14 +349,14 @@ fn reports_a_target_that_is_not_a_board() {
                     assert_eq!(envelope["data"]["reachable"], false);
                     (output.status.code().unwrap(), text("kind"), String::new(), text("message"), text("hint"))
                 }
-                _ => told(target, line),
+                _ => error_of(target, line),
             };
-            assert_eq!((exit, &*kind, &*hint), (4, "no_answer", NOBODY), "{line} on {target}: {message}");
+            assert_eq!((exit, &*kind, &*hint), (4, "no_answer", NO_ADDRESS), "{line} on {target}: {message}");
         }
     }
-    tells("eip://127.0.0.1:1", "yrcx io get", 4, "", "no TCP connection: connection refused", NOBODY);
+    assert_error("eip://127.0.0.1:1", "yrcx io get", 4, "", "no TCP connection: connection refused", NO_ADDRESS);
     let hint = "check the name, or use the address of the controller";
-    tells("eip://board.invalid", "yrcx io get", 4, "", "cannot find host 'board.invalid'", hint);
+    assert_error("eip://board.invalid", "yrcx io get", 4, "", "cannot find host 'board.invalid'", hint);
 }
 
 /// An answer to ListIdentity (volume 2, 2-4.2) with a name that would clear a terminal.

@@ -62,9 +62,9 @@ impl Terminal {
         let mut written = Vec::new();
         loop {
             let ended = child.try_wait().expect("it can be waited for");
-            let mut some = [0; 4096];
-            match self.screen.read(&mut some) {
-                Ok(count) => written.extend_from_slice(&some[..count]),
+            let mut some_output = [0; 4096];
+            match self.screen.read(&mut some_output) {
+                Ok(count) => written.extend_from_slice(&some_output[..count]),
                 Err(error) if error.kind() == ErrorKind::TimedOut && ended.is_some() => {
                     return (String::from_utf8(written).expect("what is shown is UTF-8"), ended);
                 }
@@ -223,8 +223,8 @@ fn link_with_a_family_name_is_its_subcommand() {
         let link = folder.path().join(family);
         std::os::unix::fs::symlink(BINARY, &link).unwrap();
         let run = |arguments: &[&str]| Command::new(&link).args(arguments).env("HOME", folder.path()).output().unwrap();
-        let whole = armctl(&format!("--sim {family} status"), folder.path()).output().unwrap();
-        assert_eq!(stdout(&run(&["--sim", "status"])), stdout(&whole), "{family}");
+        let full_output = armctl(&format!("--sim {family} status"), folder.path()).output().unwrap();
+        assert_eq!(stdout(&run(&["--sim", "status"])), stdout(&full_output), "{family}");
         assert!(stdout(&run(&["-h"])).contains(&format!("Usage: armctl {family} ")), "{family}");
         let version = format!("armctl {}\n", env!("CARGO_PKG_VERSION"));
         assert_eq!(stdout(&run(&["-V"])), version);

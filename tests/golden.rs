@@ -289,7 +289,7 @@ fn answer(read: impl Fn(&[u8]) -> Vec<u8> + 'static) -> Expected {
 }
 
 /// Successful write: no data.
-fn done(query: impl Query<Answer = ()> + 'static) -> Expected {
+fn acknowledgement(query: impl Query<Answer = ()> + 'static) -> Expected {
     answer(move |data| {
         query.decode(data).unwrap();
         Vec::new()
@@ -322,8 +322,8 @@ fn controller_frames() -> Vec<(&'static str, Expected)> {
     let (save, names) = (job_text(74, 958), list_text());
     let mut frames = vec![
         ("M02", answer(read_status)),
-        ("M04", done(WriteRegister::new(Dx200, 10, 0x1234).unwrap())),
-        ("M04t", done(WriteRegister::new(Dx200, 10, 0x1234).unwrap())),
+        ("M04", acknowledgement(WriteRegister::new(Dx200, 10, 0x1234).unwrap())),
+        ("M04t", acknowledgement(WriteRegister::new(Dx200, 10, 0x1234).unwrap())),
         ("M06", file_data(1, save[..479].to_vec())),
         ("M08", file_data(2, save[479..].to_vec())),
         ("M10", file_data(LAST_BLOCK + 3, JOB_END.to_vec())),
@@ -347,9 +347,9 @@ fn controller_frames() -> Vec<(&'static str, Expected)> {
             },
         ),
         ("M27", without_data(LAST_BLOCK, Status::OK)),
-        ("A13", done(WriteIo::new(Dx200, 2956, 0xA5).unwrap())),
-        ("A23", done(ResetAlarm)),
-        ("A29", done(WriteIoGroups::new(Fs100, 2501, vec![1, 2]).unwrap())),
+        ("A13", acknowledgement(WriteIo::new(Dx200, 2956, 0xA5).unwrap())),
+        ("A23", acknowledgement(ResetAlarm)),
+        ("A29", acknowledgement(WriteIoGroups::new(Fs100, 2501, vec![1, 2]).unwrap())),
         ("A35", refused(0x08, 0, 0)),
         ("A37", refused(0x28, 0, 0)),
         ("A39", refused(0x1F, 2, 0x1010)),

@@ -41,7 +41,7 @@ fn transcripts() -> Transcripts {
 }
 
 /// Asserts that a request and its answer are parsed completely and formatted unchanged.
-fn holds(about: &str, tx: &str, rx: &str) {
+fn check_pair(about: &str, tx: &str, rx: &str) {
     let request = Request::parse(tx).unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
     request.check().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
     assert_eq!(request.text(), tx, "{about}");
@@ -68,8 +68,8 @@ fn every_printed_pair_is_parsed_and_made_again() {
     for pair in &pairs {
         let about = format!("TO {} {}", pair.section, pair.reference);
         match &pair.corrected {
-            Some(corrected) => holds(&about, &corrected.tx, &corrected.rx),
-            None => holds(&about, &pair.tx, &pair.rx),
+            Some(corrected) => check_pair(&about, &corrected.tx, &corrected.rx),
+            None => check_pair(&about, &pair.tx, &pair.rx),
         }
         for rx in &pair.rx_alternatives {
             let tx = pair.corrected.as_ref().map_or(&pair.tx, |corrected| &corrected.tx);
@@ -83,9 +83,9 @@ fn every_printed_pair_is_parsed_and_made_again() {
 fn misprints_are_never_sent() {
     for pair in transcripts().pairs {
         let Some(corrected) = &pair.corrected else { continue };
-        let made = Request::parse(&corrected.tx).unwrap().text();
+        let produced = Request::parse(&corrected.tx).unwrap().text();
         if pair.tx != corrected.tx {
-            assert_ne!(made, pair.tx, "TO {} {}", pair.section, pair.reference);
+            assert_ne!(produced, pair.tx, "TO {} {}", pair.section, pair.reference);
         }
     }
 }
@@ -96,7 +96,7 @@ fn both_sample_sessions_are_parsed_and_made_again() {
     assert_eq!(sessions.iter().map(|session| session.steps.len()).collect::<Vec<_>>(), [13, 13]);
     for session in &sessions {
         for step in &session.steps {
-            holds(&format!("TO {}", session.id), &step.tx, &step.rx);
+            check_pair(&format!("TO {}", session.id), &step.tx, &step.rx);
         }
     }
 }

@@ -43,7 +43,7 @@ impl Drop for Service {
 }
 
 /// A folder with an inventory of these robots: name, family, target.
-fn plant(robots: &[(&str, &str, &str)]) -> TempDir {
+fn create_inventory(robots: &[(&str, &str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), robots);
     folder
@@ -78,9 +78,9 @@ fn serve(mut command: Command) -> (Service, SocketAddr) {
 fn get(at: SocketAddr, path: &str, accept: &str) -> (String, String) {
     let mut stream = TcpStream::connect(at).expect("somebody listens");
     write!(stream, "GET {path} HTTP/1.1\r\nHost: {at}\r\nAccept: {accept}\r\nConnection: close\r\n\r\n").expect("sent");
-    let mut said = String::new();
-    stream.read_to_string(&mut said).expect("an answer");
-    let (head, body) = said.split_once("\r\n\r\n").unwrap_or_else(|| panic!("no answer: {said}"));
+    let mut messages = String::new();
+    stream.read_to_string(&mut messages).expect("an answer");
+    let (head, body) = messages.split_once("\r\n\r\n").unwrap_or_else(|| panic!("no answer: {messages}"));
     (head.to_owned(), body.to_owned())
 }
 
@@ -89,22 +89,22 @@ fn page(at: SocketAddr) -> String {
 }
 
 /// Repeats a request until the answer is as expected.
-fn until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
+fn wait_until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
     /// Time limit for a wait.
-    const PATIENCE: Duration = Duration::from_secs(120);
+    const TIMEOUT: Duration = Duration::from_secs(120);
 
     let began = Instant::now();
     loop {
         if let Some(found) = ask() {
             return found;
         }
-        assert!(began.elapsed() < PATIENCE, "it does not come to this: {what}");
+        assert!(began.elapsed() < TIMEOUT, "it does not come to this: {what}");
         thread::sleep(Duration::from_millis(20));
     }
 }
 
 /// Whether a program is installed; prints the reason if a test is skipped.
-fn is_there(program: &str) -> bool {
+fn has_program(program: &str) -> bool {
     let found = Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
     if !found {
         println!("skipped: there is no {program} here");
@@ -122,22 +122,23 @@ fn has_namespaces() -> bool {
     has
 }
 
-fn docs(name: &str) -> PathBuf {
+fn documentation_folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/monitoring").join(name)
 }
 
-fn succeeded(output: &Output) {
+fn assert_success(output: &Output) {
     let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
     assert!(output.status.success(), "{}\n{out}{err}", output.status);
 }
 
 fn promtool(words: &[&str]) {
-    let output = Command::new("promtool").args(words).current_dir(docs("")).output().expect("promtool runs");
-    succeeded(&output);
+    let output =
+        Command::new("promtool").args(words).current_dir(documentation_folder("")).output().expect("promtool runs");
+    assert_success(&output);
 }
 
 /// One simulator of each family and one unreachable robot.
-fn mixed() -> (Vec<Simulator>, TempDir) {
+fn mixed_fleet() -> (Vec<Simulator>, TempDir) {
     let simulators: Vec<Simulator> = ["yerc", "yrcx", "toyo"].map(Simulator::start).into();
     let urls: Vec<&str> = simulators.iter().map(|simulator| simulator.url.as_str()).collect();
     let robots = [
@@ -146,13 +147,13 @@ fn mixed() -> (Vec<Simulator>, TempDir) {
         ("loader", "toyo", urls[2]),
         ("gone", "toyo", "tcp://127.0.0.1:1"),
     ];
-    let folder = plant(&robots);
+    let folder = create_inventory(&robots);
     (simulators, folder)
 }
 
 /// Waits until all four robots are known.
-fn known(at: SocketAddr) -> String {
-    until("all robots are known", || {
+fn known_metrics(at: SocketAddr) -> String {
+    wait_until("all robots are known", || {
         let page = page(at);
         (page.matches("\narmctl_robot_up{").count() == 4).then_some(page)
     })
@@ -160,23 +161,23 @@ fn known(at: SocketAddr) -> String {
 
 #[test]
 fn serves_pages_in_the_requested_format() {
-    let (_simulators, folder) = mixed();
+    let (_simulators, folder) = mixed_fleet();
     let (_service, at) = serve(armctl(folder.path()));
-    let text = known(at);
+    let text = known_metrics(at);
     assert!(text.contains("armctl_robot_up{robot=\"cell3\",family=\"yerc\"} 1\n"), "{text}");
     assert!(text.contains("armctl_robot_up{robot=\"gone\",family=\"toyo\"} 0\n"), "{text}");
     // The page of the documentation shows existing metrics.
-    let shown = std::fs::read_to_string(docs("README.md")).expect("the page is there");
+    let shown = std::fs::read_to_string(documentation_folder("README.md")).expect("the page is there");
     let shown = shown.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a page");
     for line in shown.lines() {
-        assert!(text.lines().any(|there| there == line), "{line} is not in\n{text}");
+        assert!(text.lines().any(|value| value == line), "{line} is not in\n{text}");
     }
     let (head, open) = get(at, "/metrics", "application/openmetrics-text;version=1.0.0,text/plain;q=0.5");
     assert!(head.contains("application/openmetrics-text; version=1.0.0; charset=utf-8"), "{head}");
     assert!(open.ends_with("\n# EOF\n") && open.contains("# UNIT armctl_axis_position_meters meters\n"), "{open}");
     assert_eq!(get(at, "/healthz", "*/*").1, "ok\n");
     assert!(get(at, "/", "*/*").0.starts_with("HTTP/1.1 404 "));
-    if is_there("promtool") {
+    if has_program("promtool") {
         let mut check =
             Command::new("promtool").args(["check", "metrics"]).stdin(Stdio::piped()).spawn().expect("runs");
         check.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("read");
@@ -186,13 +187,13 @@ fn serves_pages_in_the_requested_format() {
 
 #[test]
 fn prometheus_accepts_rules_and_configuration() {
-    if !is_there("promtool") {
+    if !has_program("promtool") {
         return;
     }
     promtool(&["check", "config", "prometheus.yml"]);
     promtool(&["test", "rules", "alerts_test.yml"]);
-    let [rules, tests] =
-        ["alerts.yml", "alerts_test.yml"].map(|name| std::fs::read_to_string(docs(name)).expect("it is there"));
+    let [rules, tests] = ["alerts.yml", "alerts_test.yml"]
+        .map(|name| std::fs::read_to_string(documentation_folder(name)).expect("it is there"));
     for alert in rules.lines().filter_map(|line| line.trim().strip_prefix("- alert: ")) {
         assert!(tests.contains(&format!("alertname: {alert}\n")), "{alert} has no test");
     }
@@ -200,16 +201,16 @@ fn prometheus_accepts_rules_and_configuration() {
 
 #[test]
 fn dashboard_queries_existing_metrics() {
-    let text = std::fs::read_to_string(docs("dashboard.json")).expect("it is there");
+    let text = std::fs::read_to_string(documentation_folder("dashboard.json")).expect("it is there");
     let dashboard: Value = serde_json::from_str(&text).expect("JSON");
     let panels = dashboard["panels"].as_array().expect("panels");
     let of = |panel: &Value| panel["targets"].as_array().cloned().unwrap_or_default();
-    let questions: Vec<String> =
+    let queries: Vec<String> =
         panels.iter().flat_map(of).filter_map(|target| target["expr"].as_str().map(str::to_owned)).collect();
-    assert!(questions.len() > 15);
-    let page = std::fs::read_to_string(docs("README.md")).expect("the page is there");
+    assert!(queries.len() > 15);
+    let page = std::fs::read_to_string(documentation_folder("README.md")).expect("the page is there");
     let mut rules = "groups:\n- name: dashboard\n  rules:\n".to_owned();
-    for (number, question) in questions.iter().enumerate() {
+    for (number, question) in queries.iter().enumerate() {
         for name in
             question.split(|c: char| !c.is_ascii_lowercase() && c != '_').filter(|word| word.starts_with("armctl_"))
         {
@@ -219,7 +220,7 @@ fn dashboard_queries_existing_metrics() {
         let question = question.replace("$__rate_interval", "1m").replace(['\n', '\''], " ");
         rules += &format!("  - record: q{number}\n    expr: '{question}'\n");
     }
-    if is_there("promtool") {
+    if has_program("promtool") {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("rules.yml");
         std::fs::write(&file, rules).expect("written");
@@ -229,12 +230,12 @@ fn dashboard_queries_existing_metrics() {
 
 #[test]
 fn prometheus_scrapes_metrics_and_fires_alerts() {
-    if !is_there("prometheus") {
+    if !has_program("prometheus") {
         return;
     }
-    let (simulators, folder) = mixed();
+    let (simulators, folder) = mixed_fleet();
     let (_service, at) = serve(armctl(folder.path()));
-    known(at);
+    known_metrics(at);
     let (_prometheus, prometheus) = prometheus(folder.path(), at);
     let ask = |question: &str| -> Vec<(Value, String)> {
         let Some(answer) = query(prometheus, question) else { return Vec::new() };
@@ -250,32 +251,32 @@ fn prometheus_scrapes_metrics_and_fires_alerts() {
         names.sort();
         names
     };
-    until("three answer", || (names(ask("armctl_robot_up == 1")) == ["cell3", "loader", "press"]).then_some(()));
-    until("it is read", || ask("up{job=\"armctl\"}").iter().any(|(_, value)| value == "1").then_some(()));
+    wait_until("three answer", || (names(ask("armctl_robot_up == 1")) == ["cell3", "loader", "press"]).then_some(()));
+    wait_until("it is read", || ask("up{job=\"armctl\"}").iter().any(|(_, value)| value == "1").then_some(()));
     // X, Y and Z of one robot, four axes of another. A YRCX reports no position if no session has its command
     // connection.
-    until("positions are there", || (ask("armctl_axis_position_meters").len() == 3 + 4).then_some(()));
+    wait_until("positions are there", || (ask("armctl_axis_position_meters").len() == 3 + 4).then_some(()));
     let rate = "histogram_quantile(0.99, sum by (robot, le) (rate(armctl_poll_duration_seconds_bucket[1m])))";
-    until("a histogram is one", || ask(rate).iter().any(|(_, value)| value != "NaN").then_some(()));
+    wait_until("a histogram is one", || ask(rate).iter().any(|(_, value)| value != "NaN").then_some(()));
     // In OpenMetrics, the family name of a counter has no `_total`.
-    until("its type is known", || {
-        let told = get(prometheus, "/api/v1/metadata?metric=armctl_polls", "*/*").1;
-        told.contains("\"counter\"").then_some(())
+    wait_until("its type is known", || {
+        let alert_state = get(prometheus, "/api/v1/metadata?metric=armctl_polls", "*/*").1;
+        alert_state.contains("\"counter\"").then_some(())
     });
     let pending = "ALERTS{alertname=\"RobotDown\"}";
-    until("who is gone is in the list of alerts", || (names(ask(pending)) == ["gone"]).then_some(()));
+    wait_until("who is gone is in the list of alerts", || (names(ask(pending)) == ["gone"]).then_some(()));
     drop(simulators);
-    until("nobody answers", || {
+    wait_until("nobody answers", || {
         (names(ask("armctl_robot_up == 0")) == ["cell3", "gone", "loader", "press"]).then_some(())
     });
-    until("and all are in the list", || (names(ask(pending)).len() == 4).then_some(()));
+    wait_until("and all are in the list", || (names(ask(pending)).len() == 4).then_some(()));
 }
 
 /// Starts a Prometheus that reads metrics at an address five times per second.
 fn prometheus(folder: &Path, at: SocketAddr) -> (Service, SocketAddr) {
-    let config = std::fs::read_to_string(docs("prometheus.yml")).expect("it is there");
+    let config = std::fs::read_to_string(documentation_folder("prometheus.yml")).expect("it is there");
     let config = config.replace("127.0.0.1:9464", &at.to_string()).replace(": 5s", ": 200ms");
-    let config = config.replace("- alerts.yml", &format!("- {}", docs("alerts.yml").display()));
+    let config = config.replace("- alerts.yml", &format!("- {}", documentation_folder("alerts.yml").display()));
     std::fs::write(folder.join("prometheus.yml"), config).expect("written");
     let free = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port");
     let mut command = Command::new("prometheus");
@@ -283,7 +284,7 @@ fn prometheus(folder: &Path, at: SocketAddr) -> (Service, SocketAddr) {
     command.args(["--web.listen-address", &free.to_string(), "--log.level", "error"]);
     command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     let service = Service { process: command.spawn().expect("it starts") };
-    until("Prometheus is ready", || {
+    wait_until("Prometheus is ready", || {
         TcpStream::connect(free).is_ok().then(|| get(free, "/-/ready", "*/*").0).filter(|head| head.contains(" 200 "))
     });
     (service, free)
@@ -293,11 +294,11 @@ fn query(at: SocketAddr, question: &str) -> Option<Value> {
     let escaped: String = question.bytes().map(|byte| format!("%{byte:02x}")).collect();
     let (head, body) = get(at, &format!("/api/v1/query?query={escaped}"), "application/json");
     // A long answer is in chunks, each after a line with its length.
-    let body = if head.to_lowercase().contains("transfer-encoding: chunked") { joined(&body) } else { body };
+    let body = if head.to_lowercase().contains("transfer-encoding: chunked") { join_chunks(&body) } else { body };
     serde_json::from_str(&body).ok()
 }
 
-fn joined(mut pieces: &str) -> String {
+fn join_chunks(mut pieces: &str) -> String {
     let mut body = String::new();
     while let Some((length, rest)) = pieces.split_once("\r\n") {
         let length = usize::from_str_radix(length.trim(), 16).unwrap_or(0);
@@ -313,9 +314,9 @@ fn joined(mut pieces: &str) -> String {
 #[test]
 fn follows_added_and_removed_robots() {
     let simulator = Simulator::start("toyo");
-    let folder = plant(&[("loader", "toyo", &simulator.url)]);
+    let folder = create_inventory(&[("loader", "toyo", &simulator.url)]);
     let (_service, at) = serve(armctl(folder.path()));
-    let has = |what: &'static str| until(what, || page(at).contains(what).then_some(()));
+    let has = |what: &'static str| wait_until(what, || page(at).contains(what).then_some(()));
     has("armctl_robot_up{robot=\"loader\",family=\"toyo\"} 1\n");
     std::fs::write(folder.path().join("robots.toml"), "[[robot]\n").expect("written");
     has("armctl_inventory_last_reload_successful 0\n");
@@ -330,21 +331,21 @@ fn follows_added_and_removed_robots() {
 /// Runs as a service with one reachable robot. Checks the notifications to the manager, additional ones of this
 /// service, and the end at SIGTERM.
 fn is_managed(words: &[&str], besides: &str) {
-    let folder = plant(&[("cell3", "yerc", "sim:"), ("gone", "toyo", "tcp://127.0.0.1:1")]);
+    let folder = create_inventory(&[("cell3", "yerc", "sim:"), ("gone", "toyo", "tcp://127.0.0.1:1")]);
     let path = folder.path().join("notify");
     let manager = UnixDatagram::bind(&path).expect("a socket");
     let mut command = armctl(folder.path());
     command.args(words).args(["--watch", "100ms"]).env("NOTIFY_SOCKET", &path).env("WATCHDOG_USEC", "200000");
     let mut service = Service { process: command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("starts") };
-    let heard = || {
+    let notifications = || {
         let mut text = [0; 200];
         let length = manager.recv(&mut text).expect("it is told");
         String::from_utf8_lossy(&text[..length]).into_owned()
     };
-    assert_eq!(heard(), "READY=1\nSTATUS=2 robots");
-    while heard() != format!("WATCHDOG=1\nSTATUS=2 robots, 1 answers{besides}") {}
+    assert_eq!(notifications(), "READY=1\nSTATUS=2 robots");
+    while notifications() != format!("WATCHDOG=1\nSTATUS=2 robots, 1 answers{besides}") {}
     service.signal("TERM");
-    while heard() != "STOPPING=1" {}
+    while notifications() != "STOPPING=1" {}
     assert_eq!(service.end().code(), Some(0));
 }
 
@@ -357,7 +358,7 @@ fn notifies_the_service_manager_and_ends_on_sigterm() {
 
 #[test]
 fn idle_connections_do_not_block_a_page() {
-    let folder = plant(&[("cell3", "yerc", "sim:")]);
+    let folder = create_inventory(&[("cell3", "yerc", "sim:")]);
     let (_service, at) = serve(armctl(folder.path()));
     let silent: Vec<TcpStream> = (0..64)
         .map(|number| {
@@ -395,7 +396,7 @@ impl Log {
     }
 
     fn has(&self, wanted: &[&str]) -> String {
-        until("a line of the log", || {
+        wait_until("a line of the log", || {
             let text = std::fs::read_to_string(&self.path).expect("it is there");
             text.lines().find(|line| wanted.iter().all(|part| line.contains(part))).map(str::to_owned)
         })
@@ -406,7 +407,7 @@ impl Log {
 fn journal_gets_priorities_and_fields_and_a_file_gets_text() {
     let metrics = ["serve", "metrics", "--listen", "127.0.0.1:0"];
     for words in [&metrics[..], &["publish", "mqtt://127.0.0.1:1"]] {
-        let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
+        let folder = create_inventory(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
         let mut command = armctl(folder.path());
         command.args(words).args(["--watch", "100ms"]);
         let log = Log::start(command, folder.path(), true);
@@ -425,7 +426,7 @@ fn journal_gets_priorities_and_fields_and_a_file_gets_text() {
             ]);
         }
     }
-    let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
+    let folder = create_inventory(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
     let mut command = armctl(folder.path());
     command.args(metrics);
     let line = Log::start(command, folder.path(), false).has(&["gone (tcp://127.0.0.1:1)"]);
@@ -438,7 +439,7 @@ fn journal_entries_have_fields() {
     if !has_namespaces() {
         return;
     }
-    let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
+    let folder = create_inventory(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
     let journal = UnixDatagram::bind(folder.path().join("socket")).expect("a socket");
     let (stderr, _other_end) = UnixStream::pair().expect("a pair");
     let stderr = std::fs::File::from(OwnedFd::from(stderr));
@@ -462,7 +463,7 @@ fn journal_entries_have_fields() {
 
 #[test]
 fn warns_about_a_reachable_port() {
-    let folder = plant(&[("cell3", "yerc", "sim:")]);
+    let folder = create_inventory(&[("cell3", "yerc", "sim:")]);
     let log = folder.path().join("log");
     // In its own empty network.
     if !has_namespaces() {
@@ -473,14 +474,14 @@ fn warns_about_a_reachable_port() {
     command.env_clear().env("HOME", folder.path()).env("ARMCTL_CONFIG", folder.path().join("robots.toml"));
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(std::fs::File::create(&log).expect("a file"));
     let _service = Service { process: command.spawn().expect("it starts") };
-    let said = until("a warning", || std::fs::read_to_string(&log).ok().filter(|text| text.contains('\n')));
+    let said = wait_until("a warning", || std::fs::read_to_string(&log).ok().filter(|text| text.contains('\n')));
     assert!(said.starts_with("warning: everyone on the network can read") && said.contains("no password"), "{said}");
 }
 
 #[test]
 fn reports_a_port_in_use() {
     let taken = TcpListener::bind("127.0.0.1:0").expect("a port");
-    let folder = plant(&[("cell3", "yerc", "sim:")]);
+    let folder = create_inventory(&[("cell3", "yerc", "sim:")]);
     let words =
         ["serve", "metrics", "--listen", &taken.local_addr().expect("an address").to_string()].map(str::to_owned);
     let output = armctl(folder.path()).args(words).output().expect("it runs");
@@ -493,17 +494,17 @@ fn reports_a_port_in_use() {
 fn systemd_accepts_the_units() {
     let folder = tempfile::tempdir().expect("a folder");
     let hardening = ["armctl-metrics.service", "armctl-publish.service"].map(|name| {
-        let text = std::fs::read_to_string(docs(name)).expect("it is there");
+        let text = std::fs::read_to_string(documentation_folder(name)).expect("it is there");
         // Ready, watched, restarted, and with a valid command line.
         for wanted in ["Type=notify", "WatchdogSec=", "Restart=on-failure", "DynamicUser=yes", "NoNewPrivileges=yes"] {
             assert!(text.contains(wanted), "{name}: {wanted}");
         }
-        if is_there("systemd-analyze") {
+        if has_program("systemd-analyze") {
             let unit = folder.path().join(name);
             std::fs::write(&unit, text.replace("/usr/local/bin/armctl", env!("CARGO_BIN_EXE_armctl")))
                 .expect("written");
             let mut verify = Command::new("systemd-analyze");
-            succeeded(&verify.args(["verify", "--man=no"]).arg(&unit).output().expect("it runs"));
+            assert_success(&verify.args(["verify", "--man=no"]).arg(&unit).output().expect("it runs"));
         }
         let own = text.lines().skip_while(|line| *line != "DynamicUser=yes").filter(|line| !line.starts_with('#'));
         own.map(str::to_owned).collect::<Vec<_>>()

@@ -2,7 +2,7 @@
 //!
 //! Each picture is a shell session in its own folder, drawn as a terminal of [`COLUMNS`] shows it. `ARMCTL_BLESS=1
 //! cargo test --test terminal pictures::` draws them again. Output that changes between runs is fixed: the simulators
-//! start with states from files, and [`settled`] replaces all times by one.
+//! start with states from files, and [`without_times`] replaces all times by one.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -32,7 +32,7 @@ const PICTURES: [(&str, &[&str]); 5] = [
 ];
 
 /// The panel of `armctl teach`, which its own test draws.
-const DRAWN_ELSEWHERE: [&str; 1] = ["teach"];
+const OTHER_PICTURES: [&str; 1] = ["teach"];
 
 /// Files in the folder.
 const FILES: [(&str, &str); 5] = [
@@ -89,11 +89,11 @@ fn every_picture_is_used() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let pages = ["README.md", "docs/yerc.md", "docs/yrcx.md", "docs/toyo.md", "docs/safety.md"];
     let pages = pages.map(|page| std::fs::read_to_string(root.join(page)).expect("the page is there"));
-    for name in PICTURES.map(|(name, _)| name).into_iter().chain(DRAWN_ELSEWHERE) {
+    for name in PICTURES.map(|(name, _)| name).into_iter().chain(OTHER_PICTURES) {
         assert!(pages.iter().any(|page| page.contains(&format!("pictures/{name}.svg)"))), "nobody shows {name}.svg");
     }
     let files = std::fs::read_dir(root.join("docs/pictures")).expect("the folder is there").count();
-    assert_eq!(files, PICTURES.len() + DRAWN_ELSEWHERE.len(), "a picture that nobody draws");
+    assert_eq!(files, PICTURES.len() + OTHER_PICTURES.len(), "a picture that nobody draws");
 }
 
 /// Content of the terminal: the commands after their prompts, and their output.
@@ -113,13 +113,13 @@ fn session(typed: &[&str]) -> String {
         let printed = String::from_utf8(output.stdout).expect("what is printed is UTF-8");
         assert!(!printed.is_empty(), "{line} prints nothing");
         let gap = if shown.is_empty() { "" } else { "\n" };
-        shown.push_str(&format!("{gap}\u{1b}[32m$\u{1b}[0m \u{1b}[1m{line}\u{1b}[0m\n{}", settled(&printed)));
+        shown.push_str(&format!("{gap}\u{1b}[32m$\u{1b}[0m \u{1b}[1m{line}\u{1b}[0m\n{}", without_times(&printed)));
     }
     shown
 }
 
 /// Text with the same duration for all motions.
-fn settled(text: &str) -> String {
+fn without_times(text: &str) -> String {
     let Some((before, rest)) = text.split_once("moved to point 19 in ") else { return text.to_owned() };
     let (time, after) = rest.split_once(" s\n").expect("a time ends with its unit");
     assert!(time.parse::<f64>().is_ok_and(|time| (0.3..3.0).contains(&time)), "{time} s");

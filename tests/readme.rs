@@ -48,10 +48,10 @@ fn console_blocks_match_the_output() {
     let bless = std::env::var_os("ARMCTL_BLESS").is_some();
     let mut pages: Vec<Page> = PAGES.iter().map(|name| Page::read(name)).collect();
     let sessions: Vec<Session> = pages.iter().flat_map(Page::sessions).collect();
-    let ended = side_by_side(&sessions, |session| run(&session.shown, &session.files));
+    let outcomes = run_in_parallel(&sessions, |session| run(&session.shown, &session.files));
     let mut wrong = Vec::new();
     // From the end, so that a written section does not move the earlier ones.
-    for (session, ended) in sessions.iter().zip(ended).rev() {
+    for (session, ended) in sessions.iter().zip(outcomes).rev() {
         let place = format!("{}, {}", PAGES[session.page], session.heading);
         let printed = match ended {
             Ok(printed) => printed,
@@ -60,7 +60,7 @@ fn console_blocks_match_the_output() {
                 continue;
             }
         };
-        let broken = printed.iter().flat_map(|printed| printed.lines()).filter_map(|line| promise(line).err());
+        let broken = printed.iter().flat_map(|printed| printed.lines()).filter_map(|line| check_promise(line).err());
         wrong.extend(broken.map(|why| format!("{place}: {why}")));
         for ((range, shown), printed) in session.blocks.iter().zip(&session.shown).zip(printed).rev() {
             let assert = snapbox::Assert::new().normalize_paths(false);
@@ -103,12 +103,12 @@ impl Page {
 
     fn sessions(&self) -> Vec<Session> {
         let session = |section: Range<usize>| {
-            let inside = &self.text[section.clone()];
-            let moved = |block: Range<usize>| section.start + block.start..section.start + block.end;
-            let blocks: Vec<Range<usize>> = blocks(inside, "console").into_iter().map(moved).collect();
+            let is_in_block = &self.text[section.clone()];
+            let absolute_range = |block: Range<usize>| section.start + block.start..section.start + block.end;
+            let blocks: Vec<Range<usize>> = blocks(is_in_block, "console").into_iter().map(absolute_range).collect();
             Session {
                 page: self.number,
-                heading: inside.lines().next().unwrap_or_default().to_owned(),
+                heading: is_in_block.lines().next().unwrap_or_default().to_owned(),
                 shown: blocks.iter().map(|block| self.text[block.clone()].to_owned()).collect(),
                 blocks,
                 files: files(&self.text),
@@ -119,10 +119,10 @@ impl Page {
 }
 
 /// Runs the work for each item on some more threads than there are cores, because the work mostly waits.
-fn side_by_side<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+fn run_in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let threads = std::thread::available_parallelism().map_or(1, usize::from) * 3;
-    let take_turns = || {
+    let run_workers = || {
         let mut done = Vec::new();
         while let Some((number, item)) =
             Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|n| Some((n, items.get(n)?)))
@@ -132,7 +132,7 @@ fn side_by_side<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) ->
         done
     };
     let mut done: Vec<(usize, R)> = std::thread::scope(|scope| {
-        let running: Vec<_> = (0..threads).map(|_| scope.spawn(take_turns)).collect();
+        let running: Vec<_> = (0..threads).map(|_| scope.spawn(run_workers)).collect();
         running.into_iter().flat_map(|thread| thread.join().expect("a session does not panic")).collect()
     });
     done.sort_unstable_by_key(|(number, _)| *number);
@@ -142,8 +142,9 @@ fn side_by_side<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) ->
 #[test]
 fn every_link_has_a_target() {
     let anchor = |heading: &str| -> String {
-        let kept = heading.to_lowercase();
-        kept.chars()
+        let anchors = heading.to_lowercase();
+        anchors
+            .chars()
             .filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'))
             .collect::<String>()
             .replace(' ', "-")
@@ -155,19 +156,38 @@ fn every_link_has_a_target() {
         let links = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(link, _)| link);
         for link in links.filter(|link| !link.contains("://")) {
             let (file, place) = link.split_once('#').map_or((link, None), |(file, place)| (file, Some(place)));
-            let there = if file.is_empty() { path.clone() } else { path.with_file_name(file) };
-            let is_there = place.map_or(there.exists(), |place| {
-                let page = std::fs::read_to_string(&there).unwrap_or_default();
+            let target = if file.is_empty() { path.clone() } else { path.with_file_name(file) };
+            let exists = place.map_or(target.exists(), |place| {
+                let page = std::fs::read_to_string(&target).unwrap_or_default();
                 page.lines()
                     .filter(|line| line.starts_with('#'))
                     .any(|line| anchor(line.trim_start_matches('#').trim()) == place)
             });
-            if !is_there {
+            if !exists {
                 wrong.push(format!("{page}: {link}"));
             }
         }
     }
     assert_eq!(wrong, [""; 0], "links that lead nowhere");
+}
+
+/// Paths of files in the pages for developers; a placeholder such as NAME is not a path.
+#[test]
+fn every_path_in_the_developer_pages_exists() {
+    let mut missing = Vec::new();
+    for page in ["CONTRIBUTING.md", "docs/architecture.md"] {
+        let text = std::fs::read_to_string(root().join(page)).expect("the page exists");
+        // Code in a block is an example.
+        let prose: String = text.split("```").step_by(2).collect();
+        for path in prose.split('`').skip(1).step_by(2).filter(|word| word.contains('/')) {
+            let is_path = path.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-./".contains(c));
+            let folders = ["", "src", "src/command", "tests"];
+            if is_path && !folders.iter().any(|folder| root().join(folder).join(path).exists()) {
+                missing.push(format!("{page}: {path}"));
+            }
+        }
+    }
+    assert_eq!(missing, [""; 0]);
 }
 
 #[test]
@@ -186,13 +206,13 @@ fn recipes_work_with_jq() {
         let with_jq: Vec<String> = typed
             .clone()
             .map(|block| {
-                let (block, found) = piped(&block);
+                let (block, found) = with_pipes(&block);
                 recipes += found;
                 block
             })
             .collect();
         let ours: Vec<String> = typed.collect();
-        let outputs = |blocks| run(blocks, &files).map(|pages| pages.iter().map(|page| printed(page)).collect());
+        let outputs = |blocks| run(blocks, &files).map(|pages| pages.iter().map(|page| print_output(page)).collect());
         let (ours, theirs): (Result<Vec<_>, _>, Result<Vec<_>, _>) = (outputs(&ours), outputs(&with_jq));
         assert_eq!(theirs, ours, "{PAGE}, {}", section.lines().next().unwrap_or_default());
     }
@@ -200,9 +220,9 @@ fn recipes_work_with_jq() {
 }
 
 /// A block with `--json | jq -rc FILTER` instead of `--jq FILTER`, and the number of replacements.
-fn piped(block: &str) -> (String, usize) {
+fn with_pipes(block: &str) -> (String, usize) {
     let mut parts = block.split(" --jq ");
-    let mut made = parts.next().unwrap_or_default().to_owned();
+    let mut produced = parts.next().unwrap_or_default().to_owned();
     let mut found = 0;
     for part in parts {
         // A quoted filter ends with its quote, another one with the word.
@@ -211,14 +231,14 @@ fn piped(block: &str) -> (String, usize) {
             None => part.find(|c: char| c.is_whitespace() || c == ')'),
         };
         let (filter, rest) = part.split_at(end.unwrap_or(part.len()));
-        write!(made, " --json | jq -rc {filter}{rest}").expect("strings take text");
+        write!(produced, " --json | jq -rc {filter}{rest}").expect("strings take text");
         found += 1;
     }
-    (made, found)
+    (produced, found)
 }
 
 /// Output of the commands of a page, with numbers in a common notation and without times.
-fn printed(page: &str) -> String {
+fn print_output(page: &str) -> String {
     let lines = page.lines().filter(|line| !line.starts_with("$ ") && !line.starts_with("> "));
     let mut printed: String = lines.flat_map(|line| [line, "\n"]).collect();
     for end in [",", " ", "\n"] {
@@ -229,7 +249,7 @@ fn printed(page: &str) -> String {
 }
 
 /// Checks a line with one or several envelopes against the schemas.
-fn promise(line: &str) -> Result<(), String> {
+fn check_promise(line: &str) -> Result<(), String> {
     let envelopes = match serde_json::from_str(line) {
         Ok(serde_json::Value::Array(several)) => several,
         Ok(one) => vec![one],
@@ -301,8 +321,8 @@ fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, Str
     for (name, content) in files {
         std::fs::write(folder.path().join(name), content).map_err(|error| format!("{name}: {error}"))?;
     }
-    let wanted = DOCUMENTED.iter().filter(|(_, target)| blocks.iter().any(|block| block.contains(target)));
-    let simulators: Vec<Simulator> = wanted.map(|(family, target)| Simulator::start(family, target)).collect();
+    let needed = DOCUMENTED.iter().filter(|(_, target)| blocks.iter().any(|block| block.contains(target)));
+    let simulators: Vec<Simulator> = needed.map(|(family, target)| Simulator::start(family, target)).collect();
     let blocks: Vec<Vec<String>> = blocks.iter().map(|block| commands(block)).collect();
     let mut script = String::from("exec 2>&1\n");
     for command in blocks.iter().flatten() {

@@ -29,7 +29,7 @@ impl Desk {
     /// Starts the prompt.
     fn repl(&self, line: &str) -> Terminal {
         let mut repl = Terminal::start(self.command(line), 100, 30).expect("a terminal");
-        repl.says("ends the prompt.");
+        repl.wait_for_text("ends the prompt.");
         repl
     }
 
@@ -45,17 +45,17 @@ impl Desk {
 fn prompt_shows_the_robot_state() {
     let desk = Desk::new();
     let mut repl = desk.repl("yerc --sim");
-    repl.says("sim [simulated, servo on] yerc>");
+    repl.wait_for_text("sim [simulated, servo on] yerc>");
     repl.press("servo off\r");
-    repl.says("servo power is off");
-    repl.says("sim [simulated, servo off] yerc>");
+    repl.wait_for_text("servo power is off");
+    repl.wait_for_text("sim [simulated, servo off] yerc>");
     repl.press("job select NONE\r");
-    repl.says("no such job");
+    repl.wait_for_text("no such job");
     repl.press("sta\t--jq .data.servo_on\r");
-    repl.says("false");
+    repl.wait_for_text("false");
     repl.press("exit\r");
     assert_eq!(repl.end().code(), Some(0));
-    assert!(repl.is_as_before());
+    assert!(repl.is_restored());
 }
 
 #[test]
@@ -63,10 +63,10 @@ fn completes_words_and_names_of_the_robot() {
     let desk = Desk::new();
     let mut repl = desk.repl("toyo repl --sim");
     repl.press("param get soft-limit-p\t\r");
-    repl.says("soft-limit-plus  P01");
+    repl.wait_for_text("soft-limit-plus  P01");
     repl.press("robots l\t\r");
-    repl.says("no robots");
-    repl.says("> ");
+    repl.wait_for_text("no robots");
+    repl.wait_for_text("> ");
     repl.press("\x04");
     assert_eq!(repl.end().code(), Some(0));
 }
@@ -76,37 +76,37 @@ fn ctrl_c_stops_the_motion_but_not_the_prompt() {
     let desk = Desk::new();
     let mut repl = desk.repl("yerc repl --sim");
     repl.press("move relative --z 400 --speed 1mm/s\r");
-    repl.says("R1 x=");
+    repl.wait_for_text("R1 x=");
     repl.signal("INT");
-    repl.says("the robot was stopped: HOLD is on");
-    repl.says("[simulated, servo on, hold] yerc>");
+    repl.wait_for_text("the robot was stopped: HOLD is on");
+    repl.wait_for_text("[simulated, servo on, hold] yerc>");
     repl.press("hold off\r");
-    repl.says("HOLD is off");
-    repl.says("yerc> ");
+    repl.wait_for_text("HOLD is off");
+    repl.wait_for_text("yerc> ");
     repl.press("half a line");
     // The grey suggestion of an earlier line comes and goes.
-    repl.says("a line");
+    repl.wait_for_text("a line");
     repl.press("\x03");
-    repl.says("yerc> ");
+    repl.wait_for_text("yerc> ");
     repl.press("status --jq .ok\r");
-    repl.says("true");
-    repl.says("> ");
+    repl.wait_for_text("true");
+    repl.wait_for_text("> ");
     repl.press("\x04");
     assert_eq!(repl.end().code(), Some(0));
-    assert!(repl.is_as_before());
+    assert!(repl.is_restored());
 }
 
 #[test]
 fn ctrl_c_twice_at_the_prompt_leaves() {
     let desk = Desk::new();
     let mut repl = desk.repl("yerc repl --sim");
-    repl.says("yerc> ");
+    repl.wait_for_text("yerc> ");
     repl.press("\x03");
-    repl.says("Ctrl-C again");
-    repl.says("yerc> ");
+    repl.wait_for_text("Ctrl-C again");
+    repl.wait_for_text("yerc> ");
     repl.press("\x03");
     assert_eq!(repl.end().code(), Some(130));
-    assert!(repl.is_as_before());
+    assert!(repl.is_restored());
 }
 
 #[test]
@@ -115,13 +115,13 @@ fn termination_restores_the_terminal() {
         let desk = Desk::new();
         let mut repl = desk.repl("yrcx repl --sim");
         // Before that, the terminal itself echoes.
-        repl.says("yrcx>");
+        repl.wait_for_text("yrcx>");
         repl.press("half a line");
-        repl.says("half a line");
+        repl.wait_for_text("half a line");
         repl.signal(signal);
-        repl.says(signal);
+        repl.wait_for_text(signal);
         assert_eq!(repl.end().code(), Some(130), "{signal}");
-        assert!(repl.is_as_before(), "{signal}");
+        assert!(repl.is_restored(), "{signal}");
     }
 }
 
@@ -130,9 +130,9 @@ fn moves_a_real_robot_after_the_question_over_a_shared_link() {
     let (desk, simulator) = (Desk::new(), Simulator::start("toyo"));
     let mut repl = desk.repl(&format!("-t {} repl", simulator.url));
     repl.press("home\r");
-    repl.says("Continue? [y/N]");
+    repl.wait_for_text("Continue? [y/N]");
     repl.press("n\r");
-    repl.says("not confirmed; nothing was changed");
+    repl.wait_for_text("not confirmed; nothing was changed");
     let session = desk.data("session list")["sessions"][0].clone();
     assert_eq!((session["pid"].as_u64(), session["link"].as_str()), (Some(repl.child.id().into()), Some("up")));
     assert!(desk.data(&format!("-t {} toyo status", simulator.url)).is_object());
@@ -147,8 +147,8 @@ fn stores_the_line_history() {
     for (typed, shown) in [("explain yerc 2060\r", "0x2060"), ("\x1b[A\r", "0x2060")] {
         let mut repl = desk.repl("repl");
         repl.press(typed);
-        repl.says(shown);
-        repl.says("> ");
+        repl.wait_for_text(shown);
+        repl.wait_for_text("> ");
         repl.press("\x04");
         assert_eq!(repl.end().code(), Some(0));
     }

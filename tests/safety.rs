@@ -16,14 +16,14 @@ use crate::support::simulator::Simulator;
 
 /// Command, instance, service and data of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Asked {
+struct ReceivedRequest {
     command: u16,
     instance: u16,
     service: u8,
     data: Vec<u8>,
 }
 
-impl Asked {
+impl ReceivedRequest {
     fn parse(frame: &[u8]) -> Self {
         let word = |at: usize| u16::from_le_bytes([frame[at], frame[at + 1]]);
         Self { command: word(24), instance: word(26), service: frame[29], data: frame[32..].to_vec() }
@@ -45,29 +45,29 @@ enum Reaction {
 /// Two UDP ports, and all requests that arrived there.
 struct Controller {
     url: String,
-    asked: Arc<Mutex<Vec<Asked>>>,
+    requests: Arc<Mutex<Vec<ReceivedRequest>>>,
     /// Signals every request.
-    news: Receiver<Asked>,
-    over: Arc<AtomicBool>,
+    request_added: Receiver<ReceivedRequest>,
+    is_over: Arc<AtomicBool>,
     servers: Vec<JoinHandle<()>>,
 }
 
 impl Controller {
-    fn new(react: impl FnMut(&Asked) -> Reaction + Send + 'static) -> Self {
-        let (tell, news) = channel();
-        let (asked, over) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
+    fn new(react: impl FnMut(&ReceivedRequest) -> Reaction + Send + 'static) -> Self {
+        let (tell, request_added) = channel();
+        let (requests, is_over) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
         let react = Arc::new(Mutex::new(react));
         let mut ports = Vec::new();
         let servers = (0..2).map(|_| {
             let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
             socket.set_read_timeout(Some(Duration::from_millis(20))).expect("a timeout");
             ports.push(socket.local_addr().expect("an address").port());
-            let (tell, asked, over, react) = (tell.clone(), asked.clone(), over.clone(), react.clone());
+            let (tell, asked, over, react) = (tell.clone(), requests.clone(), is_over.clone(), react.clone());
             std::thread::spawn(move || {
                 let mut buffer = [0; 2048];
                 while !over.load(Ordering::Relaxed) {
                     let Ok((len, from)) = socket.recv_from(&mut buffer) else { continue };
-                    let request = Asked::parse(&buffer[..len]);
+                    let request = ReceivedRequest::parse(&buffer[..len]);
                     let reaction = (react.lock().expect("no panic"))(&request);
                     asked.lock().expect("no panic").push(request.clone());
                     if let Some(frame) = answer(&buffer[..len], reaction) {
@@ -79,7 +79,7 @@ impl Controller {
         });
         let servers = servers.collect();
         let url = format!("udp://127.0.0.1:{}?file_port={}&model=dx200", ports[0], ports[1]);
-        Self { url, asked, news, over, servers }
+        Self { url, requests, request_added, is_over, servers }
     }
 
     /// Starts a command line without a terminal.
@@ -95,19 +95,19 @@ impl Controller {
     }
 
     /// Waits for a request.
-    fn wait_for(&self, wanted: impl Fn(&Asked) -> bool) {
-        while !wanted(&self.news.recv_timeout(Duration::from_secs(30)).expect("the request comes")) {}
+    fn wait_for(&self, wanted: impl Fn(&ReceivedRequest) -> bool) {
+        while !wanted(&self.request_added.recv_timeout(Duration::from_secs(30)).expect("the request comes")) {}
     }
 
     /// Requests that are not reads.
-    fn changes(&self) -> Vec<Asked> {
-        self.asked.lock().expect("no panic").iter().filter(|asked| !asked.is_read()).cloned().collect()
+    fn changes(&self) -> Vec<ReceivedRequest> {
+        self.requests.lock().expect("no panic").iter().filter(|asked| !asked.is_read()).cloned().collect()
     }
 }
 
 impl Drop for Controller {
     fn drop(&mut self) {
-        self.over.store(true, Ordering::Relaxed);
+        self.is_over.store(true, Ordering::Relaxed);
         for server in self.servers.drain(..) {
             let _ended = server.join();
         }
@@ -134,7 +134,7 @@ fn words(words: &[i32]) -> Vec<u8> {
 }
 
 /// A robot R1 with servo power that moves after a motion command, and stops at HOLD.
-fn robot(mut peculiar: impl FnMut(&Asked) -> Option<Reaction> + Send + 'static) -> Controller {
+fn robot(mut peculiar: impl FnMut(&ReceivedRequest) -> Option<Reaction> + Send + 'static) -> Controller {
     let (mut x, mut moving) = (0, false);
     Controller::new(move |asked| {
         if let Some(reaction) = peculiar(asked) {
@@ -227,9 +227,9 @@ fn sends_a_read_once_plus_retries() {
         let output = controller.run(&format!("status --timeout 300ms --retries {retries}"));
         assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
         assert!(stderr(&output).contains(&format!("no answer within {within}\n")), "{}", stderr(&output));
-        let asked = controller.asked.lock().unwrap().clone();
-        assert_eq!(asked.len(), retries + 1, "{asked:?}");
-        assert!(asked.windows(2).all(|pair| pair[0] == pair[1]), "{asked:?}");
+        let requests = controller.requests.lock().unwrap().clone();
+        assert_eq!(requests.len(), retries + 1, "{requests:?}");
+        assert!(requests.windows(2).all(|pair| pair[0] == pair[1]), "{requests:?}");
     }
 }
 
@@ -260,7 +260,7 @@ fn motion_needs_confirmation_and_dry_run_sends_nothing() {
         let output = controller.run(&format!("{order} --dry-run"));
         assert_eq!(output.status.code(), Some(0), "{order}: {}", stderr(&output));
     }
-    assert_eq!(*controller.asked.lock().unwrap(), []);
+    assert_eq!(*controller.requests.lock().unwrap(), []);
 }
 
 #[test]
@@ -281,7 +281,7 @@ fn read_only_robot_refuses_commands_even_with_yes() {
         assert_eq!(output.status.code(), Some(7), "{order}: {}", stderr(&output));
         assert!(stderr(&output).contains("read-only"), "{order}: {}", stderr(&output));
     }
-    assert_eq!(*controller.asked.lock().unwrap(), []);
+    assert_eq!(*controller.requests.lock().unwrap(), []);
     // A stop is always allowed.
     assert_eq!(run("hold on").status.code(), Some(0));
     assert_eq!(run("status").status.code(), Some(0));
@@ -333,8 +333,9 @@ fn does_not_move_unread_axes_to_zero() {
 #[test]
 fn unanswered_read_before_a_move_prevents_the_move() {
     for instance in [1, 11] {
-        let silent =
-            move |asked: &Asked| (asked.command == 0x75 && asked.instance == instance).then_some(Reaction::Silence);
+        let silent = move |asked: &ReceivedRequest| {
+            (asked.command == 0x75 && asked.instance == instance).then_some(Reaction::Silence)
+        };
         let controller = robot(silent);
         let output = controller.run(&format!("{MOVE} --timeout 400ms"));
         assert_eq!((output.status.code(), controller.changes()), (Some(4), Vec::new()), "{}", stderr(&output));
@@ -365,10 +366,10 @@ fn ctrl_c_stops_the_robot_first() {
 /// The stop is repeated until it is confirmed, with all options.
 #[test]
 fn repeats_a_lost_stop() {
-    let mut lost = 12;
+    let mut lost_stop = 12;
     let controller = robot(move |asked| {
-        lost -= i32::from(asked.command == 0x83);
-        (asked.command == 0x83 && lost >= 0).then_some(Reaction::Silence)
+        lost_stop -= i32::from(asked.command == 0x83);
+        (asked.command == 0x83 && lost_stop >= 0).then_some(Reaction::Silence)
     });
     let child = controller.start(&format!("{MOVE} --timeout 300ms --retries 0"));
     controller.wait_for(|asked| asked.command == 0x72);
@@ -491,10 +492,10 @@ fn interrupted_transfer_does_not_block_other_commands() {
     is_free("a full disk");
 
     let mut child = command("file put UP.CND --yes -vv").spawn().unwrap();
-    let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
-    assert!(said.any(|line| line.contains("data: file load, block 3")), "no block leaves");
+    let mut message = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    assert!(message.any(|line| line.contains("data: file load, block 3")), "no block leaves");
     interrupt(&child);
-    said.for_each(drop);
+    message.for_each(drop);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     is_free("Ctrl-C in an upload");
 }

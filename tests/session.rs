@@ -54,14 +54,14 @@ impl Desk {
     }
 
     /// First session of the list.
-    fn listed(&self) -> Value {
+    fn listed_sessions(&self) -> Value {
         self.data("session list")["sessions"][0].clone()
     }
 
     /// Polls the first session until it has the expected state.
     fn until(&self, condition: impl Fn(&Value) -> bool) -> Value {
         loop {
-            let session = self.listed();
+            let session = self.listed_sessions();
             if condition(&session) {
                 return session;
             }
@@ -112,7 +112,7 @@ impl Running {
     }
 
     /// Waits for this text on stderr.
-    fn says(&mut self, part: &str) {
+    fn wait_for_message(&mut self, part: &str) {
         let mut line = String::new();
         while !line.contains(part) {
             line.clear();
@@ -154,36 +154,36 @@ impl Drop for Running {
 
 /// A simulator on this address, or on a free one. Its target is its first output.
 fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
-    serving(desk, &format!("{family} --bind {address}"))
+    serve_simulator(desk, &format!("{family} --bind {address}"))
 }
 
 /// A simulator with these arguments.
-fn serving(desk: &Desk, words: &str) -> Running {
+fn serve_simulator(desk: &Desk, words: &str) -> Running {
     let mut command = desk.command(&format!("sim {words} --console --jq .data.target"));
     command.stdin(Stdio::piped());
     let mut simulator = Running::start(command, true);
     if !simulator.first.contains("://") {
-        let mut said = String::new();
-        simulator.stderr.read_to_string(&mut said).unwrap();
-        panic!("the simulator does not serve: {said}");
+        let mut output = String::new();
+        simulator.stderr.read_to_string(&mut output).unwrap();
+        panic!("the simulator does not serve: {output}");
     }
     simulator
 }
 
 /// A simulated YRCX, and a user with the robot `cell`. The long timeout allows for a busy machine.
-fn cell() -> (Running, Desk) {
+fn cell_arguments() -> (Running, Desk) {
     let simulator = simulator(&Desk::new(&[]), "yrcx", "127.0.0.1:0");
     let desk = Desk::new(&[("cell", "yrcx", &format!("{}?rpi=5ms&multiplier=512", simulator.first))]);
     (simulator, desk)
 }
 
 /// A motion that takes minutes.
-const SLOW: &str = "-r cell yrcx move --to 900,0,0,0 --speed-of-max 0.1 --yes";
+const SLOW_MOVE: &str = "-r cell yrcx move --to 900,0,0,0 --speed-of-max 0.1 --yes";
 
 /// Such a motion, once the controller executes it.
-fn moving(desk: &Desk) -> Running {
-    let mut moving = Running::start(desk.command(&format!("{SLOW} -vv")), false);
-    moving.says("<- WO 0100");
+fn start_motion(desk: &Desk) -> Running {
+    let mut moving = Running::start(desk.command(&format!("{SLOW_MOVE} -vv")), false);
+    moving.wait_for_message("<- WO 0100");
     moving
 }
 
@@ -222,7 +222,7 @@ fn completion_asks_a_controller_only_through_its_session() {
 
 #[test]
 fn commands_use_a_session_automatically() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let session = Running::session(&desk, "cell");
     let folder = desk.folder.path().join("run/armctl");
     let sockets = desk.files("sock");
@@ -235,7 +235,7 @@ fn commands_use_a_session_automatically() {
     }
     assert_eq!(desk.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");
     // The same device by its URL has the same session; another URL has none.
-    let url = desk.listed()["target"].as_str().unwrap().to_owned();
+    let url = desk.listed_sessions()["target"].as_str().unwrap().to_owned();
     assert!(stderr(&desk.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
     fails(&desk.run("-r cell --no-session --yes yrcx info servo"), 3, "[0x0106]");
     let second = desk.run("-r cell session open");
@@ -247,11 +247,11 @@ fn commands_use_a_session_automatically() {
 
 #[test]
 fn one_client_moves_and_another_stops() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let _session = Running::session(&desk, "cell");
-    let moving = moving(&desk);
+    let moving = start_motion(&desk);
     let pid = moving.process.id();
-    let listed = desk.listed();
+    let listed = desk.listed_sessions();
     assert_eq!((&listed["motion"]["pid"], &listed["under_way"]), (&pid.into(), &true.into()));
     assert!(listed["motion"]["command"].as_str().unwrap().contains("yrcx move --to 900,0,0,0"), "{listed}");
     fails(&desk.run("-r cell yrcx servo on --yes"), 7, &format!("another client is moving the robot: process {pid} ("));
@@ -269,9 +269,9 @@ fn one_client_moves_and_another_stops() {
 
 #[test]
 fn interrupt_stops_a_motion_in_a_session() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let _session = Running::session(&desk, "cell");
-    let moving = moving(&desk);
+    let moving = start_motion(&desk);
     moving.signal("INT");
     let (code, said) = moving.end();
     assert!(code == Some(130) && said.contains("was stopped by the stop input SI(06), which is on again"), "{said}");
@@ -279,14 +279,14 @@ fn interrupt_stops_a_motion_in_a_session() {
 
 #[test]
 fn reports_and_handles_state_of_a_dead_client() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let mut session = Running::session(&desk, "cell");
-    let mut moving = Running::start(desk.command(&format!("{SLOW} --on-interrupt leave -vv")), false);
-    moving.says("<- WO 0100");
+    let mut moving = Running::start(desk.command(&format!("{SLOW_MOVE} --on-interrupt leave -vv")), false);
+    moving.wait_for_message("<- WO 0100");
     let pid = moving.process.id();
     moving.signal("KILL");
-    session.says(&format!("client {pid} has died"));
-    let listed = desk.listed();
+    session.wait_for_message(&format!("client {pid} has died"));
+    let listed = desk.listed_sessions();
     assert_eq!((&listed["leftover"]["pid"], &listed["leftover"]["died"]), (&pid.into(), &true.into()));
     assert_eq!((&listed["motion"], &listed["under_way"]), (&Value::Null, &true.into()), "it goes on");
     let output = desk.run("-r cell yrcx servo on --yes");
@@ -298,17 +298,17 @@ fn reports_and_handles_state_of_a_dead_client() {
     let mut next = (0..100).map(|_| desk.run("-r cell yrcx info servo"));
     let next = next.find(|next| next.status.success()).expect("the motion ends");
     assert!(stderr(&next).contains("another client left move-mm "), "{}", stderr(&next));
-    assert_eq!(desk.listed()["leftover"], Value::Null);
+    assert_eq!(desk.listed_sessions()["leftover"], Value::Null);
 }
 
 #[test]
 fn stops_the_jog_of_a_killed_client() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let mut session = Running::session(&desk, "cell");
     let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
-    jogging.says("<- WO 0100");
+    jogging.wait_for_message("<- WO 0100");
     jogging.signal("KILL");
-    session.says("armctl sends its stop signals");
+    session.wait_for_message("armctl sends its stop signals");
     desk.until(|session| session["under_way"] == false);
     let next = desk.run("-r cell yrcx info servo");
     assert!(next.status.success() && stderr(&next).contains("12.400 stopped by the stop input"), "{}", stderr(&next));
@@ -316,11 +316,11 @@ fn stops_the_jog_of_a_killed_client() {
 
 #[test]
 fn motion_with_no_wait_continues_after_its_command() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let _session = Running::session(&desk, "cell");
     let moved = desk.run("-r cell yrcx move --to 10,0,0,0 --speed-of-max 1 --yes --no-wait");
     assert!(moved.status.success(), "{}", stderr(&moved));
-    assert_eq!(desk.listed()["leftover"]["died"], false);
+    assert_eq!(desk.listed_sessions()["leftover"]["died"], false);
     let filter = ".data.command_status == \"normal end\"";
     let mut watch = desk.command("-r cell yrcx status --watch 10ms --for 1m --json");
     let watched = watch.args(["--until", filter]).output().unwrap();
@@ -342,10 +342,10 @@ fn command_reports_its_killed_session() {
         let session = Running::session(&desk, "cell");
         let mut command = desk.command(&format!("-r cell {family} {words} -vv"));
         command.current_dir(desk.folder.path());
-        let mut commanding = Running::start(command, false);
-        commanding.says(until);
+        let mut commanding_client = Running::start(command, false);
+        commanding_client.wait_for_message(until);
         session.signal("KILL");
-        let (code, said) = commanding.end();
+        let (code, said) = commanding_client.end();
         assert!(code == Some(6) && said.contains("the process of the session has ended"), "{words}: {code:?}, {said}");
         assert!(!said.contains("os error") && !said.contains("reset by peer"), "{words}: {said}");
     }
@@ -353,24 +353,24 @@ fn command_reports_its_killed_session() {
 
 #[test]
 fn killed_session_makes_the_outcome_unknown() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let session = Running::session(&desk, "cell");
-    let moving = moving(&desk);
+    let moving = start_motion(&desk);
     session.signal("KILL");
     let (code, said) = moving.end();
     assert!(
         code == Some(6) && said.contains("the process of the session has ended") && said.contains("hint: keep clear"),
         "{said}"
     );
-    assert_eq!((desk.files("sock").len(), desk.listed()["link"].as_str()), (1, Some("dead")));
+    assert_eq!((desk.files("sock").len(), desk.listed_sessions()["link"].as_str()), (1, Some("dead")));
     assert!(stderr(&desk.run("-r cell yrcx status")).contains(
         "the session process has ended, so the command runs \
         without it"
     ));
     // A stale socket does not prevent a new session. The adapter detects the lost owner after a moment.
     while !desk.run("-r cell session open --background").status.success() {}
-    assert_eq!(desk.listed()["link"], "up");
-    let killed = desk.listed()["pid"].to_string();
+    assert_eq!(desk.listed_sessions()["link"], "up");
+    let killed = desk.listed_sessions()["pid"].to_string();
     assert!(Command::new("kill").args(["-s", "KILL", &killed]).status().unwrap().success());
     desk.until(|session| session["link"] == "dead");
     assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "forgotten");
@@ -379,9 +379,9 @@ fn killed_session_makes_the_outcome_unknown() {
 
 #[test]
 fn closing_session_notifies_its_clients() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let session = Running::session(&desk, "cell");
-    let moving = moving(&desk);
+    let moving = start_motion(&desk);
     session.signal("TERM");
     let (code, said) = moving.end();
     assert!(
@@ -395,15 +395,15 @@ fn closing_session_notifies_its_clients() {
 
 #[test]
 fn reopens_a_lost_link() {
-    let (simulator, desk) = cell();
+    let (simulator, desk) = cell_arguments();
     let mut session = Running::session(&desk, "cell");
     let address = simulator.first.trim_start_matches("eip://").to_owned();
     drop(simulator);
-    session.says("the connection was lost");
+    session.wait_for_message("the connection was lost");
     desk.until(|session| session["link"] == "down");
     fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller sends no data");
     let _simulator = self::simulator(&desk, "yrcx", &format!("{address} --io-port 0"));
-    session.says("the connection is open again");
+    session.wait_for_message("the connection is open again");
     let listed = desk.until(|session| session["link"] == "up");
     assert_eq!(listed["reopenings"], 1);
     assert!(desk.run("-r cell yrcx info servo").status.success());
@@ -415,7 +415,7 @@ fn session_keeps_each_fieldbus_and_its_end_is_an_alarm() {
     for (words, patience, alarm) in
         [("--bus devicenet", "&rate=10s", "12.541"), ("--bus profibus", "&watchdog=60s&slot=500ms", "12.561")]
     {
-        let simulator = serving(&Desk::new(&[]), &format!("yrcx {words}"));
+        let simulator = serve_simulator(&Desk::new(&[]), &format!("yrcx {words}"));
         let target = simulator.first.split("&slot=").next().unwrap();
         let desk = Desk::new(&[("cell", "yrcx", &format!("{target}{patience}"))]);
         let session = Running::session(&desk, "cell");
@@ -434,31 +434,34 @@ fn session_keeps_each_fieldbus_and_its_end_is_an_alarm() {
 
 #[test]
 fn reports_the_stop_input_after_a_lost_link_returns() {
-    const TOLD: &str = "the connection was lost; the connection is up again, and the stop input SI(06) is on";
+    const REPORTED: &str = "the connection was lost; the connection is up again, and the stop input SI(06) is on";
     // Through a session, and on a direct connection of the command.
     for is_held in [true, false] {
-        let (simulator, desk) = cell();
+        let (simulator, desk) = cell_arguments();
         let mut session = is_held.then(|| Running::session(&desk, "cell"));
-        let mut moving = Running::start(desk.command(&format!("{SLOW} -vv --timeout 1m")), false);
-        moving.says("<- WO 0100");
+        let mut moving = Running::start(desk.command(&format!("{SLOW_MOVE} -vv --timeout 1m")), false);
+        moving.wait_for_message("<- WO 0100");
         simulator.signal("STOP");
         let lost = " was lost";
-        session.as_mut().unwrap_or(&mut moving).says(lost);
+        session.as_mut().unwrap_or(&mut moving).wait_for_message(lost);
         simulator.signal("CONT");
         let (code, said) = moving.end();
-        assert!(code == Some(6) && said.contains(TOLD) && !said.contains("stays off"), "{is_held}: {code:?} {said}");
+        assert!(
+            code == Some(6) && said.contains(REPORTED) && !said.contains("stays off"),
+            "{is_held}: {code:?} {said}"
+        );
     }
 }
 
 #[test]
 fn background_session_is_ready_when_reported() {
-    let (_simulator, desk) = cell();
+    let (_simulator, desk) = cell_arguments();
     let opened = desk.data("-r cell session open --background");
     assert_eq!((&opened["robot"], &opened["background"]), (&"cell".into(), &true.into()));
     let log = PathBuf::from(opened["log"].as_str().unwrap());
     assert_eq!(mode(&log), 0o600);
     assert!(std::fs::read_to_string(&log).unwrap().contains("the connection is open"));
-    assert_eq!(desk.listed()["pid"], opened["pid"]);
+    assert_eq!(desk.listed_sessions()["pid"], opened["pid"]);
     fails(&desk.run("-r cell session open --background"), 4, "a session is already open");
     fails(&desk.run("session close elsewhere"), 2, "no session of 'elsewhere' is open");
     assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "closed");
@@ -466,11 +469,11 @@ fn background_session_is_ready_when_reported() {
     // The session and its connection have ended, so a new one is possible.
     desk.data("-r cell session open --background");
 
-    let nobody = Desk::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
+    let no_session = Desk::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
     for robot in ["cell", "yas"] {
-        fails(&nobody.run(&format!("-r {robot} session open --background --retries 0")), 4, "127.0.0.1:1");
+        fails(&no_session.run(&format!("-r {robot} session open --background --retries 0")), 4, "127.0.0.1:1");
     }
-    assert!(nobody.files("sock").is_empty());
+    assert!(no_session.files("sock").is_empty());
 }
 
 #[test]
@@ -478,8 +481,8 @@ fn session_forwards_datagrams() {
     let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
     let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
     let session = Running::session(&desk, "cell");
-    let through = desk.run("-r cell yerc status -v");
-    assert!(stderr(&through).contains("through the session of process"), "{}", stderr(&through));
+    let through_session = desk.run("-r cell yerc status -v");
+    assert!(stderr(&through_session).contains("through the session of process"), "{}", stderr(&through_session));
     for old in [0, 7] {
         let written = &desk.data("-r cell yerc var set B0=7")["items"][0];
         assert_eq!((&written["old"], &written["new"]), (&old.into(), &7.into()), "{written}");
@@ -519,10 +522,10 @@ fn clients_take_turns_on_a_serial_line() {
 
     let address = simulator.first.trim_start_matches("tcp://").to_owned();
     drop(simulator);
-    session.says("the connection was lost");
+    session.wait_for_message("the connection was lost");
     fails(&desk.run("-r cell toyo status"), 4, "the connection is lost");
     let _simulator = self::simulator(&desk, "toyo", &address);
-    session.says("the connection is open again");
+    session.wait_for_message("the connection is open again");
     assert!(desk.run("-r cell toyo status").status.success());
 }
 

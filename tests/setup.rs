@@ -32,13 +32,13 @@ impl Desk {
 }
 
 /// Key presses for the next entry of a list.
-const SECOND: &str = "\x1b[B";
-const THIRD: &str = "\x1b[B\x1b[B";
+const SECOND_ENTRY: &str = "\x1b[B";
+const THIRD_ENTRY: &str = "\x1b[B\x1b[B";
 
 /// Answers each question.
 fn answer(setup: &mut Terminal, answers: &[(&str, &str)]) {
     for (question, answer) in answers {
-        setup.says(question);
+        setup.wait_for_text(question);
         setup.press(&format!("{answer}\r"));
     }
 }
@@ -50,14 +50,14 @@ fn adds_a_checked_named_read_only_robot() {
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", &address.to_string())]);
     answer(&mut setup, &[("Which controller is it?", "")]);
-    setup.says("answers a status request");
-    setup.says("dx200, by its software");
+    setup.wait_for_text("answers a status request");
+    setup.wait_for_text("dx200, by its software");
     answer(&mut setup, &[("Name [cell1]:", "cell 3"), ("Name [cell1]:", "cell3"), ("Read-only", "")]);
-    setup.says("read_only = true");
+    setup.wait_for_text("read_only = true");
     answer(&mut setup, &[("Write this to robots.toml? [Y/n]", "")]);
-    setup.says("added cell3");
+    setup.wait_for_text("added cell3");
     assert_eq!(setup.end().code(), Some(0));
-    assert!(setup.is_as_before());
+    assert!(setup.is_restored());
     let expected =
         format!("default = \"cell3\"\n\n[[robot]]\nname = \"cell3\"\ntarget = \"udp://{address}\"\nread_only = true\n");
     assert_eq!(desk.inventory(), Some(expected));
@@ -66,8 +66,11 @@ fn adds_a_checked_named_read_only_robot() {
 #[test]
 fn adds_a_simulator_and_changes_the_default() {
     let desk = Desk::new();
-    let simulator =
-        [("Where is the robot?", THIRD), ("Which controller is it?", SECOND), ("eip://127.0.0.1:44818]:", "sim:")];
+    let simulator = [
+        ("Where is the robot?", THIRD_ENTRY),
+        ("Which controller is it?", SECOND_ENTRY),
+        ("eip://127.0.0.1:44818]:", "sim:"),
+    ];
     let mut setup = desk.setup();
     answer(&mut setup, &simulator);
     answer(&mut setup, &[("Name [cell1]:", ""), ("Read-only", "n"), ("Hold", "y"), ("Write this", "y")]);
@@ -87,15 +90,15 @@ fn shows_problems_and_asks_whether_to_continue() {
     let desk = Desk::new();
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", "robot")]);
-    setup.says("error:");
+    setup.wait_for_text("error:");
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", "udp://127.0.0.1:1")]);
-    setup.says("failed");
+    setup.wait_for_text("failed");
     answer(
         &mut setup,
-        &[("What now?", ""), ("What now?", SECOND), ("Where is the robot?", ""), ("a URL:", "tcp://127.0.0.1:1")],
+        &[("What now?", ""), ("What now?", SECOND_ENTRY), ("Where is the robot?", ""), ("a URL:", "tcp://127.0.0.1:1")],
     );
-    answer(&mut setup, &[("What now?", THIRD), ("Name", "tray"), ("Read-only", ""), ("Write this", "n")]);
-    setup.says("nothing was written");
+    answer(&mut setup, &[("What now?", THIRD_ENTRY), ("Name", "tray"), ("Read-only", ""), ("Write this", "n")]);
+    setup.wait_for_text("nothing was written");
     assert_eq!(setup.end().code(), Some(7));
     assert_eq!(desk.inventory(), None);
 }
@@ -105,7 +108,7 @@ fn escape_and_signals_write_nothing_and_restore_the_terminal() {
     for way in ["escape", "ctrl-c", "INT", "TERM"] {
         let desk = Desk::new();
         let mut setup = desk.setup();
-        setup.says("no robot yet: use a simulator");
+        setup.wait_for_text("no robot yet: use a simulator");
         setup.reads_keys();
         match way {
             "escape" => setup.press("\x1b"),
@@ -113,14 +116,14 @@ fn escape_and_signals_write_nothing_and_restore_the_terminal() {
             signal => setup.signal(signal),
         }
         assert_eq!(setup.end().code(), Some(130), "{way}");
-        gives_back(&setup, way);
+        assert_terminal_restored(&setup, way);
         assert_eq!(desk.inventory(), None);
     }
 }
 
 /// The terminal modes are restored, and the cursor is visible.
-fn gives_back(terminal: &Terminal, way: &str) {
-    assert!(terminal.is_as_before(), "{way}");
+fn assert_terminal_restored(terminal: &Terminal, way: &str) {
+    assert!(terminal.is_restored(), "{way}");
     let written = String::from_utf8_lossy(&terminal.written);
     assert!(written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l"), "{way}: {written:?}");
 }
@@ -137,21 +140,21 @@ fn line(desk: &Desk, words: &[&str]) -> Terminal {
 fn offers_a_choice_for_a_missing_name() {
     let desk = Desk::new();
     let mut select = line(&desk, &["--sim", "yerc", "job", "select"]);
-    select.says("> COUNT");
+    select.wait_for_text("> COUNT");
     select.reads_keys();
     select.press("WAIT\r");
     // The terminal is narrower than the line.
-    select.says("the same command without the question: armctl --config robots.toml --sim yerc");
-    select.says("WAITIN is selected");
+    select.wait_for_text("the same command without the question: armctl --config robots.toml --sim yerc");
+    select.wait_for_text("WAITIN is selected");
     assert_eq!(select.end().code(), Some(0));
-    gives_back(&select, "chosen");
+    assert_terminal_restored(&select, "chosen");
     let robots = "[[robot]]\nname = \"cell3\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n";
     std::fs::write(desk.folder.path().join("robots.toml"), robots).unwrap();
     let mut status = line(&desk, &["status", "-r"]);
-    status.says("cell3");
+    status.wait_for_text("cell3");
     status.reads_keys();
     status.press("\r");
-    status.says("armctl --config robots.toml status -r");
+    status.wait_for_text("armctl --config robots.toml status -r");
     assert_eq!(status.end().code(), Some(0));
 }
 
@@ -162,16 +165,16 @@ fn enter_does_not_remove_a_robot() {
     std::fs::write(desk.folder.path().join("robots.toml"), robots).unwrap();
     for (way, keys) in [("Esc", "\r\x1b"), ("Ctrl-C", "\r\x03"), ("TERM", "\r"), ("HUP", "\r")] {
         let mut remove = line(&desk, &["robots", "remove"]);
-        remove.says("cell3");
+        remove.wait_for_text("cell3");
         remove.reads_keys();
         remove.press(keys);
         if keys == "\r" {
-            remove.says("cell3");
+            remove.wait_for_text("cell3");
             remove.reads_keys();
             remove.signal(way);
         }
         assert_eq!(remove.end().code(), Some(130), "{way}");
-        gives_back(&remove, way);
+        assert_terminal_restored(&remove, way);
         assert_eq!(desk.inventory().as_deref(), Some(robots), "{way}");
     }
 }
@@ -180,11 +183,11 @@ fn enter_does_not_remove_a_robot() {
 fn enter_does_not_select_a_deletion() {
     let desk = Desk::new();
     let mut delete = line(&desk, &["--sim", "yerc", "file", "delete"]);
-    delete.says("COUNT.JBI");
+    delete.wait_for_text("COUNT.JBI");
     delete.reads_keys();
     delete.press("\r\x1b");
     assert_eq!(delete.end().code(), Some(130), "Enter took nothing, Esc left");
-    gives_back(&delete, "left");
+    assert_terminal_restored(&delete, "left");
 }
 
 #[test]

@@ -33,7 +33,7 @@ impl Desk {
     }
 
     /// A controller whose axes can move.
-    fn powered(family: &'static str) -> Self {
+    fn with_power(family: &'static str) -> Self {
         let desk = Self::new(family);
         let on = desk.run(&[family, "servo", "on", "--yes"]);
         assert!(on.status.success(), "{}", String::from_utf8_lossy(&on.stderr));
@@ -61,45 +61,45 @@ impl Desk {
 
     /// Repeats the command until the controller accepts it: its guardian or adapter may still handle the end of
     /// another.
-    fn told(&self, words: &str) -> Value {
+    fn reported_states(&self, words: &str) -> Value {
         let words: Vec<&str> = words.split(' ').chain(["--json"]).collect();
-        let mut outputs = (0..LOOKS).map(|_| self.run(&words));
+        let mut outputs = (0..MAX_POLLS).map(|_| self.run(&words));
         let output = outputs.find(|output| output.status.success()).expect("the controller answers");
         serde_json::from_slice::<Value>(&output.stdout).expect("an envelope")["data"].clone()
     }
 
     /// The panel at its question.
-    fn asked(&self, words: &[&str]) -> Terminal {
+    fn ask_panel(&self, words: &[&str]) -> Terminal {
         let command = self.command(&[&["teach", self.family], words].concat());
         let mut teach = Terminal::start(command, 100, 30).expect("a terminal");
-        teach.says("Continue? [y/N]");
+        teach.wait_for_text("Continue? [y/N]");
         teach
     }
 
     /// The panel, once it shows the robot.
     fn panel(&self, words: &[&str]) -> Terminal {
-        let mut teach = self.asked(words);
+        let mut teach = self.ask_panel(words);
         teach.press("y\r");
-        teach.shows("REAL CONTROLLER");
-        teach.shows("axis");
+        teach.wait_for_picture("REAL CONTROLLER");
+        teach.wait_for_picture("axis");
         teach
     }
 
     /// A panel in the middle of a step: ten millimetres at one millimetre per second, long enough to test during the
     /// step.
-    fn under_way(&self, start: f64) -> Terminal {
+    fn is_moving(&self, start: f64) -> Terminal {
         let mut teach = self.panel(&[]);
         teach.press("<++");
-        teach.shows("step 10 mm");
+        teach.wait_for_picture("step 10 mm");
         teach.press("\x1b[C");
-        teach.shows("MOVING");
-        self.moves_from(start);
+        teach.wait_for_picture("MOVING");
+        self.wait_for_motion_from(start);
         teach
     }
 
     /// Waits until X of the base differs from `start`, so that the step is in progress.
-    fn moves_from(&self, start: f64) {
-        assert!((0..LOOKS).any(|_| self.x() > start), "nothing moves");
+    fn wait_for_motion_from(&self, start: f64) {
+        assert!((0..MAX_POLLS).any(|_| self.x() > start), "nothing moves");
     }
 
     /// X of the base.
@@ -109,7 +109,7 @@ impl Desk {
 }
 
 /// Number of polls after which an event is considered absent.
-const LOOKS: usize = 2000;
+const MAX_POLLS: usize = 2000;
 
 #[test]
 fn refuses_unsupported_uses() {
@@ -122,19 +122,19 @@ fn refuses_unsupported_uses() {
         (&["teach", "yerc", "--watch"], "--watch"),
     ] {
         let output = desk.run(words);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
-        assert!(said.contains(part), "{words:?}: {said}");
+        let messages = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {messages}");
+        assert!(messages.contains(part), "{words:?}: {messages}");
     }
-    let mut teach = desk.asked(&["--max-step", "1", "--max-speed", "5"]);
+    let mut teach = desk.ask_panel(&["--max-step", "1", "--max-speed", "5"]);
     let question = String::from_utf8_lossy(&teach.written).replace("\r\n", " ");
     for part in ["REAL CONTROLLER", "at most 1 mm", "at most 5 mm/s"] {
         assert!(question.contains(part), "{question}");
     }
     teach.press("n\r");
-    teach.says("nothing was sent");
+    teach.wait_for_text("nothing was sent");
     assert_eq!(teach.end().code(), Some(7));
-    assert!(teach.is_as_before());
+    assert!(teach.is_restored());
 }
 
 #[test]
@@ -144,27 +144,27 @@ fn limits_step_sizes_and_speeds() {
     {
         let mut teach = desk.panel(words);
         teach.press("++++++>>>>>>");
-        teach.shows(largest);
-        teach.shows(fastest);
+        teach.wait_for_picture(largest);
+        teach.wait_for_picture(fastest);
         teach.press("------");
-        teach.shows("step 0.01 mm");
+        teach.wait_for_picture("step 0.01 mm");
         teach.press("q");
         assert_eq!(teach.end().code(), Some(0));
         let drawn = String::from_utf8_lossy(&teach.written).into_owned();
         assert!(!drawn.contains("25 mm/s"), "{drawn}");
-        assert!(teach.is_as_before());
+        assert!(teach.is_restored());
     }
 }
 
 #[test]
 fn keys_move_one_axis_by_a_step() {
-    let desk = Desk::powered("yerc");
+    let desk = Desk::with_power("yerc");
     let before = desk.data("yerc position --coordinates base")["positions"][0].clone();
     let mut teach = desk.panel(&[]);
     teach.press("\x1b[B\x1b[C");
-    teach.shows("ok move relative --y 0.1 --coordinate base --speed 5mm/s");
+    teach.wait_for_picture("ok move relative --y 0.1 --coordinate base --speed 5mm/s");
     teach.press("c");
-    teach.shows("tool  axis Y");
+    teach.wait_for_picture("tool  axis Y");
     teach.press("q");
     assert_eq!(teach.end().code(), Some(0));
     let after = desk.data("yerc position --coordinates base")["positions"][0].clone();
@@ -174,11 +174,11 @@ fn keys_move_one_axis_by_a_step() {
         assert!(moved(name).abs() < 1e-6, "{name}: {before} {after}");
     }
 
-    let desk = Desk::powered("toyo");
+    let desk = Desk::with_power("toyo");
     let before = desk.data("toyo position")["positions"][0].clone();
     let mut teach = desk.panel(&[]);
     teach.press("\x1b[C");
-    teach.shows("ok jog X + inch");
+    teach.wait_for_picture("ok jog X + inch");
     teach.press("q");
     assert_eq!(teach.end().code(), Some(0));
     let after = desk.data("toyo position")["positions"][0].clone();
@@ -188,20 +188,20 @@ fn keys_move_one_axis_by_a_step() {
 
 #[test]
 fn stops_a_step_when_the_program_is_killed() {
-    let desk = Desk::powered("yerc");
+    let desk = Desk::with_power("yerc");
     let start = desk.x();
     let mut teach = desk.panel(&[]);
     teach.press("<+");
-    teach.shows("step 1 mm");
+    teach.wait_for_picture("step 1 mm");
     // Keys during a step are not stored.
     teach.press("\x1b[C\x1b[C\x1b[C\x1b[C");
-    teach.shows("MOVING");
-    desk.moves_from(start);
+    teach.wait_for_picture("MOVING");
+    desk.wait_for_motion_from(start);
     teach.child.kill().expect("it is killed");
     teach.child.wait().expect("it is our child");
     // The guardian stops it, and nothing follows.
-    assert!((0..LOOKS).any(|_| desk.data("yerc status")["held"] == true), "{}", desk.data("yerc status"));
-    assert!((0..LOOKS).any(|_| desk.data("yerc status")["running"] == false), "it does not stop");
+    assert!((0..MAX_POLLS).any(|_| desk.data("yerc status")["held"] == true), "{}", desk.data("yerc status"));
+    assert!((0..MAX_POLLS).any(|_| desk.data("yerc status")["running"] == false), "it does not stop");
     assert!(desk.x() < start + 1.0 + 1e-6, "{start} {}", desk.x());
 }
 
@@ -210,39 +210,39 @@ fn stops_a_step_when_the_program_is_killed() {
 fn stops_a_motion_when_the_program_is_killed_or_frozen() {
     for signal in ["KILL", "STOP"] {
         // Half a metre at a tenth of the speed.
-        let desk = Desk::powered("toyo");
+        let desk = Desk::with_power("toyo");
         desk.data("toyo home --yes");
         desk.data("toyo param set M10 P --yes");
         desk.data("toyo override set 10 --yes");
         desk.data("toyo point set 5 x=500 y=0 z=0 r=0 --yes");
         let mut teach = desk.panel(&[]);
         // Before that, a terminal in normal mode may interpret Enter.
-        teach.shows("step 0.1 mm");
+        teach.wait_for_picture("step 0.1 mm");
         teach.press("g5\r");
-        teach.shows("y moves to point 5");
+        teach.wait_for_picture("y moves to point 5");
         teach.press("y");
-        teach.shows("MOVING");
-        let x = || desk.told("toyo position")["positions"][0]["x_mm"].as_f64().expect("a number");
-        assert!((0..LOOKS).any(|_| x() > 0.0), "nothing moves");
+        teach.wait_for_picture("MOVING");
+        let x = || desk.reported_states("toyo position")["positions"][0]["x_mm"].as_f64().expect("a number");
+        assert!((0..MAX_POLLS).any(|_| x() > 0.0), "nothing moves");
         end(teach, signal);
-        assert!((0..LOOKS).any(|_| desk.told("toyo status")["running"] == false), "it does not stop");
+        assert!((0..MAX_POLLS).any(|_| desk.reported_states("toyo status")["running"] == false), "it does not stop");
         assert!(x() < 500.0, "{signal}: {}", x());
 
         // Ten millimetres at one per second. Until the adapter detects its missing master, it accepts no other.
         let desk = Desk::in_state("yrcx", "[[robot]]\nauto_speed = 10\n");
-        let x = || desk.told("yrcx position --yes")["positions"][0]["x_mm"].as_f64().expect("a number");
+        let x = || desk.reported_states("yrcx position --yes")["positions"][0]["x_mm"].as_f64().expect("a number");
         let mut teach = desk.panel(&[]);
         teach.press("<<<+++");
-        teach.shows("step 10 mm");
+        teach.wait_for_picture("step 10 mm");
         teach.press("\x1b[C");
-        teach.shows("● command");
+        teach.wait_for_picture("● command");
         end(teach, signal);
         // Without its master, the adapter stops the robot and raises an alarm.
-        let stands = || {
+        let resting_position = || {
             let (before, after) = (x(), x());
             (before - after).abs() < 1e-9
         };
-        assert!((0..LOOKS).any(|_| stands()), "it does not stop");
+        assert!((0..MAX_POLLS).any(|_| resting_position()), "it does not stop");
         assert!(x() < 10.0, "{signal}: {}", x());
     }
 }
@@ -255,12 +255,12 @@ fn end(mut teach: Terminal, signal: &str) {
 
 #[test]
 fn stop_works_during_a_step() {
-    let desk = Desk::powered("yerc");
+    let desk = Desk::with_power("yerc");
     let start = desk.x();
-    let mut teach = desk.under_way(start);
+    let mut teach = desk.is_moving(start);
     teach.press(" ");
-    teach.shows("ok hold on");
-    teach.until("it moves no more", |picture| !picture.text().contains("MOVING"));
+    teach.wait_for_picture("ok hold on");
+    teach.wait_until("it moves no more", |picture| !picture.text().contains("MOVING"));
     let stopped = desk.x();
     assert!(start < stopped && stopped < start + 10.0, "{start} {stopped}");
     assert_eq!(desk.data("yerc status")["held"], true);
@@ -272,14 +272,14 @@ fn stop_works_during_a_step() {
 #[test]
 fn leaving_during_a_motion_stops_it() {
     for (key, code) in [("q", 0), ("\x03", 130)] {
-        let desk = Desk::powered("yerc");
+        let desk = Desk::with_power("yerc");
         let start = desk.x();
-        let mut teach = desk.under_way(start);
+        let mut teach = desk.is_moving(start);
         teach.press(key);
         assert_eq!(teach.end().code(), Some(code));
-        assert!(teach.is_as_before());
-        let left = desk.x();
-        assert!(left < start + 10.0, "{start} {left}");
+        assert!(teach.is_restored());
+        let left_position = desk.x();
+        assert!(left_position < start + 10.0, "{start} {left_position}");
         assert_eq!(desk.data("yerc status")["running"], false);
     }
 }

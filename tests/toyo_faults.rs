@@ -37,7 +37,7 @@ struct Counters {
 }
 
 impl Counters {
-    fn carry_out(&mut self, block: &str) -> String {
+    fn execute_command(&mut self, block: &str) -> String {
         let request = match Request::parse(block) {
             Ok(request) if request.check().is_ok() => request,
             _ => return "@NG".to_owned(),
@@ -67,7 +67,7 @@ impl Peer for Counters {
             if !std::mem::take(&mut self.is_damaged)
                 && let Framed::Block(block) = framed
             {
-                let answer = self.carry_out(&block);
+                let answer = self.execute_command(&block);
                 self.answers.push(format!("{answer}\r\n").into_bytes());
             }
         }

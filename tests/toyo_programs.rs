@@ -64,7 +64,7 @@ impl Desk {
 
     /// Writes steps without a record in the files of this user, as a person at the pendant does.
     #[track_caller]
-    fn at_pendant(&self, step: &str, text: &str) {
+    fn write_at_pendant(&self, step: &str, text: &str) {
         let state = tempfile::tempdir().expect("a folder");
         let file = state.path().join("part.toyo");
         std::fs::write(&file, text).expect("a file");
@@ -133,7 +133,7 @@ fn get_returns_the_source_text_while_the_steps_are_unchanged() {
     desk.put(NAMED, &[]);
     assert_eq!(desk.text(&["get"]), NAMED);
     assert_eq!(desk.text(&["diff", "program.toyo"]), "the program of task 1 and program.toyo are equal, 6 steps\n");
-    desk.at_pendant("4", "TIMP TN2=3.5\n");
+    desk.write_at_pendant("4", "TIMP TN2=3.5\n");
     let text = desk.text(&["get"]);
     assert!(text.contains("TIMP TN2=003.5") && !text.contains("pick and place"), "{text}");
     let differs = desk.command(&["diff", "program.toyo"]).output().expect("armctl runs");
@@ -141,7 +141,7 @@ fn get_returns_the_source_text_while_the_steps_are_unchanged() {
     assert_eq!(differs.status.code(), Some(8));
     assert!(shown.contains("-TIMP TN2=003.5\n+TIMP TN2=001.5\n"), "{shown}");
     // The text is returned with its steps.
-    desk.at_pendant("4", "TIMP TN2=1.5\n");
+    desk.write_at_pendant("4", "TIMP TN2=1.5\n");
     assert_eq!(desk.text(&["get"]), NAMED);
 }
 
@@ -165,11 +165,11 @@ fn put_finds_steps_from_the_pendant_that_affect_the_program() {
     let base = "next: SPD V=5\nJMP TAG=next\n";
     desk.put(base, &[]);
     // A routine that is not called yet.
-    desk.at_pendant("5", "TAG TAG=7\nEND\n");
+    desk.write_at_pendant("5", "TAG TAG=7\nEND\n");
     let put = desk.put(&base.replace('5', "6"), &[]);
     assert_eq!(put.read(), 4, "its tags are unchanged, and its end does not run into the next steps");
     // The program was made longer.
-    desk.at_pendant("4", "SPD V=1\n");
+    desk.write_at_pendant("4", "SPD V=1\n");
     let put = desk.put(base, &[]);
     assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &3.into()));
     for program in [
@@ -179,7 +179,7 @@ fn put_finds_steps_from_the_pendant_that_affect_the_program() {
         "next: SPD V=5\nBRAC CN=1 OFS=1\nJMP TAG=next\n",
     ] {
         desk.put(base, &["--read-all"]);
-        desk.at_pendant("100", "TAG TAG=7\nHOME\n");
+        desk.write_at_pendant("100", "TAG TAG=7\nHOME\n");
         let put = desk.put(program, &[]);
         assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &2.into()), "{program}");
     }

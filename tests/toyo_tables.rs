@@ -139,7 +139,7 @@ struct Differences(BTreeSet<String>);
 
 impl Differences {
     #[expect(clippy::needless_pass_by_value, reason = "the many calls read better")]
-    fn same<T: PartialEq + std::fmt::Display>(&mut self, place: &str, what: &str, theirs: T, ours: T) {
+    fn assert_same<T: PartialEq + std::fmt::Display>(&mut self, place: &str, what: &str, theirs: T, ours: T) {
         if theirs != ours {
             // An equal difference of several axes or tasks is listed once.
             let place = place.split(' ').map(|word| {
@@ -152,7 +152,7 @@ impl Differences {
     }
 
     fn fields(&mut self, place: &str, theirs: &[FieldRow], ours: &[Field]) {
-        self.same(place, "fields", theirs.len(), ours.len());
+        self.assert_same(place, "fields", theirs.len(), ours.len());
         for (theirs, ours) in theirs.iter().zip(ours) {
             self.field(&format!("{place} {}", theirs.name), theirs, ours);
         }
@@ -163,7 +163,7 @@ impl Differences {
             "cmp2" | "cmple" => "enum",
             form => form,
         };
-        self.same(place, "form", form, &form_of(ours));
+        self.assert_same(place, "form", form, &form_of(ours));
         let comparisons = match &theirs.form[..] {
             "cmp2" => Some(vec!["= ", "< ", "> ", "<=", ">="]),
             "cmple" => Some(vec!["<=", ">="]),
@@ -177,24 +177,24 @@ impl Differences {
                 };
                 let own = format!("{} to {}", number.plain(number.least), number.plain(number.most));
                 if theirs.valid_min.is_some() {
-                    self.same(place, "valid", range(&theirs.valid_min, &theirs.valid_max), own.clone());
+                    self.assert_same(place, "valid", range(&theirs.valid_min, &theirs.valid_max), own.clone());
                 }
-                self.same(place, "range", range(&theirs.min, &theirs.max), own);
+                self.assert_same(place, "range", range(&theirs.min, &theirs.max), own);
             }
             Form::Word(own) => {
                 let own: Vec<&str> = own.iter().map(|word| word.text).collect();
-                self.same(place, "words", words.unwrap_or_default(), own.join(" "));
+                self.assert_same(place, "words", words.unwrap_or_default(), own.join(" "));
             }
             _ => {}
         }
-        self.same(place, "unit", theirs.unit.as_deref().unwrap_or_default(), ours.unit);
+        self.assert_same(place, "unit", theirs.unit.as_deref().unwrap_or_default(), ours.unit);
     }
 
     /// Checks that a sample is parsed and formatted unchanged.
     fn sample(&mut self, place: &str, layout: &Layout, sample: &str) {
         let made = layout.parse(sample).map_err(|error| error.to_string());
         let made = made.and_then(|record| record.emit().map_err(|error| error.to_string()));
-        self.same(place, "sample", sample, &made.unwrap_or_else(|error| error));
+        self.assert_same(place, "sample", sample, &made.unwrap_or_else(|error| error));
     }
 }
 
@@ -222,16 +222,16 @@ const BY_SAMPLE: [&str; 9] = ["WPAR", "RPAR", "WSTX", "RSTX", "WPLT", "RPLT", "M
 
 fn command(differences: &mut Differences, theirs: &CommandRow, ours: &Row) {
     let place = theirs.word.as_str();
-    differences.same(place, "word", place, ours.word);
-    differences.same(place, "host ON", theirs.host_on, ours.needs_host);
-    differences.same(place, "EEPROM", theirs.eeprom, ours.writes_eeprom);
-    differences.same(place, "models", theirs.only_on.join(" "), ours.only_on.join(" "));
+    differences.assert_same(place, "word", place, ours.word);
+    differences.assert_same(place, "host ON", theirs.host_on, ours.needs_host);
+    differences.assert_same(place, "EEPROM", theirs.eeprom, ours.writes_eeprom);
+    differences.assert_same(place, "models", theirs.only_on.join(" "), ours.only_on.join(" "));
     for form in &theirs.forms {
         let request = Request::parse(&form.request_sample).unwrap_or_else(|error| panic!("{place}: {error}"));
-        differences.same(place, "sample", form.request_sample.clone(), request.text());
+        differences.assert_same(place, "sample", form.request_sample.clone(), request.text());
         let answer = request.answer(&form.answer_sample);
         let answer = answer.map_or_else(|error| error.to_string(), |answer| answer.text());
-        differences.same(place, "sample", form.answer_sample.trim_end(), answer.trim_end());
+        differences.assert_same(place, "sample", form.answer_sample.trim_end(), answer.trim_end());
         if BY_SAMPLE.contains(&place) {
             continue;
         }
@@ -239,12 +239,12 @@ fn command(differences: &mut Differences, theirs: &CommandRow, ours: &Row) {
             |text: &str, forms: &'static [Layout]| forms.iter().find(|layout| format!("@{}", layout.text) == text);
         match fits(&form.request, ours.requests) {
             Some(layout) => differences.fields(&format!("{place} request"), &form.request_fields, layout.fields),
-            None => differences.same(place, "request", &form.request[..], "another"),
+            None => differences.assert_same(place, "request", &form.request[..], "another"),
         }
         match fits(&form.answer, ours.answers) {
             Some(layout) => differences.fields(&format!("{place} answer"), &form.answer_fields, layout.fields),
-            None if ours.is_order() => differences.same(place, "answer", &form.answer[..], "@OK"),
-            None => differences.same(place, "answer", &form.answer[..], "another"),
+            None if ours.is_order() => differences.assert_same(place, "answer", &form.answer[..], "@OK"),
+            None => differences.assert_same(place, "answer", &form.answer[..], "another"),
         }
     }
 }
@@ -257,26 +257,26 @@ fn differences() -> BTreeSet<String> {
     }
     for (theirs, ours) in tables.parameters.iter().zip(&PARAMETERS) {
         let place = theirs.id.as_str();
-        differences.same(place, "id", place, ours.id);
-        differences.same(place, "form", &theirs.write[..], ours.layout.text);
-        differences.same(place, "key", &theirs.read[..], ours.key.text);
-        differences.same(place, "models", theirs.only_on.join(" "), ours.only_on.join(" "));
+        differences.assert_same(place, "id", place, ours.id);
+        differences.assert_same(place, "form", &theirs.write[..], ours.layout.text);
+        differences.assert_same(place, "key", &theirs.read[..], ours.key.text);
+        differences.assert_same(place, "models", theirs.only_on.join(" "), ours.only_on.join(" "));
         differences.fields(place, &theirs.fields, ours.layout.fields);
         differences.fields(place, &theirs.read_fields, ours.key.fields);
         differences.sample(place, &ours.layout, &theirs.sample);
     }
     for (theirs, ours) in tables.instructions.iter().zip(&INSTRUCTIONS) {
         let place = theirs.word.as_str();
-        differences.same(place, "word", place, ours.word);
-        differences.same(place, "form", &theirs.text[..], ours.layout.text);
-        differences.same(place, "models", theirs.only_on.join(" "), ours.only_on.join(" "));
+        differences.assert_same(place, "word", place, ours.word);
+        differences.assert_same(place, "form", &theirs.text[..], ours.layout.text);
+        differences.assert_same(place, "models", theirs.only_on.join(" "), ours.only_on.join(" "));
         differences.fields(place, &theirs.fields, ours.layout.fields);
         differences.sample(place, &ours.layout, &theirs.sample);
     }
     for (theirs, ours) in tables.records.iter().zip(&RECORDS) {
         let place = format!("record {}", theirs.number);
-        differences.same(&place, "number", theirs.number, ours.number);
-        differences.same(&place, "form", &theirs.text[..], ours.layout.text);
+        differences.assert_same(&place, "number", theirs.number, ours.number);
+        differences.assert_same(&place, "form", &theirs.text[..], ours.layout.text);
         differences.fields(&place, &theirs.fields, ours.layout.fields);
         differences.sample(&place, &ours.layout, &theirs.sample);
     }

@@ -93,7 +93,7 @@ fn run(folder: &Path, target: &str, words: &str) -> (i32, Value, Value) {
     (output.status.code().unwrap(), json(&output.stdout), json(&output.stderr))
 }
 
-fn at(target: &str, words: &str) -> (i32, Value, Value) {
+fn at_target(target: &str, words: &str) -> (i32, Value, Value) {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), target, words)
 }
@@ -105,7 +105,7 @@ fn refused_alarm_does_not_hide_others() {
         let is_slot_2 = matches!((request.command, request.instance), (0x70 | 0x30A, 2) | (0x71 | 0x30B, 1002));
         if is_slot_2 { refused(request, 0x2010) } else { None }
     });
-    let (exit, list, _) = at(&target, "alarm list");
+    let (exit, list, _) = at_target(&target, "alarm list");
     let error = &list["data"]["alarms"][1]["error"];
     assert_eq!((exit, &list["ok"], &error["asked"]), (9, &json!(false), &json!("alarm slot 2")), "{list}");
     assert!(error["message"].as_str().unwrap().contains("0x30A (instance 2)"), "{error}");
@@ -113,7 +113,7 @@ fn refused_alarm_does_not_hide_others() {
     assert_eq!(list["data"]["alarms"][0]["ok"], true);
     assert_eq!(list["error"]["exit"], 9);
 
-    let (exit, history, _) = at(&target, "alarm history --limit 3");
+    let (exit, history, _) = at_target(&target, "alarm history --limit 3");
     let failed: Vec<&Value> =
         history["data"]["alarms"].as_array().unwrap().iter().filter(|alarm| alarm["ok"] == false).collect();
     assert_eq!((exit, failed.len()), (9, 1), "{history}");
@@ -121,7 +121,7 @@ fn refused_alarm_does_not_hide_others() {
     assert_eq!(failed[0]["error"]["asked"], "monitor alarm 2");
     assert!(failed[0]["error"]["message"].as_str().unwrap().contains("0x30B (instance 1002)"), "{history}");
 
-    let (exit, nothing, error) = at(&target, "alarm history --class monitor --from 2 --limit 1");
+    let (exit, nothing, error) = at_target(&target, "alarm history --class monitor --from 2 --limit 1");
     assert_eq!((exit, nothing, &error["error"]["code"]), (3, Value::Null, &json!("0x2010")), "{error}");
 }
 
@@ -138,7 +138,7 @@ fn every_refusal_of_30a_falls_back_to_70() {
         (request.command == 0x30A).then(|| answer(request, LAST_BLOCK, status, &[]))
     }
     for (way, spoil) in WAYS {
-        let (exit, list, _) = at(&controller("alarm = [{ code = 4315 }]", spoil), "alarm list");
+        let (exit, list, _) = at_target(&controller("alarm = [{ code = 4315 }]", spoil), "alarm list");
         assert_eq!((exit, &list["data"]["alarms"][0]["code"]), (0, &json!("4315")), "{way}: {list}");
         assert_eq!(list["data"]["with_texts"], false, "{way}");
     }
@@ -150,31 +150,31 @@ fn positions_and_hours_keep_partial_answers() {
         (0x75, 101) | (0x88, 110) => refused(request, 0x2010),
         _ => None,
     });
-    let (exit, position, _) = at(&target, "position");
+    let (exit, position, _) = at_target(&target, "position");
     assert_eq!((exit, &position["data"]["positions"][0]["joints"][0]["pulses"]), (9, &json!(0)), "{position}");
     assert_eq!(position["data"]["positions"][1]["error"]["asked"], "position of R1 (base)");
     assert!(position["error"]["message"].as_str().unwrap().contains("0x75 (instance 101)"), "{position}");
-    let (exit, hours, _) = at(&target, "hours");
+    let (exit, hours, _) = at_target(&target, "hours");
     let ok: Vec<&Value> = hours["data"]["times"].as_array().unwrap().iter().map(|time| &time["ok"]).collect();
     assert_eq!((exit, ok), (9, vec![&json!(true), &json!(true), &json!(false), &json!(true)]), "{hours}");
-    let (exit, ..) = at(&target, "position --coordinates base");
+    let (exit, ..) = at_target(&target, "position --coordinates base");
     assert_eq!(exit, 3);
 }
 
 #[test]
 fn reports_variables_as_typed() {
     let target = controller("", |_| None);
-    let (exit, two, _) = at(&target, "var get B0 B300");
+    let (exit, two, _) = at_target(&target, "var get B0 B300");
     assert_eq!((exit, &two["error"]["exit"]), (9, &json!(9)));
     let message = two["error"]["message"].as_str().unwrap();
     assert!(message.starts_with("1 of 2 failed: B300: the controller refused 0x7A (instance 300)"), "{message}");
     assert_eq!((&two["data"]["items"][0]["ok"], &two["data"]["items"][1]["ok"]), (&json!(true), &json!(false)));
-    let (exit, three, _) = at(&target, "var get B0 B99 B100");
+    let (exit, three, _) = at_target(&target, "var get B0 B99 B100");
     assert_eq!((exit, &three["data"]["items"][2]["error"]["asked"]), (9, &json!("B100")));
-    let (exit, nothing, error) = at(&target, "var get B300");
+    let (exit, nothing, error) = at_target(&target, "var get B300");
     assert_eq!((exit, nothing), (3, Value::Null));
     assert!(error["error"]["message"].as_str().unwrap().starts_with("B300: "), "{error}");
-    let (exit, all, _) = at(&target, "var get B300 I300");
+    let (exit, all, _) = at_target(&target, "var get B300 I300");
     assert_eq!((exit, &all["error"]["kind"]), (3, &json!("refused")));
     assert_eq!((&all["data"]["items"][0]["ok"], &all["data"]["items"][1]["ok"]), (&json!(false), &json!(false)));
 }
@@ -188,21 +188,21 @@ fn falls_back_to_single_reads_of_registers_and_signals() {
             _ => None,
         }
     });
-    let (exit, registers, _) = at(&target, "register get 10..11");
+    let (exit, registers, _) = at_target(&target, "register get 10..11");
     assert_eq!((exit, &registers["data"]["items"][0]["value"]), (0, &json!(4660)), "{registers}");
-    let (exit, some, _) = at(&target, "register get 0xA..0xC");
+    let (exit, some, _) = at_target(&target, "register get 0xA..0xC");
     assert_eq!((exit, &some["data"]["items"][2]["error"]["asked"]), (9, &json!("M12")), "{some}");
     assert!(some["error"]["message"].as_str().unwrap().contains("0x79 (instance 12)"), "{some}");
-    let (exit, signals, _) = at(&target, "io get 10010..10027");
+    let (exit, signals, _) = at_target(&target, "io get 10010..10027");
     assert_eq!((exit, &signals["data"]["items"][0]["value"]), (0, &json!(true)), "{signals}");
-    let (exit, set, error) = at(&target, "io set 27010=on 27030=on");
+    let (exit, set, error) = at_target(&target, "io set 27010=on 27030=on");
     assert_eq!((exit, &set["data"]["items"][1]["value"]), (0, &json!(true)), "{set} {error}");
 }
 
 #[test]
 fn reports_items_written_before_a_refusal() {
     let target = controller("", |request| if request.instance == 20 { refused(request, 0x2110) } else { None });
-    let (exit, _, error) = at(&target, "register set 1=1 20=2 30=3");
+    let (exit, _, error) = at_target(&target, "register set 1=1 20=2 30=3");
     let message = error["error"]["message"].as_str().unwrap();
     assert_eq!(exit, 9, "{error}");
     assert!(message.contains("written: register 1; not written: register 20, 30"), "{message}");
@@ -220,7 +220,7 @@ fn omits_missing_axes() {
             ("torque", "/data/torque_raw"),
             ("position-error", "/data/error_pulses"),
         ] {
-            let (exit, data, _) = at(&target, words);
+            let (exit, data, _) = at_target(&target, words);
             let found = data.pointer(field);
             let count = found.and_then(Value::as_object).map(serde_json::Map::len);
             let count = count.or(found.and_then(Value::as_array).map(Vec::len));
@@ -233,7 +233,7 @@ fn omits_missing_axes() {
     }
     // If the controller does not report it, it is unknown.
     let untold = controller("", |request| if request.command == 0x74 { refused(request, 0x2150) } else { None });
-    let (exit, data, _) = at(&untold, "torque");
+    let (exit, data, _) = at_target(&untold, "torque");
     assert_eq!((exit, data["data"]["torque_raw"].as_object().map(serde_json::Map::len)), (0, Some(8)));
 }
 
@@ -243,18 +243,18 @@ fn single_word_of_a_position_rewrites_the_position() {
     let target = controller("", |request| {
         if request.command == 0x7F && request.service == 0x10 { refused(request, 0xA001) } else { None }
     });
-    let (exit, set, error) = at(&target, "var set P1.tool=0x2 P1.axis1=5 --yes");
+    let (exit, set, error) = at_target(&target, "var set P1.tool=0x2 P1.axis1=5 --yes");
     assert_eq!(exit, 0, "{error}");
     let tool = json!({"name": "P1", "part": "tool", "attribute": 3, "old": 0, "new": 2, "value": 2});
     assert_eq!(set["data"]["parts"][0], tool, "{set}");
-    let (_, get, _) = at(&target, "var get P1");
+    let (_, get, _) = at_target(&target, "var get P1");
     let position = &get["data"]["items"][0]["value"];
     let text = position["text"].as_str().unwrap();
     assert!(text.starts_with("pulse:s=5,l=-2000,") && text.contains("tool=2"), "{text}");
-    let (exit, _, error) = at(&target, "var set B0=1 P100.tool=2");
+    let (exit, _, error) = at_target(&target, "var set B0=1 P100.tool=2");
     assert_eq!(exit, 3, "{error}");
     assert!(error["error"]["message"].as_str().unwrap().contains("nothing was written"), "{error}");
-    let (_, get, _) = at(&target, "var get B0");
+    let (_, get, _) = at_target(&target, "var get B0");
     assert_eq!(get["data"]["items"][0]["value"], 0);
 }
 
@@ -264,7 +264,7 @@ fn garbage_in_a_transfer_is_malformed() {
         let is_ack = request.division == Division::File && request.ack && request.service == 0x16;
         is_ack.then(|| vec![0xFF; 40])
     });
-    let (exit, _, error) = at(&target, "file get TESTJOB.JBI");
+    let (exit, _, error) = at_target(&target, "file get TESTJOB.JBI");
     assert_eq!((exit, &error["error"]["kind"]), (5, &json!("malformed")), "{error}");
 }
 
@@ -280,14 +280,14 @@ fn parses_unusual_file_lists() {
         let block = if request.ack { LAST_BLOCK | 2 } else { LAST_BLOCK | 1 };
         Some(answer(request, block, Status::OK, data))
     });
-    let (exit, list, error) = at(&target, "file list");
+    let (exit, list, error) = at_target(&target, "file list");
     let names: Vec<&Value> = list["data"]["files"].as_array().unwrap().iter().map(|file| &file["name"]).collect();
     assert_eq!(
         (exit, names),
         (0, ["A.JBI", "B.JBI", "C.JBI", "D.JBI"].iter().map(|name| json!(name)).collect::<Vec<_>>().iter().collect()),
         "{error}"
     );
-    let (exit, _, error) = at(&target, "file list --type dat");
+    let (exit, _, error) = at_target(&target, "file list --type dat");
     assert_eq!(exit, 5, "{error}");
     assert!(error["error"]["message"].as_str().unwrap().contains("958 bytes"), "{error}");
 }
@@ -364,7 +364,7 @@ fn can_ignore_the_date_in_a_header() {
 }
 
 /// Whether a frame matches a line of a dry run; request numbers differ.
-fn shows(line: &Value, frame: &[u8]) -> bool {
+fn frames_shown(line: &Value, frame: &[u8]) -> bool {
     let shown = line["hex"].as_str().unwrap();
     let byte = |index: usize| shown.get(2 * index..2 * index + 2);
     let is_same = |(index, sent): (usize, &u8)| {
@@ -375,7 +375,7 @@ fn shows(line: &Value, frame: &[u8]) -> bool {
 
 #[test]
 fn dry_run_shows_acknowledgements_and_repeated_reads() {
-    fn as_asked(_: &RequestFrame<'_>) -> Option<Vec<u8>> {
+    fn typed_names(_: &RequestFrame<'_>) -> Option<Vec<u8>> {
         None
     }
     fn several_unknown(request: &RequestFrame<'_>) -> Option<Vec<u8>> {
@@ -388,10 +388,10 @@ fn dry_run_shows_acknowledgements_and_repeated_reads() {
     let job = format!("/JOB\r\n//NAME LONG\r\nNOP\r\n{}END\r\n", "NOP\r\n".repeat(300));
     std::fs::write(folder.path().join("LONG.JBI"), &job).unwrap();
     let lines: [(&str, Spoil); 9] = [
-        ("file list --type jbi,prm", as_asked),
-        ("file get TESTJOB.JBI --force", as_asked),
-        ("file put LONG.JBI --verify --ignore-header --yes", as_asked),
-        ("file put LONG.JBI --replace --yes", as_asked),
+        ("file list --type jbi,prm", typed_names),
+        ("file get TESTJOB.JBI --force", typed_names),
+        ("file put LONG.JBI --verify --ignore-header --yes", typed_names),
+        ("file put LONG.JBI --replace --yes", typed_names),
         ("var get B0..B9 P0..P2", several_unknown),
         ("var get B0..B3", several_refused),
         ("register get 0..3", several_refused),
@@ -407,11 +407,14 @@ fn dry_run_shows_acknowledgements_and_repeated_reads() {
         run(folder.path(), &target, line);
         let sent = received.lock().unwrap().clone();
         for (at, frame) in sent.iter().enumerate() {
-            assert!(shown.iter().any(|line| shows(line, frame)), "{line}: frame {at} is not shown: {frame:02x?}");
+            assert!(
+                shown.iter().any(|line| frames_shown(line, frame)),
+                "{line}: frame {at} is not shown: {frame:02x?}"
+            );
         }
         let mut rest = sent.iter();
         for certain in shown.iter().filter(|line| line["depends_on"].is_null()) {
-            assert!(rest.any(|frame| shows(certain, frame)), "{line}: not sent, or in another order: {certain}");
+            assert!(rest.any(|frame| frames_shown(certain, frame)), "{line}: not sent, or in another order: {certain}");
         }
         assert!(shown.iter().any(|line| line["depends_on"].is_string()) && sent.len() > 1, "{line}: {sent:02x?}");
     }

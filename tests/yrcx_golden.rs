@@ -37,7 +37,7 @@ fn parses_commands_into_values() {
         let order = Order::parse(&example.command_words()).unwrap();
         let meant = example.strings("request");
         for (key, text) in &meant {
-            let found = shown(order.row().request(), order.values(), *key, text);
+            let found = shown_values(order.row().request(), order.values(), *key, text);
             assert_eq!(&found, text, "{} {key}", example.id());
         }
         for (key, value) in order.values().iter() {
@@ -119,7 +119,7 @@ fn parses_misprinted_commands_literally() {
     let examples = examples();
     let printed = |id: &str| {
         let example = examples.iter().find(|example| example.id() == id).unwrap();
-        example.printed("wi").map(|words| Order::parse(&words))
+        example.printed_words("wi").map(|words| Order::parse(&words))
     };
     let value = |id: &str, key| printed(id).unwrap().unwrap().values().int(key);
     assert_eq!(value("4.2.12-robot", Key::Robot), Some(0), "all robots, where robot 1 is meant");
@@ -337,13 +337,13 @@ impl Example {
         words_of(self.0.get("wo_corrected").or(self.0.get("wo"))?)
     }
 
-    fn printed(&self, side: &str) -> Option<Words> {
+    fn printed_words(&self, side: &str) -> Option<Words> {
         words_of(&self.0[side])
     }
 }
 
 /// What a value says, in the words of the field that takes the text.
-fn shown(fields: impl Iterator<Item = &'static Field>, values: &Values, key: Key, text: &str) -> String {
+fn shown_values(fields: impl Iterator<Item = &'static Field>, values: &Values, key: Key, text: &str) -> String {
     let value = values.value(key).unwrap_or_else(|| panic!("{key} is not there"));
     let texts: Vec<String> = fields.filter(|field| field.key == key).map(|field| field.show(value)).collect();
     texts.iter().find(|shown| *shown == text).unwrap_or(&texts[0]).clone()

@@ -62,7 +62,7 @@ impl Drop for Simulator {
 }
 
 /// Exit code and stderr.
-fn failed(output: &Output) -> (i32, String) {
+fn failure_of(output: &Output) -> (i32, String) {
     (output.status.code().unwrap(), String::from_utf8(output.stderr.clone()).unwrap())
 }
 
@@ -77,7 +77,7 @@ fn every_adapter_fault_has_an_exit_code() {
         ("garbage", 5, "cannot decode"),
     ] {
         let output = Simulator::start(&["--fault", fault]).run("yrcx info servo");
-        let (code, stderr) = failed(&output);
+        let (code, stderr) = failure_of(&output);
         assert!(code == exit && stderr.contains(part), "{fault}: {code} {stderr}");
         assert!(output.stdout.is_empty(), "{fault}");
     }
@@ -87,7 +87,7 @@ fn every_adapter_fault_has_an_exit_code() {
 fn survives_lost_and_duplicated_images() {
     for fault in ["--fault=half-rate", "--fault=double", "--fault=drop=10%,dup=10%,reorder=10%,seed=7"] {
         let output = Simulator::start(&[fault]).run("yrcx info servo --json");
-        assert!(output.status.success(), "{fault}: {:?}", failed(&output));
+        assert!(output.status.success(), "{fault}: {:?}", failure_of(&output));
         let report: Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!(report["data"]["axes"][3]["state"], "servo");
     }
@@ -102,7 +102,7 @@ fn one_owner_and_several_listeners() {
     let mut told = BufReader::new(watch.stdout.take().unwrap()).lines();
     told.next().unwrap().unwrap();
 
-    let (code, stderr) = failed(&simulator.run("yrcx status --full"));
+    let (code, stderr) = failure_of(&simulator.run("yrcx status --full"));
     assert!(code == 3 && stderr.contains("[0x0106]") && stderr.contains("another master"), "{code} {stderr}");
     assert!(stderr.contains("hint: `yrcx io get` and `yrcx status` can read its signals"), "{stderr}");
     let mut listener = armctl();
@@ -139,14 +139,14 @@ fn monitoring_does_not_disturb_the_owner() {
     // None of these opens an owner connection; it would be refused.
     for line in ["yrcx status", "status", "yrcx io get", "yrcx io watch --count 1", "yrcx auto-mode"] {
         let output = simulator.run(line);
-        let (code, stderr) = failed(&output);
+        let (code, stderr) = failure_of(&output);
         assert!(code == 0 && stderr.is_empty(), "{line}: {code} {stderr}");
     }
     let seen = simulator.run("yrcx status --json").stdout;
     let seen: Value = serde_json::from_slice(&seen).unwrap();
     assert_eq!((&seen["data"]["servos"], &seen["data"]["joints"]), (&Value::Null, &Value::Null));
     assert!(seen["data"]["not_asked"].as_str().unwrap().contains("--full"));
-    let (code, stderr) = failed(&simulator.run("yrcx io get SI06"));
+    let (code, stderr) = failure_of(&simulator.run("yrcx io get SI06"));
     assert!(code == 2 && stderr.contains("can be read only by the client that commands"), "{code} {stderr}");
     interrupt(&owner);
     assert_eq!(owner.wait().unwrap().code(), Some(130));
@@ -163,7 +163,7 @@ fn listens_to_a_board_without_readable_assemblies() {
 fn built_in_simulator_supports_faults() {
     let run = |url: &str| armctl().args(["-t", url, "--timeout", "400ms", "yrcx", "info", "servo"]).output().unwrap();
     for url in ["sim:?fault=drop=5%25,seed=7", "sim:?fault=double", "sim:?fault=half-rate"] {
-        assert!(run(url).status.success(), "{url}: {:?}", failed(&run(url)));
+        assert!(run(url).status.success(), "{url}: {:?}", failure_of(&run(url)));
     }
     for (url, exit, part) in [
         ("sim:?fault=stall", 4, "sends no data"),
@@ -172,7 +172,7 @@ fn built_in_simulator_supports_faults() {
         ("sim:?fault=none", 2, "wrong-sequence"),
         ("sim:?fault=busy=5%25", 2, "unknown fault 'busy'; the faults are drop, dup"),
     ] {
-        let (code, stderr) = failed(&run(url));
+        let (code, stderr) = failure_of(&run(url));
         assert!(code == exit && stderr.contains(part), "{url}: {code} {stderr}");
     }
 }
@@ -225,12 +225,12 @@ fn tshark_decodes_the_recording() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let read = |line: &str, filter: &str, fields: &[&str]| {
         let output = simulator.run(&format!("{line} --trace {}", file.path().display()));
-        assert!(output.status.success(), "{:?}", failed(&output));
+        assert!(output.status.success(), "{:?}", failure_of(&output));
         let shown = |filter: &str, fields: &[&str]| {
             let mut tshark = Command::new("tshark");
             tshark.arg("-r").arg(file.path()).args(["-Y", filter, "-T", "fields", "-E", "separator=|"]);
             let output = tshark.args(fields.iter().flat_map(|field| ["-e", field])).output().unwrap();
-            assert!(output.status.success(), "{}", failed(&output).1);
+            assert!(output.status.success(), "{}", failure_of(&output).1);
             String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect::<Vec<_>>()
         };
         assert_eq!(shown("_ws.malformed || _ws.expert.severity == error", &["frame.number"]), [""; 0], "{line}");

@@ -36,16 +36,16 @@ fn any_command() -> impl Strategy<Value = Words> {
 /// A valid command of any row.
 fn any_order() -> impl Strategy<Value = Order> {
     (0..ROWS.len(), any::<Words>(), any::<[u32; 8]>()).prop_filter_map("a rule of the row", |(row, words, dice)| {
-        Order::parse(&repaired(&ROWS[row], words, &dice)).ok()
+        Order::parse(&with_valid_fields(&ROWS[row], words, &dice)).ok()
     })
 }
 
 /// Makes every relevant field valid, and clears the rest. Parameters get the required axis and value.
-fn repaired(row: &Row, random: Words, dice: &[u32; 8]) -> Words {
+fn with_valid_fields(row: &Row, random: Words, dice: &[u32; 8]) -> Words {
     let mut words = random;
     words[0] = row.code | (random[0] & 0xF000 & if row.has_robot() { 0xF000 } else { 0 });
     for field in row.request() {
-        if counts(row, field, &words) && field.accept(&field.read(&words)).is_err() {
+        if is_counted(row, field, &words) && field.accept(&field.read(&words)).is_err() {
             let value = valid(field, dice[(field.word + field.name.len()) % 8]);
             field.write(&mut words, &value).unwrap();
         }
@@ -63,14 +63,14 @@ fn repaired(row: &Row, random: Words, dice: &[u32; 8]) -> Words {
     }
     let mut keep = [0; 16];
     keep[0] = 0x0FFF;
-    for field in row.request().filter(|field| counts(row, field, &words)) {
+    for field in row.request().filter(|field| is_counted(row, field, &words)) {
         keep[field.word..field.word + field.size()].iter_mut().for_each(|word| *word |= field.mask());
     }
     words.iter_mut().zip(keep).for_each(|(word, keep)| *word &= keep);
     words
 }
 
-fn counts(row: &Row, field: &Field, words: &Words) -> bool {
+fn is_counted(row: &Row, field: &Field, words: &Words) -> bool {
     field.when.is_none_or(|when| {
         let other = row.request().find(|other| other.key == when.key).unwrap();
         matches!(other.read(words), Value::Int(number) if (when.least..=when.most).contains(&number))
@@ -123,7 +123,7 @@ proptest! {
 
     #[test]
     fn round_trips_commands_through_text(order in any_order()) {
-        let fields = order.row().request().filter(|field| counts(order.row(), field, order.words()));
+        let fields = order.row().request().filter(|field| is_counted(order.row(), field, order.words()));
         let mut draft = order.command().order();
         for field in fields {
             let text = field.show(order.values().value(field.key).unwrap());
@@ -250,7 +250,7 @@ fn builds_every_command() {
     for row in ROWS {
         let made = (0_u16..50).any(|seed| {
             let dice = std::array::from_fn(|n| u32::from(seed) * 7 + u32::try_from(n).unwrap());
-            Order::parse(&repaired(row, [seed; 16], &dice)).is_ok_and(|order| order.command() == row.command)
+            Order::parse(&with_valid_fields(row, [seed; 16], &dice)).is_ok_and(|order| order.command() == row.command)
         });
         assert!(made, "{}", row.id);
     }

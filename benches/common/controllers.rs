@@ -1,4 +1,4 @@
-//! Controllers to measure against: simulated, on the loopback, in this process.
+//! Simulated controllers on the loopback, in this process.
 
 use std::future::Future;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -16,40 +16,41 @@ use tokio::task::LocalSet;
 
 use super::runtime;
 
-/// The names of the families, in the order of a fleet.
+/// Names of the families, in the order of a fleet.
 pub const FAMILIES: [&str; 3] = ["yerc", "toyo", "yrcx"];
 
-/// How slow the controllers are, if they do not answer at once.
+/// Response delays of the controllers.
 #[derive(Clone, Copy, Default)]
 pub struct Delays {
-    /// Of a datagram, as `--fault delay=` takes it.
+    /// Delay of a datagram, as in `--fault delay=`.
     pub answer: Option<&'static str>,
-    /// Of a serial line.
+    /// Baud rate of a serial line.
     pub baud: Option<u32>,
 }
 
-/// Serves so many controllers of each family until the process ends, and gives their inventory: `yerc0` and so on, each with
-/// one of so many tags, `shard0` and so on.
+/// Serves this number of controllers of each family until the process ends. Returns their inventory: `yerc0` and so on,
+/// each with one of the tags `shard0` and so on.
 pub fn serve(fleet: [usize; 3], delays: Delays, shards: usize) -> anyhow::Result<String> {
     let (tell, told) = mpsc::channel();
     std::thread::spawn(move || {
         let local = LocalSet::new();
         for (family, count) in FAMILIES.into_iter().zip(fleet) {
             for number in 0..count {
-                let tell = tell.clone();
+                let address_sender = tell.clone();
                 let tell = move |target: String| {
                     let named = format!("name = \"{family}{number}\"\ntags = [\"shard{}\"]", number % shards);
-                    tell.send(format!("[[robot]]\n{named}\ntarget = \"{target}\"\n"))
+                    address_sender
+                        .send(format!("[[robot]]\n{named}\ntarget = \"{target}\"\n"))
                         .map_err(|_| anyhow::anyhow!("nobody wants to know where they are"))
                 };
                 match family {
-                    "yerc" => drop(local.spawn_local(until_it_fails(yerc(tell, delays)))),
-                    "toyo" => drop(local.spawn_local(until_it_fails(toyo(tell, delays)))),
-                    _ => drop(local.spawn_local(until_it_fails(yrcx(tell)))),
+                    "yerc" => drop(local.spawn_local(serve_until_failure(yerc(tell, delays)))),
+                    "toyo" => drop(local.spawn_local(serve_until_failure(toyo(tell, delays)))),
+                    _ => drop(local.spawn_local(serve_until_failure(yrcx(tell)))),
                 }
             }
         }
-        // Where one fails to start, the list below is short of it.
+        // If one fails to start, the list below is too short.
         drop(tell);
         runtime().map(|runtime| runtime.block_on(local))
     });
@@ -58,14 +59,14 @@ pub fn serve(fleet: [usize; 3], delays: Delays, shards: usize) -> anyhow::Result
     Ok(entries.concat())
 }
 
-/// Serves, and says why it ended.
-pub async fn until_it_fails(served: impl Future<Output = anyhow::Result<()>>) {
+/// Serves a simulator, and prints the reason of its end.
+pub async fn serve_until_failure(served: impl Future<Output = anyhow::Result<()>>) {
     if let Err(error) = served.await {
         println!("a simulated controller ended: {error:#}");
     }
 }
 
-/// Somewhere on the loopback.
+/// A free port on the loopback.
 pub const ANY: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
 
 async fn yerc(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -> anyhow::Result<()> {

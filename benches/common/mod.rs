@@ -1,4 +1,4 @@
-//! What the benchmarks share: who is measured when, and the report.
+//! Common parts of the benchmarks: order of measurements, and the report.
 
 #![allow(dead_code, reason = "each benchmark uses its part")]
 
@@ -13,19 +13,19 @@ use tokio::runtime::Runtime;
 
 use table::Table;
 
-/// What makes the table of a comparison, with so much effort.
+/// Function that measures a comparison with this effort.
 pub type Compare<E> = fn(&E) -> anyhow::Result<Table>;
 
-/// Runs the comparisons that the command line names, or all.
+/// Runs the comparisons of the command line, or all.
 pub fn run<E>(comparisons: &[(&str, Compare<E>)], full: &E, quick: &E) -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    // `cargo bench` says so; `cargo test` says nothing.
+    // `cargo bench` passes this argument, `cargo test` does not.
     let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
     let effort = if is_quick { quick } else { full };
-    let chosen: Vec<&String> = args.iter().filter(|arg| !arg.starts_with('-')).collect();
+    let selected: Vec<&String> = args.iter().filter(|arg| !arg.starts_with('-')).collect();
     println!("{}", table::HEADER);
     for (name, compare) in comparisons {
-        if chosen.is_empty() || chosen.iter().any(|chosen| *chosen == name) {
+        if selected.is_empty() || selected.iter().any(|chosen| *chosen == name) {
             println!("{}", compare(effort).with_context(|| (*name).to_owned())?);
         }
     }
@@ -35,22 +35,25 @@ pub fn run<E>(comparisons: &[(&str, Compare<E>)], full: &E, quick: &E) -> anyhow
     Ok(())
 }
 
-/// Runs as `armctl` does.
+/// Runs on one thread, like `armctl`.
 pub fn runtime() -> anyhow::Result<Runtime> {
     Ok(tokio::runtime::Builder::new_current_thread().enable_all().build()?)
 }
 
-/// What a contender does in a round.
+/// Work of a contender in a round.
 pub trait Work: FnMut() -> anyhow::Result<()> {}
 
 impl<F: FnMut() -> anyhow::Result<()>> Work for F {}
 
-/// The seconds that each contender took in each round, after one round that does not count.
-pub fn in_turn<const N: usize>(rounds: usize, mut contenders: [&mut dyn Work; N]) -> anyhow::Result<[Vec<f64>; N]> {
+/// Seconds of each contender in each round, after one round that is not counted.
+pub fn run_alternately<const N: usize>(
+    rounds: usize,
+    mut contenders: [&mut dyn Work; N],
+) -> anyhow::Result<[Vec<f64>; N]> {
     let mut times = [const { Vec::new() }; N];
     for round in 0..=rounds {
         for (work, times) in contenders.iter_mut().zip(&mut times) {
-            let time = clocked(*work)?;
+            let time = measure_time(*work)?;
             if round > 0 {
                 times.push(time.as_secs_f64());
             }
@@ -59,13 +62,13 @@ pub fn in_turn<const N: usize>(rounds: usize, mut contenders: [&mut dyn Work; N]
     Ok(times)
 }
 
-pub fn clocked(work: &mut dyn Work) -> anyhow::Result<Duration> {
+pub fn measure_time(work: &mut dyn Work) -> anyhow::Result<Duration> {
     let start = Instant::now();
     work()?;
     Ok(start.elapsed())
 }
 
-/// How many times as fast as `base` the other one is, round by round.
+/// Speed relative to `base`, for each round.
 pub fn ratio(base: &[f64], other: &[f64]) -> f64 {
     median(&base.iter().zip(other).map(|(base, other)| base / other).collect::<Vec<_>>())
 }

@@ -1,20 +1,20 @@
-//! What Linux counts for a process.
+//! Process statistics of Linux.
 
 use std::time::Duration;
 
 use anyhow::Context as _;
 
-/// The time of the processor that a process has used (proc(5)): fields 14 and 15, in hundredths of a second.
-pub fn used(process: u32) -> anyhow::Result<Duration> {
+/// CPU time of a process (proc(5)): fields 14 and 15, in hundredths of a second.
+pub fn cpu_time(process: u32) -> anyhow::Result<Duration> {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).context("this takes a Linux with /proc")?;
-    // The name, in parentheses, may have blanks.
+    // The name, in parentheses, can contain blanks.
     let (_, fields) = stat.rsplit_once(')').context("no name in /proc")?;
     let fields: Vec<&str> = fields.split_ascii_whitespace().collect();
     let ticks = |at: usize| -> anyhow::Result<u64> { Ok(fields.get(at).context("too few fields in /proc")?.parse()?) };
     Ok(Duration::from_millis(10 * (ticks(11)? + ticks(12)?)))
 }
 
-/// The memory that a process holds, in MB.
+/// Memory of a process in MB.
 pub fn memory(process: u32) -> anyhow::Result<f64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status"))?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).context("no memory in /proc")?;

@@ -1,8 +1,8 @@
-//! The report.
+//! Report of a benchmark.
 
 use std::fmt;
 
-/// What a figure is held against.
+/// Goal for a figure.
 #[derive(Clone, Copy)]
 pub enum Goal {
     AtLeast(f64),
@@ -43,23 +43,23 @@ impl Row {
         Self { name, figure, ratio: String::new(), goal: None }
     }
 
-    /// How many times as fast as the bare contender it is.
-    pub fn against(self, ratio: f64, goal: Goal) -> Self {
+    /// Speed relative to the minimal contender.
+    pub fn compared_with(self, ratio: f64, goal: Goal) -> Self {
         Self { ratio: format!("{ratio:.2} of bare"), ..self }.goal(ratio, goal)
     }
 
-    /// How many times as fast as it armctl is.
-    pub fn against_ours(self, ratio: f64, goal: Goal) -> Self {
+    /// Speed of armctl relative to this contender.
+    pub fn compared_with_armctl(self, ratio: f64, goal: Goal) -> Self {
         Self { ratio: format!("armctl {ratio:.2} x"), ..self }.goal(ratio, goal)
     }
 
-    /// How many times as much it is as something else, without a goal.
+    /// Ratio to something else, without a goal.
     pub fn times(self, ratio: f64, what: &str) -> Self {
         Self { ratio: format!("{ratio:.2} x {what}"), ..self }
     }
 
-    /// How many times as much it is as what nothing can be less than.
-    pub fn beside(self, ratio: f64, what: &str, goal: Goal) -> Self {
+    /// Ratio to the theoretical minimum.
+    pub fn with_comparison(self, ratio: f64, what: &str, goal: Goal) -> Self {
         Self { ratio: format!("{ratio:.3} of {what}"), ..self }.goal(ratio, goal)
     }
 
@@ -74,7 +74,7 @@ pub struct Table {
     rows: Vec<Row>,
 }
 
-/// What the columns of every table are.
+/// Headings of every table.
 pub const HEADER: &str = "                                                          median  ratio             goal";
 
 impl Table {

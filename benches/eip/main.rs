@@ -1,8 +1,8 @@
-//! How well images keep their time, beside a bare timer loop, how long a remote command takes, and how many connections
-//! one process holds. Each line has its goal beside what was seen.
+//! Timing of images compared with a bare timer loop, duration of a remote command, and number of connections of one
+//! process. Each line has its goal next to the measured value.
 //!
 //! `cargo bench --bench eip` measures everything, with `-- spread trips commands many` only that; `-- --quick`, and
-//! `cargo test --benches`, only show that all of it works.
+//! `cargo test --benches`, only check that it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -33,15 +33,15 @@ use tokio::runtime::{Builder, Runtime};
 
 const RPI: Duration = Duration::from_millis(10);
 const SIZE: u16 = 48;
-const MANY: u32 = 50;
-/// The scan of a controller.
+const MANY_CONNECTIONS: u32 = 50;
+/// Scan time of a controller.
 const SCAN_MS: f64 = 5.0;
-/// Most that the spread of images may be above that of a bare loop.
+/// Maximum spread of images above that of a bare loop.
 const GOAL: f64 = 1.2;
 
-/// How much is measured.
+/// Amount of measurements.
 struct Effort {
-    /// Of each round of spread.
+    /// Duration of each round of spread.
     time: Duration,
     rounds: u32,
     many: Duration,
@@ -55,13 +55,13 @@ const QUICK: Effort =
 /// Measures and prints.
 type Measure = fn(&Effort) -> anyhow::Result<()>;
 
-/// What is measured, by the word that chooses it.
+/// Measurements, by their argument.
 const MEASUREMENTS: [(&str, Measure); 4] =
-    [("spread", spread), ("trips", trips), ("commands", commands), ("many", many)];
+    [("spread", spread), ("trips", trips), ("commands", commands), ("many", many_connections)];
 
 fn main() -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    // `cargo bench` says so; `cargo test` says nothing.
+    // `cargo bench` passes this argument, `cargo test` does not.
     let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
     let effort = if is_quick { QUICK } else { FULL };
     let chosen: Vec<&String> = args.iter().filter(|arg| !arg.starts_with('-')).collect();
@@ -76,7 +76,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// How far intervals between images to the device are from 10 ms: ours, and those of two bare loops at the same time.
+/// Deviation of the intervals between images from 10 ms: ours, and those of two bare loops at the same time.
 fn spread(effort: &Effort) -> anyhow::Result<()> {
     println!("interval between images to the device, RPI 10 ms: deviation                p50       p99       max");
     let mut ratios = Vec::new();
@@ -96,7 +96,7 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
         let scanner = Scanner::start(Ipv4Addr::LOCALHOST)?;
         let connection = runtime.block_on(scanner.open(server.address(), settings(), tap))?;
         let time = effort.time;
-        let bare = thread::spawn(move || bare(images, time));
+        let bare = thread::spawn(move || bare_loop(images, time));
         let tokio = thread::spawn(move || runtime_loop(images, time));
         let bare = bare.join().expect("the loop does not panic")?;
         let tokio = tokio.join().expect("the loop does not panic")?;
@@ -108,7 +108,7 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
         tokio.print("bare loop: tokio::time::sleep_until, then send");
         ratios.push(ours.p99 / bare.p99);
     }
-    let ratio = middle(&mut ratios);
+    let ratio = median(&mut ratios);
     let verdict = verdict(ratio <= GOAL);
     println!(
         "  p99 of armctl / p99 of the bare thread::sleep loop: {ratio:.2}, median of rounds; goal <= {GOAL} {verdict}"
@@ -116,7 +116,7 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// How long it takes until the device's answer to a new image is there.
+/// Time until the answer of the device to a new image.
 fn trips(effort: &Effort) -> anyhow::Result<()> {
     println!("from a new image until what the device makes of it is back: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
@@ -133,17 +133,17 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
             let is_back = |image: &[u8]| image.first() == Some(&mark);
             runtime.block_on(connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))));
             times.push(start.elapsed().as_secs_f64() * 1000.0);
-            // Somewhere else within the interval the next time.
+            // At another time within the interval in the next round.
             thread::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?)));
         }
         runtime.block_on(connection.close())?;
-        println!("  RPI {:>2} ms: {:>6.2} ms", rpi.as_millis(), middle(&mut times));
+        println!("  RPI {:>2} ms: {:>6.2} ms", rpi.as_millis(), median(&mut times));
     }
     Ok(())
 }
 
-/// How long a remote command takes that only reads, on a simulated controller with its scans, from giving it to its
-/// report; the controller is ready for the next one then.
+/// Duration of a remote read command on a simulated controller with its scans, from the call to the report, when the
+/// controller is ready for the next one.
 fn commands(effort: &Effort) -> anyhow::Result<()> {
     println!("servo status, from giving it to the report: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
@@ -165,14 +165,14 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
                 let start = Instant::now();
                 answers.push(link.ask(&order).await?.elapsed.as_secs_f64() * 1000.0);
                 times.push(start.elapsed().as_secs_f64() * 1000.0);
-                // Somewhere else within the interval the next time.
+                // At another time within the interval in the next round.
                 tokio::time::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?))).await;
             }
             Yrcx::close(link, &screen).await?;
             anyhow::Ok(())
         })?;
         let goal = rpi.as_secs_f64() * 2000.0 + SCAN_MS + 1.0;
-        let (seen, answer) = (middle(&mut times), middle(&mut answers));
+        let (seen, answer) = (median(&mut times), median(&mut answers));
         println!(
             "  RPI {:>2} ms: {seen:>6.2} ms; goal <= {goal} ms {}; {answer:.2} ms from the wire to the answer",
             rpi.as_millis(),
@@ -182,31 +182,35 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fifty connections at 10 ms, with watchdogs at both ends: our adapter, and one that others wrote.
-fn many(effort: &Effort) -> anyhow::Result<()> {
-    println!("{MANY} connections at 10 ms, watchdogs of 160 ms at both ends, {} s", effort.many.as_secs_f64());
-    let server = Server::start(setup(MANY), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
-    hold("our adapter", server.address(), effort)?;
+/// Fifty connections at 10 ms, with watchdogs at both ends: with our adapter, and with another one.
+fn many_connections(effort: &Effort) -> anyhow::Result<()> {
+    println!(
+        "{MANY_CONNECTIONS} connections at 10 ms, watchdogs of 160 ms at both ends, {} s",
+        effort.many.as_secs_f64()
+    );
+    let server =
+        Server::start(setup(MANY_CONNECTIONS), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+    hold_connections("our adapter", server.address(), effort)?;
     let ended = server.with(|adapter, _| adapter.application().timed_out);
     println!("  our adapter: {ended} connections timed out there; goal 0 {}", verdict(ended == 0));
     ensure!(ended == 0, "the adapter missed images");
 
-    let there = Ipv4Addr::new(127, 44, 18, 50);
-    if UdpSocket::bind((there, IO_PORT)).is_err() {
-        println!("  ciplink: left out, port {IO_PORT} of {there} cannot be had");
+    let target_image = Ipv4Addr::new(127, 44, 18, 50);
+    if UdpSocket::bind((target_image, IO_PORT)).is_err() {
+        println!("  ciplink: left out, port {IO_PORT} of {target_image} cannot be had");
         return Ok(());
     }
-    let outputs = (0..MANY).map(|index| ciplink::adapter::Assembly::output(output(index), SIZE.into()));
+    let outputs = (0..MANY_CONNECTIONS).map(|index| ciplink::adapter::Assembly::output(output(index), SIZE.into()));
     let inputs = [ciplink::adapter::Assembly::input(100, SIZE.into()), ciplink::adapter::Assembly::config(1, 0)];
     let config = ciplink::adapter::AdapterConfig {
         assemblies: outputs.chain(inputs).collect(),
-        bind: there,
+        bind: target_image,
         port: 0,
         ..ciplink::adapter::AdapterConfig::default()
     };
     let adapter = ciplink::adapter::Adapter::start(config)?;
     let std::net::SocketAddr::V4(address) = adapter.addr() else { anyhow::bail!("it has an IPv4 address") };
-    hold("ciplink", address, effort)?;
+    hold_connections("ciplink", address, effort)?;
     let mut ended = 0;
     while let Some(event) = adapter.next_event(Some(Duration::ZERO)) {
         ended += u32::from(matches!(event, ciplink::adapter::Event::TimedOut(_)));
@@ -216,12 +220,12 @@ fn many(effort: &Effort) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Holds fifty connections for a while.
-fn hold(name: &str, target: SocketAddrV4, effort: &Effort) -> anyhow::Result<()> {
+/// Keeps fifty connections open for this time.
+fn hold_connections(name: &str, target: SocketAddrV4, effort: &Effort) -> anyhow::Result<()> {
     let runtime = runtime()?;
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST)?;
     let mut connections: Vec<Connection> = Vec::new();
-    for index in 0..MANY {
+    for index in 0..MANY_CONNECTIONS {
         let settings = Settings { output: output(index), ..settings() };
         connections.push(runtime.block_on(scanner.open(target, settings, Tap::default()))?);
     }
@@ -243,8 +247,8 @@ fn hold(name: &str, target: SocketAddrV4, effort: &Effort) -> anyhow::Result<()>
     Ok(())
 }
 
-/// The least that sends an image every 10 ms.
-fn bare(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
+/// Minimal loop that sends an image every 10 ms.
+fn bare_loop(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
     let (socket, image) = bare_image(to)?;
     let start = Instant::now();
     let mut due = start;
@@ -258,7 +262,7 @@ fn bare(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
     Ok(sent)
 }
 
-/// The same with tokio's timer.
+/// The same loop with tokio's timer.
 fn runtime_loop(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
     let (socket, image) = bare_image(to)?;
     runtime()?.block_on(async {
@@ -282,7 +286,7 @@ fn bare_image(to: SocketAddrV4) -> anyhow::Result<(UdpSocket, Vec<u8>)> {
     Ok((socket, Cyclic { id: 0, sequence: 1, count: 1, body: &[0; SIZE as usize] }.emit(Some(1))))
 }
 
-/// How far intervals are from 10 ms, in microseconds.
+/// Deviation of intervals from 10 ms, in microseconds.
 struct Deviation {
     p50: f64,
     p99: f64,
@@ -308,12 +312,12 @@ const fn verdict(is_met: bool) -> &'static str {
     if is_met { "met" } else { "MISSED" }
 }
 
-fn middle(all: &mut [f64]) -> f64 {
+fn median(all: &mut [f64]) -> f64 {
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Sends back what came last.
+/// Returns the last image.
 #[derive(Debug, Default)]
 struct Mirror {
     image: Vec<u8>,
@@ -337,7 +341,7 @@ impl Application for Mirror {
     }
 }
 
-/// An adapter with an output assembly for each of so many owners.
+/// An adapter with an output assembly for each of several owners.
 fn setup(owners: u32) -> Setup {
     let identity = Identity {
         address: SocketAddrV4::new(Ipv4Addr::LOCALHOST, PORT),
@@ -362,7 +366,7 @@ const fn output(index: u32) -> u32 {
     150 + index
 }
 
-/// Watchdogs of 16 intervals, which is what is used in the field.
+/// Watchdogs of 16 intervals, as in real plants.
 fn settings() -> Settings {
     Settings {
         output: output(0),

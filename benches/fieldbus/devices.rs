@@ -1,5 +1,5 @@
-//! Eight devices of PROFINET every 8 ms from one process, through one network card: whether any watchdog runs out.
-//! `cargo bench --bench fieldbus -- devices 600` holds them for ten minutes.
+//! Eight PROFINET devices every 8 ms from one process, through one network card: no watchdog may expire.
+//! `cargo bench --bench fieldbus -- devices 600` runs for ten minutes.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,14 +17,14 @@ use super::virtual_time::resting;
 use super::{Effort, namespaces};
 
 const CYCLE: Duration = Duration::from_millis(8);
-/// As a target has it that says nothing of it.
+/// Default of a target.
 const WATCHDOG: Duration = Duration::from_millis(320);
 const DEVICES: usize = 8;
-/// How often it is looked at what came last.
-const LOOK: Duration = Duration::from_millis(4);
+/// Interval of the checks of the last frames.
+const SAMPLE_INTERVAL: Duration = Duration::from_millis(4);
 
-/// A bridge with a device in a network namespace of its own at each of its ports, and then this program as their controller.
-const INSIDE: &str = r#"
+/// Starts a bridge with a device in its own network namespace at each port, and then this program as their controller.
+const CHILD_VARIABLE: &str = r#"
 ip link add pn0 type bridge
 ip addr add 192.168.80.1/24 dev pn0
 ip link set pn0 up
@@ -59,7 +59,7 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
         ("SECONDS_EACH", seconds.as_str()),
     ];
     let mut table = Table::new("PROFINET IO, 8 devices every 8 ms from one process, watchdogs of 320 ms");
-    let Some(said) = namespaces::run(INSIDE, &variables) else {
+    let Some(said) = namespaces::run(CHILD_VARIABLE, &variables) else {
         table.row(Row::new(namespaces::SKIPPED, String::new()));
         return Ok(table);
     };
@@ -75,7 +75,7 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// The controller of all of them; a line with what it came to.
+/// The controller of all devices; prints a line with its results.
 pub fn hold() -> anyhow::Result<()> {
     let time = Duration::from_secs_f64(std::env::var("SECONDS_EACH")?.parse()?);
     let runtime = runtime()?;
@@ -91,18 +91,18 @@ pub fn hold() -> anyhow::Result<()> {
         connections.push(runtime.block_on(network.open(settings, Tap::default()))?);
     }
     let totals = || {
-        let each = connections.iter().map(Connection::statistics);
-        each.fold([0; 4], |all: [u64; 4], own| {
+        let per_device = connections.iter().map(Connection::statistics);
+        per_device.fold([0; 4], |all: [u64; 4], own| {
             let own = [own.losses, own.sent, own.received, own.skipped];
             std::array::from_fn(|at| all[at] + own[at])
         })
     };
     let (before, used, start) = (totals(), cpu()?, Instant::now());
-    let mut heard = [(0, start); DEVICES];
+    let mut received_frames = [(0, start); DEVICES];
     let mut longest = Duration::ZERO;
     while start.elapsed() < time {
-        thread::sleep(LOOK);
-        for (connection, (count, since)) in connections.iter().zip(&mut heard) {
+        thread::sleep(SAMPLE_INTERVAL);
+        for (connection, (count, since)) in connections.iter().zip(&mut received_frames) {
             let received = connection.statistics().received;
             longest = longest.max(since.elapsed());
             if received != *count {

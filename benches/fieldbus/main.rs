@@ -1,9 +1,10 @@
-//! What the fieldbuses of a yrcx cost: exchanges beside what the bits of their lines allow, masters side by side, and how long
-//! a command takes through a session.
+//! Cost of the fieldbuses of a yrcx: exchanges compared with the theoretical bit times, comparison of masters, and the
+//! duration of a command through a session.
 //!
-//! `cargo bench --bench fieldbus` measures everything, with `-- devicenet profibus masters status profinet devices` only that;
-//! `-- --quick`, and `cargo test --benches`, only show that all of it works. Lines of virtual time do not depend on this machine.
-//! What needs network namespaces runs this program inside them as well, told by `ROLE` what it is there.
+//! `cargo bench --bench fieldbus` measures everything, with `-- devicenet profibus masters status profinet devices`
+//! only that; `-- --quick`, and `cargo test --benches`, only check that it works. Lines in virtual time do not depend
+//! on this machine. Comparisons with network namespaces also run this program inside of them; the variable `ROLE`
+//! selects its part.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -26,21 +27,21 @@ use std::time::Duration;
 
 use common::run;
 
-/// How much is measured.
+/// Amount of measurements.
 struct Effort {
-    /// Exchanges of a line in virtual time.
+    /// Number of exchanges of a line in virtual time.
     exchanges: u32,
-    /// For how long each master runs, and how often they take turns.
+    /// Duration of each run of a master, and number of runs.
     time: Duration,
     rounds: usize,
-    /// Commands through each session.
+    /// Number of commands through each session.
     commands: usize,
 }
 
 const FULL: Effort = Effort { exchanges: 2000, time: Duration::from_secs(3), rounds: 5, commands: 200 };
 const QUICK: Effort = Effort { exchanges: 20, time: Duration::from_millis(100), rounds: 1, commands: 1 };
 
-/// The comparisons, by the word that chooses one.
+/// Comparisons, by their argument.
 const COMPARISONS: &[(&str, common::Compare<Effort>)] = &[
     ("devicenet", virtual_time::devicenet),
     ("profibus", virtual_time::profibus),
@@ -58,7 +59,7 @@ fn main() -> anyhow::Result<()> {
     #[cfg(target_os = "linux")]
     match std::env::var("ROLE").as_deref() {
         Ok("controller") => return profinet::controller(),
-        Ok("bare") => return profinet::bare(),
+        Ok("bare") => return profinet::bare_loop(),
         Ok("status") => return status::measure(),
         Ok("devices") => return devices::hold(),
         _ => {}

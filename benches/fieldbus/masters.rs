@@ -1,5 +1,5 @@
-//! Masters of PROFIBUS side by side, on pseudo-terminals with a slave that takes no longer than it must: ours, and those of the
-//! crate `profirust` and of PyPI's `pyprofibus`, where `ARMCTL_PROFIBUS_PEERS` names what `tests/profibus/install` made.
+//! Comparison of PROFIBUS masters, on pseudo-terminals with a slave of minimal delay: ours, and those of the crate
+//! `profirust` and of PyPI's `pyprofibus`, if `ARMCTL_PROFIBUS_PEERS` is the folder made by `tests/profibus/install`.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -24,7 +24,7 @@ use super::common::table::{Goal, Row, Table};
 use super::common::{median, ratio, runtime};
 use super::virtual_time::{Echo, resting};
 
-/// How long a slave may take to begin an answer; the same for all of them.
+/// Maximum answer delay of a slave; the same for all of them.
 const SLOT: Duration = Duration::from_millis(8);
 /// The same in bits at 1.5 Mbit/s.
 const SLOT_BITS: u16 = 12_000;
@@ -43,25 +43,26 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
     let mut table = Table::new("PROFIBUS DP, exchanges of 48 bytes each way a second, on a pseudo-terminal");
     let figure = |all: &[f64]| format!("{:.0} /s", median(all));
     table.row(Row::new("armctl, one cycle after the other", figure(&ours)));
-    // More is better, so the other way round than with times.
-    let beside = |name, all: &[f64]| Row::new(name, figure(all)).against_ours(ratio(&ours, all), Goal::MoreThan(1.0));
-    table.row(beside("profirust 0.6", &rust));
+    // More is better, so the ratio is inverse to that of times.
+    let comparison =
+        |name, all: &[f64]| Row::new(name, figure(all)).compared_with_armctl(ratio(&ours, all), Goal::MoreThan(1.0));
+    table.row(comparison("profirust 0.6", &rust));
     if python.is_some() {
-        table.row(beside("pyprofibus 1.13", &of_python));
+        table.row(comparison("pyprofibus 1.13", &of_python));
     } else {
         table.row(Row::new("pyprofibus 1.13", "not installed".to_owned()));
     }
     Ok(table)
 }
 
-/// A slave on a thread.
+/// A slave in a thread.
 #[derive(Debug, Clone)]
 struct Shared(Arc<Mutex<Slave<Echo>>>);
 
 impl Shared {
-    /// Exchanges a second within this time, once they have begun.
+    /// Exchanges per second in this time, after the first ones.
     fn speed(&self, time: Duration, mut turn: impl FnMut()) -> anyhow::Result<f64> {
-        const BEGUN: u64 = 10;
+        const WARM_UP_EXCHANGES: u64 = 10;
 
         let mut counted = |until: &dyn Fn(u64) -> bool| {
             loop {
@@ -72,9 +73,9 @@ impl Shared {
                 }
             }
         };
-        let patience = Instant::now() + Duration::from_secs(30);
-        let first = counted(&|exchanges| exchanges > BEGUN || Instant::now() > patience);
-        ensure!(first > BEGUN, "no exchange came about");
+        let timeout = Instant::now() + Duration::from_secs(30);
+        let first = counted(&|exchanges| exchanges > WARM_UP_EXCHANGES || Instant::now() > timeout);
+        ensure!(first > WARM_UP_EXCHANGES, "no exchange came about");
         let start = Instant::now();
         let last = counted(&|_| start.elapsed() >= time);
         Ok(f64::from(u32::try_from(last - first)?) / start.elapsed().as_secs_f64())
@@ -85,7 +86,7 @@ fn rate() -> anyhow::Result<Rate> {
     Rate::from_name("1.5M").context("a speed")
 }
 
-/// Has a slave behind a pseudo-terminal while `master` uses it.
+/// Runs a slave on a pseudo-terminal while `master` uses it.
 fn with_slave(master: impl FnOnce(&Shared, &str) -> anyhow::Result<f64>) -> anyhow::Result<f64> {
     let shared = Shared(Arc::new(Mutex::new(Slave::new(Setup::stand_in(rate()?), Echo::default()))));
     let runtime = runtime()?;
@@ -132,7 +133,7 @@ fn pyprofibus(python: &Path, time: Duration) -> anyhow::Result<f64> {
     })
 }
 
-/// A port of theirs on a port of ours.
+/// Adapter from our port to the interface of `profirust`.
 struct Phy {
     port: Serial,
     received: Vec<u8>,

@@ -1,7 +1,7 @@
-//! Our controller of PROFINET beside the one of PyPI's `profinet-py`, each with the simulated device on another network card:
-//! from nothing to data, how well frames keep their time beside a bare timer loop of the same minute, and what they cost.
+//! Our PROFINET controller and that of PyPI's `profinet-py`, each with the simulated device on another network card:
+//! time until data, timing of frames compared with a bare timer loop in the same minute, and CPU time.
 //!
-//! Needs user namespaces, and `ARMCTL_PROFINET_PEERS` for the other controller; what is missing is said.
+//! Needs user namespaces, and `ARMCTL_PROFINET_PEERS` for the other controller; missing parts are reported.
 
 use std::net::UdpSocket;
 use std::thread;
@@ -20,8 +20,8 @@ use super::{Effort, namespaces};
 
 const CYCLE: Duration = Duration::from_millis(16);
 
-/// The ends, one after the other, with the same looker at their frames; each says its figures on a line.
-const INSIDE: &str = r#"
+/// Runs the contenders one after the other, with the same recorder of their frames; each prints its figures on a line.
+const CHILD_VARIABLE: &str = r#"
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
 until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
 look() {
@@ -43,7 +43,7 @@ kill $D
 wait $D
 "#;
 
-/// What one run of a controller came to.
+/// Results of one run of a controller.
 struct Figures {
     name: &'static str,
     connect: Vec<f64>,
@@ -68,7 +68,7 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
         ("SECONDS_EACH", seconds.as_str()),
     ];
     let mut table = Table::new("PROFINET IO, 48 bytes each way every 16 ms, from another network namespace");
-    let Some(said) = namespaces::run(INSIDE, &variables) else {
+    let Some(said) = namespaces::run(CHILD_VARIABLE, &variables) else {
         table.row(Row::new(namespaces::SKIPPED, String::new()));
         return Ok(table);
     };
@@ -120,7 +120,7 @@ fn time() -> anyhow::Result<Duration> {
     Ok(Duration::from_secs_f64(std::env::var("SECONDS_EACH")?.parse()?))
 }
 
-/// Our controller, in a process of its own.
+/// Our controller, in a separate process.
 pub fn controller() -> anyhow::Result<()> {
     let settings = Settings {
         watchdog: Duration::from_millis(1600),
@@ -142,8 +142,8 @@ pub fn controller() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The least that sends every 16 ms.
-pub fn bare() -> anyhow::Result<()> {
+/// Minimal loop that sends every 16 ms.
+pub fn bare_loop() -> anyhow::Result<()> {
     let socket = UdpSocket::bind("192.168.79.1:0")?;
     let (start, mut due) = (Instant::now(), Instant::now());
     while start.elapsed() < time()? {
@@ -154,7 +154,7 @@ pub fn bare() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What this process has used of processors, in seconds: of all its threads.
+/// CPU time of all threads of this process, in seconds.
 pub fn cpu() -> anyhow::Result<f64> {
     const NANOS: f64 = 1e9;
 

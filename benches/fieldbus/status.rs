@@ -1,18 +1,18 @@
-//! How long it takes to see a controller through a session, over each fieldbus: whole processes, from start to end, beside one
-//! that only says its version and one that does nothing. Signals are what passes by itself; a status asks remote commands for
-//! servos and position, which take some cycles of the fieldbus each. Controllers are those of `armctl sim`, in other processes,
-//! that of PROFINET in another network namespace.
+//! Duration of reads through a session, over each fieldbus: complete processes, compared with one that only prints its
+//! version and one that does nothing. Signals are part of the cyclic data; a status needs remote commands for servos
+//! and position, which take some cycles of the fieldbus each. The controllers are `armctl sim` in other processes, that
+//! of PROFINET in another network namespace.
 
 use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, ensure};
 
 use super::common::table::{Goal, Row, Table};
-use super::common::{Work, in_turn, median};
+use super::common::{Work, median, run_alternately};
 use super::{Effort, namespaces};
 
-/// Controllers with a session each, and then this program as the one that measures.
-const INSIDE: &str = r#"
+/// Starts controllers with a session each, and then this program to measure.
+const CHILD_VARIABLE: &str = r#"
 export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER" XDG_CONFIG_HOME="$FOLDER/config"
 unset ARMCTL_TARGET ARMCTL_ROBOT
 serve() {
@@ -34,7 +34,7 @@ kill $ALL
 wait
 "#;
 
-/// What is run, with its name in the table; the goal is that of signals.
+/// Commands, with their names in the table; the goal is for signals.
 const RUNS: [(&str, &[&str]); 10] = [
     ("true", &[]),
     ("armctl --version", &["--version"]),
@@ -59,7 +59,7 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
         ("COMMANDS", commands.as_str()),
     ];
     let mut table = Table::new("a controller seen through a session, whole processes: median, and 99 of 100 within");
-    let Some(said) = namespaces::run(INSIDE, &variables) else {
+    let Some(said) = namespaces::run(CHILD_VARIABLE, &variables) else {
         table.row(Row::new(namespaces::SKIPPED, String::new()));
         return Ok(table);
     };
@@ -72,17 +72,17 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// What [`measure`] prints of one.
+/// Line of [`measure`] for one command.
 fn figures(line: &str) -> Option<(f64, f64)> {
     let (median, most) = line.strip_prefix("measured ")?.split_once(' ')?;
     Some((median.parse().ok()?, most.parse().ok()?))
 }
 
-/// Runs all of them in turn; a line for each with median and 99th percentile in milliseconds.
+/// Runs all commands alternately; prints a line for each with median and 99th percentile in milliseconds.
 pub fn measure() -> anyhow::Result<()> {
     let rounds = std::env::var("COMMANDS")?.parse()?;
     let mut works = RUNS.map(|(_, words)| move || run(words));
-    let times = in_turn(rounds, works.each_mut().map(|work| work as &mut dyn Work))?;
+    let times = run_alternately(rounds, works.each_mut().map(|work| work as &mut dyn Work))?;
     for mut times in times {
         times.sort_by(f64::total_cmp);
         let most = times.get(times.len() * 99 / 100).copied().unwrap_or(f64::NAN);
@@ -91,7 +91,7 @@ pub fn measure() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs to its end; without words, what does nothing.
+/// Runs a command to its end; without words, a process that does nothing.
 fn run(words: &[&str]) -> anyhow::Result<()> {
     let mut command = Command::new(if words.is_empty() { "true" } else { env!("CARGO_BIN_EXE_armctl") });
     let status = command.args(words).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status()?;

@@ -1,4 +1,4 @@
-//! Master and slave on lines that take every bit its time, by clocks of their own.
+//! Master and slave on lines with exact bit times, with separate clocks.
 
 use std::time::Duration;
 
@@ -21,19 +21,19 @@ use super::common::table::{Goal, Row, Table};
 
 const SIZE: usize = 48;
 const LINK: u64 = 1;
-/// Longer than anything takes here that does not fail.
+/// Time limit of a working run.
 const LONGEST: Duration = Duration::from_secs(3600);
-/// Most that an exchange may take, of what its bits do.
+/// Maximum duration of an exchange relative to its bit times.
 const GOAL: Goal = Goal::AtMost(1.1, "x");
 
-/// What SI(00) and SI(06) are in.
+/// Word of SI(00) and SI(06).
 pub fn resting() -> Vec<u8> {
     let mut image = vec![0; SIZE];
     image[32] = 0x41;
     image
 }
 
-/// Shows what it is shown.
+/// Returns its outputs as inputs.
 #[derive(Debug)]
 pub struct Echo(Vec<u8>);
 
@@ -69,7 +69,8 @@ impl Application for Echo {
     fn master_gone(&mut self, _: Duration) {}
 }
 
-/// Polls of 48 bytes: from the first bit of a poll to the last of its answer, beside the bits of those 14 frames.
+/// Polls of 48 bytes: time from the first bit of a poll to the last of its answer, compared with the bits of those 14
+/// frames.
 pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
     const FRAMES: usize = 14;
     const CYCLE: Duration = Duration::from_millis(4);
@@ -122,7 +123,7 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
         }
         frames.truncate(if frames.len() >= FRAMES { 0 } else { FRAMES });
         let next = scanner.wake().into_iter().chain(device.wake()).chain(bus.wake()).min().unwrap_or(LONGEST);
-        // What is due at once has its turn at the top.
+        // Work that is due at once is done at the top of the loop.
         now = if has_passed { now } else { next.max(now + Duration::from_nanos(100)) };
     }
     let span = polls.last().zip(polls.first()).map_or(Duration::ZERO, |(last, first)| last.saturating_sub(*first));
@@ -130,12 +131,13 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
     let mut table = Table::new("DeviceNet, 500 kbit/s, 48 bytes each way, in virtual time");
     let ratio = took.as_secs_f64() / bits.as_secs_f64();
     table.row(Row::new("14 frames, bit by bit", millis(bits / count)));
-    table.row(Row::new("an exchange", millis(took / count)).beside(ratio, "its bits", GOAL));
+    table.row(Row::new("an exchange", millis(took / count)).with_comparison(ratio, "its bits", GOAL));
     table.row(Row::new("from poll to poll at cycle=4ms", millis(period)));
     Ok(table)
 }
 
-/// Exchanges one after the other, beside the bits of both telegrams, the pause before them, and the longest time for an answer.
+/// Consecutive exchanges, compared with the bits of both telegrams, the pause before them, and the maximum answer
+/// delay.
 pub fn profibus(effort: &Effort) -> anyhow::Result<Table> {
     let mut table = Table::new("PROFIBUS DP, 48 bytes each way, one cycle after the other, in virtual time");
     for (name, of_line, of_cycle) in
@@ -172,7 +174,7 @@ pub fn profibus(effort: &Effort) -> anyhow::Result<Table> {
         let limit = rate.exchange(SIZE, SIZE);
         let ratio = cycle.as_secs_f64() / limit.as_secs_f64();
         table.row(Row::new(of_line, millis(limit)));
-        table.row(Row::new(of_cycle, millis(cycle)).beside(ratio, "the line", GOAL));
+        table.row(Row::new(of_cycle, millis(cycle)).with_comparison(ratio, "the line", GOAL));
     }
     Ok(table)
 }

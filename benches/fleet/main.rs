@@ -1,8 +1,8 @@
-//! How long `armctl status` takes over a fleet of mixed families, beside the slowest of its controllers alone.
+//! Duration of `armctl status` for a fleet of mixed families, compared with its slowest controller alone.
 //!
-//! Whole processes, from start to end, on one inventory; the controllers are simulators on the loopback, all in this
-//! process, so that they share the machine's cores with the command. `cargo bench --bench fleet` measures 200 of them;
-//! `-- --quick`, and `cargo test --benches`, only show that it works.
+//! Complete processes with one inventory. The controllers are simulators on the loopback, all in this process, so that
+//! they share the cores with the command. `cargo bench --bench fleet` measures 200 of them; `-- --quick`, and `cargo
+//! test --benches`, only check that it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -16,9 +16,9 @@ use anyhow::{Context as _, ensure};
 
 use common::controllers::{Delays, FAMILIES, serve};
 use common::table::{Goal, Row, Table};
-use common::{in_turn, median, ratio, run};
+use common::{median, ratio, run, run_alternately};
 
-/// How many controllers of yerc, toyo and yrcx there are, and how often the command runs.
+/// Number of controllers of yerc, toyo and yrcx, and number of runs.
 struct Effort {
     fleet: [usize; 3],
     rounds: usize,
@@ -27,21 +27,21 @@ struct Effort {
 const FULL: Effort = Effort { fleet: [140, 40, 20], rounds: 21 };
 const QUICK: Effort = Effort { fleet: [4, 2, 2], rounds: 1 };
 
-/// The comparisons, by the word that chooses one.
-const COMPARISONS: [(&str, common::Compare<Effort>); 2] = [("lines", lines), ("at-once", at_once)];
+/// Comparisons, by their argument.
+const COMPARISONS: [(&str, common::Compare<Effort>); 2] = [("lines", lines), ("at-once", parallel_queries)];
 
 fn main() -> anyhow::Result<()> {
     run(&COMPARISONS, &FULL, &QUICK)
 }
 
-/// Controllers as they are: a Yaskawa takes some milliseconds for an answer, a Toyo is at the end of 9600 baud.
+/// Realistic controllers: a Yaskawa answers after some milliseconds, a Toyo has a line of 9600 baud.
 fn lines(effort: &Effort) -> anyhow::Result<Table> {
     let table = Table::new(format!("status of {} controllers on lines as they are", total(effort)));
     compare(table, effort, Some(Goal::AtMost(2.0, "x")), Delays { answer: Some("2..8ms"), baud: Some(9600) })
 }
 
-/// Controllers that answer at once: what is left is the work of this machine, for both ends.
-fn at_once(effort: &Effort) -> anyhow::Result<Table> {
+/// Controllers that answer at once: only the work of this machine remains, for both ends.
+fn parallel_queries(effort: &Effort) -> anyhow::Result<Table> {
     let table = Table::new(format!("status of {} controllers that answer at once", total(effort)));
     compare(table, effort, None, Delays::default())
 }
@@ -63,7 +63,7 @@ fn compare(mut table: Table, effort: &Effort, goal: Option<Goal>, delays: Delays
         }
     };
     let [mut all, mut yerc, mut toyo, mut yrcx] = [ask("*"), ask("yerc0"), ask("toyo0"), ask("yrcx0")];
-    let times = in_turn(effort.rounds, [&mut all, &mut yerc, &mut toyo, &mut yrcx])?;
+    let times = run_alternately(effort.rounds, [&mut all, &mut yerc, &mut toyo, &mut yrcx])?;
     let [all, ones @ ..] = &times;
     for (family, times) in FAMILIES.iter().zip(ones) {
         table.row(Row::new(family, format!("{:.1} ms", median(times) * 1e3)));

@@ -1,11 +1,11 @@
-//! What `armctl serve metrics` takes of the machine to look at the controllers of a plant once a second.
+//! CPU time and memory of `armctl serve metrics` that polls the controllers of a plant once per second.
 //!
-//! The controllers are simulated, of all families, on the loopback and in this process; the command is a process of its
-//! own, or four that share them by tags, and is read every five seconds as Prometheus would. What it used of the
-//! processor, the kernel's part included, and of the memory is what Linux counts for it.
+//! The controllers of all families are simulated on the loopback in this process. The command is a separate process, or
+//! four that share the robots by tags. It is read every five seconds, like by Prometheus. CPU time (including the
+//! kernel) and memory are those of Linux statistics.
 //!
-//! `cargo bench --bench plant` watches 500 controllers for a minute, then 2,000 by four processes; `-- metrics
-//! --seconds=600` the 500 for ten; `-- --quick`, and `cargo test --benches`, only show that it works.
+//! `cargo bench --bench plant` watches 500 controllers for a minute, then 2,000 with four processes; `-- metrics
+//! --seconds=600` the 500 for ten minutes; `-- --quick`, and `cargo test --benches`, only check that it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -23,11 +23,11 @@ use anyhow::{Context as _, ensure};
 use armctl::command::fleet::service::make_room;
 
 use common::controllers::{Delays, serve};
-use common::process::{memory, used};
+use common::process::{cpu_time, memory};
 use common::run;
 use common::table::{Goal, Row, Table};
 
-/// How many controllers of yerc, toyo and yrcx a process looks at, and for how long.
+/// Number of controllers of yerc, toyo and yrcx per process, and duration.
 struct Effort {
     plant: [usize; 3],
     time: Duration,
@@ -36,13 +36,13 @@ struct Effort {
 const FULL: Effort = Effort { plant: [350, 100, 50], time: Duration::from_secs(60) };
 const QUICK: Effort = Effort { plant: [3, 2, 1], time: Duration::from_millis(500) };
 
-/// Processes that share a larger plant.
+/// Number of processes that share a larger plant.
 const SHARDS: usize = 4;
-/// Time until every link is open and memory is what it will be.
+/// Time until every link is open and the memory use is stable.
 const WARM_UP: u32 = 6;
-/// Time from one reading to the next, as usual for Prometheus.
+/// Interval of the reads, as usual for Prometheus.
 const SCRAPE: Duration = Duration::from_secs(5);
-/// What a process may take: percent of a core, and MB.
+/// Limits of a process: percent of a core, and MB.
 const HALF: f64 = 50.0;
 const MEMORY: f64 = 64.0;
 
@@ -58,26 +58,26 @@ fn main() -> anyhow::Result<()> {
 fn metrics(effort: &Effort) -> anyhow::Result<Table> {
     let count: usize = effort.plant.iter().sum();
     let title = format!("serve metrics: {count} controllers once a second, for {} s", effort.time.as_secs());
-    watched(Table::new(title), effort.plant, effort.time, 1)
+    watched_plant(Table::new(title), effort.plant, effort.time, 1)
 }
 
-/// A larger one, and a process for each of its parts.
+/// A larger plant, and a process for each of its parts.
 fn shards(effort: &Effort) -> anyhow::Result<Table> {
     let plant = effort.plant.map(|count| count * SHARDS);
     let (count, time) = (plant.iter().sum::<usize>(), effort.time.as_secs());
     let title = format!("serve metrics: {count} controllers once a second, {SHARDS} processes by tags, for {time} s");
-    watched(Table::new(title), plant, effort.time, SHARDS)
+    watched_plant(Table::new(title), plant, effort.time, SHARDS)
 }
 
-/// What is known of a process at a moment.
+/// Statistics of a process.
 struct Reading {
     used: Duration,
     memory: f64,
     page: String,
 }
 
-/// The plant, watched by so many processes.
-fn watched(mut table: Table, plant: [usize; 3], time: Duration, processes: usize) -> anyhow::Result<Table> {
+/// Watches the plant with this number of processes.
+fn watched_plant(mut table: Table, plant: [usize; 3], time: Duration, processes: usize) -> anyhow::Result<Table> {
     let folder = tempfile::tempdir()?;
     std::fs::write(folder.path().join("robots.toml"), serve(plant, Delays::default(), processes)?)?;
     let services =
@@ -124,17 +124,17 @@ fn watched(mut table: Table, plant: [usize; 3], time: Duration, processes: usize
     Ok(table)
 }
 
-/// All samples of a metric together.
+/// Sum of all samples of a metric.
 fn sum(page: &str, name: &str) -> f64 {
     let lines = page.lines().filter(|line| line.strip_prefix(name).is_some_and(|rest| rest.starts_with('{')));
     lines.filter_map(|line| line.rsplit(' ').next()?.parse::<f64>().ok()).sum()
 }
 
-/// Ends with the measurement.
+/// A service, until it is dropped.
 struct Service(Child, SocketAddr);
 
 impl Service {
-    /// Looks at one part of the robots of a folder.
+    /// Starts a service for one part of the robots of a folder.
     fn start(folder: &Path, shard: usize) -> anyhow::Result<Self> {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
         command.arg("--config").arg(folder.join("robots.toml")).args(["--tag", &format!("shard{shard}")]);
@@ -158,7 +158,7 @@ impl Service {
     }
 
     fn read(&self) -> anyhow::Result<Reading> {
-        Ok(Reading { used: used(self.0.id())?, memory: memory(self.0.id())?, page: self.page()? })
+        Ok(Reading { used: cpu_time(self.0.id())?, memory: memory(self.0.id())?, page: self.page()? })
     }
 }
 

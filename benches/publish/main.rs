@@ -1,9 +1,9 @@
-//! How long it takes until a change of a controller is at the broker, in intervals from look to look; and that a broker
-//! which is gone for a while loses nothing.
+//! Time until a change of a controller is at the broker, in poll intervals; and check that an absent broker causes no
+//! loss.
 //!
-//! One `armctl publish` looks once a second at simulators on the loopback, all in this process, as is the broker: it
-//! acknowledges, and notes when what came. The controllers put HOLD on and off at moments of their own. `cargo bench --bench
-//! publish` takes 300 of them; `-- --quick`, and `cargo test --benches`, only show that it works.
+//! One `armctl publish` polls simulators on the loopback once per second, all in this process. The broker in this
+//! process acknowledges messages and notes their times. The controllers switch HOLD on and off at independent times.
+//! `cargo bench --bench publish` uses 300 of them; `-- --quick`, and `cargo test --benches`, only check that it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -24,11 +24,11 @@ use armctl::transport::server::Server;
 use tokio::task::LocalSet;
 use tokio::time::interval_at;
 
-use common::controllers::{ANY, until_it_fails};
+use common::controllers::{ANY, serve_until_failure};
 use common::table::{Goal, Row, Table};
 use common::{run, runtime};
 
-/// Controllers, changes of each, and how long the broker is gone.
+/// Number of controllers, number of changes of each, and downtime of the broker.
 struct Effort {
     robots: usize,
     changes: u32,
@@ -37,34 +37,34 @@ struct Effort {
 
 const FULL: Effort = Effort { robots: 300, changes: 10, gone: Duration::from_secs(60) };
 const QUICK: Effort = Effort { robots: 4, changes: 3, gone: Duration::from_secs(3) };
-/// From look to look.
+/// Poll interval.
 const INTERVAL: Duration = Duration::from_secs(1);
-/// From change to change of a controller: more than an interval, so that each is seen.
+/// Interval of the changes of a controller: longer than a poll interval, so that each change is polled.
 const CHANGE: Duration = Duration::from_millis(2700);
 
 fn main() -> anyhow::Result<()> {
-    let comparisons: [(&str, common::Compare<Effort>); 2] = [("lag", lag), ("gone", gone)];
+    let comparisons: [(&str, common::Compare<Effort>); 2] = [("lag", publication_delay), ("gone", outage)];
     run(&comparisons, &FULL, &QUICK)
 }
 
-/// When each controller was held, or released, and when the broker was told.
+/// Time of each change of HOLD, and of its message at the broker.
 #[derive(Default)]
-struct Book {
-    made: Moments,
-    told: Moments,
+struct Measurements {
+    changed_at: Moments,
+    published_at: Moments,
 }
 
-/// By controller, and whether it was held or released.
+/// By controller and state of HOLD.
 type Moments = HashMap<(usize, bool), Vec<Instant>>;
 
-type Shared = Arc<Mutex<Book>>;
+type Shared = Arc<Mutex<Measurements>>;
 
-fn note(book: &Shared, of: fn(&mut Book) -> &mut Moments, key: (usize, bool)) {
+fn note(book: &Shared, of: fn(&mut Measurements) -> &mut Moments, key: (usize, bool)) {
     let mut book = book.lock().unwrap_or_else(PoisonError::into_inner);
     of(&mut book).entry(key).or_default().push(Instant::now());
 }
 
-fn lag(effort: &Effort) -> anyhow::Result<Table> {
+fn publication_delay(effort: &Effort) -> anyhow::Result<Table> {
     let lags = published(effort, None)?;
     let mut table = Table::new(format!("a change of one of {} controllers, until the broker has it", effort.robots));
     let at = |share: f64| {
@@ -83,7 +83,7 @@ fn lag(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-fn gone(effort: &Effort) -> anyhow::Result<Table> {
+fn outage(effort: &Effort) -> anyhow::Result<Table> {
     let arrived = published(effort, Some(effort.gone))?.len();
     let made = effort.robots * usize::try_from(effort.changes)?;
     let mut table = Table::new(format!("a broker that is gone for {} s", effort.gone.as_secs()));
@@ -93,7 +93,7 @@ fn gone(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// The time from each change to the broker, in intervals, ascending.
+/// Delay from each change to the broker, in poll intervals, ascending.
 fn published(effort: &Effort, gone: Option<Duration>) -> anyhow::Result<Vec<f64>> {
     let book = Shared::default();
     let folder = tempfile::tempdir()?;
@@ -107,21 +107,21 @@ fn published(effort: &Effort, gone: Option<Duration>) -> anyhow::Result<Vec<f64>
     command.env_clear().env("HOME", folder.path()).stdin(Stdio::null()).stdout(Stdio::null());
     let mut publisher = command.spawn()?;
     let robots = effort.robots;
-    let is_complete = |book: &Book, at_least: u32| {
-        let told: usize = book.told.values().map(Vec::len).sum();
+    let is_complete = |book: &Measurements, at_least: u32| {
+        let told: usize = book.published_at.values().map(Vec::len).sum();
         told >= robots + robots * usize::try_from(at_least).unwrap_or(usize::MAX)
     };
     // Every controller is known before the first one changes.
-    until(&book, Duration::from_secs(60), |book| is_complete(book, 0))?;
+    wait_until(&book, Duration::from_secs(60), |book| is_complete(book, 0))?;
     go.send(true)?;
     if let Some(gone) = gone {
         std::thread::sleep(CHANGE);
-        broker.away(true);
+        broker.go_away(true);
         std::thread::sleep(gone);
-        broker.away(false);
+        broker.go_away(false);
     }
     let most = CHANGE * (effort.changes + 1) + gone.unwrap_or_default() * 2 + Duration::from_secs(90);
-    let ended = until(&book, most, |book| is_complete(book, effort.changes));
+    let ended = wait_until(&book, most, |book| is_complete(book, effort.changes));
     publisher.kill()?;
     publisher.wait()?;
     if gone.is_none() {
@@ -129,9 +129,9 @@ fn published(effort: &Effort, gone: Option<Duration>) -> anyhow::Result<Vec<f64>
     }
     let book = book.lock().unwrap_or_else(PoisonError::into_inner);
     let mut lags: Vec<f64> = Vec::new();
-    for (key, made) in &book.made {
-        let told = book.told.get(key).map(Vec::as_slice).unwrap_or_default();
-        // What it was at first was told before anything was changed.
+    for (key, made) in &book.changed_at {
+        let told = book.published_at.get(key).map(Vec::as_slice).unwrap_or_default();
+        // The first state was published before any change.
         let told = &told[usize::from(!key.1).min(told.len())..];
         lags.extend(made.iter().zip(told).map(|(made, told)| (*told - *made).as_secs_f64() / INTERVAL.as_secs_f64()));
     }
@@ -140,16 +140,16 @@ fn published(effort: &Effort, gone: Option<Duration>) -> anyhow::Result<Vec<f64>
     Ok(lags)
 }
 
-fn until(book: &Shared, within: Duration, is_so: impl Fn(&Book) -> bool) -> anyhow::Result<()> {
-    let by = Instant::now() + within;
+fn wait_until(book: &Shared, within: Duration, is_so: impl Fn(&Measurements) -> bool) -> anyhow::Result<()> {
+    let deadline = Instant::now() + within;
     while !is_so(&book.lock().unwrap_or_else(PoisonError::into_inner)) {
-        ensure!(Instant::now() < by, "it took too long");
+        ensure!(Instant::now() < deadline, "it took too long");
         std::thread::sleep(Duration::from_millis(20));
     }
     Ok(())
 }
 
-/// Serves controllers until the process ends, and gives their inventory.
+/// Serves controllers until the process ends, and returns their inventory.
 fn serve(effort: &Effort, book: &Shared, go: &tokio::sync::watch::Receiver<bool>) -> anyhow::Result<String> {
     let (tell, told) = mpsc::channel();
     let (robots, changes) = (effort.robots, effort.changes);
@@ -159,7 +159,7 @@ fn serve(effort: &Effort, book: &Shared, go: &tokio::sync::watch::Receiver<bool>
         for number in 0..robots {
             let (tell, book, go) = (tell.clone(), Arc::clone(&book), go.clone());
             local.spawn_local(async move {
-                until_it_fails(controller(number, changes, tell, book, go)).await;
+                serve_until_failure(controller(number, changes, tell, book, go)).await;
             });
         }
         drop(tell);
@@ -189,7 +189,7 @@ async fn controller(
             begun = go.changed() => begun?,
         }
     }
-    // At moments that have nothing to do with each other, nor with the looks.
+    // At times that are independent of each other and of the polls.
     let phase = CHANGE.mul_f64(fastrand::f64());
     let mut ticks = interval_at(tokio::time::Instant::now() + phase, CHANGE);
     let mut left = changes;
@@ -200,14 +200,14 @@ async fn controller(
                 let is_held = (changes - left).is_multiple_of(2);
                 let line = if is_held { "hold external on" } else { "hold external off" };
                 controller.0.console(server.now(), line).map_err(anyhow::Error::msg)?;
-                note(&book, |book| &mut book.made, (number, is_held));
+                note(&book, |book| &mut book.changed_at, (number, is_held));
                 left -= 1;
             }
         }
     }
 }
 
-/// A broker that acknowledges, and notes what is told of whether robots are held.
+/// A broker that acknowledges messages, and notes the HOLD states in them.
 struct FakeBroker {
     url: String,
     is_away: Arc<Mutex<bool>>,
@@ -236,18 +236,18 @@ impl FakeBroker {
         Ok(broker)
     }
 
-    fn away(&self, is_away: bool) {
+    fn go_away(&self, is_away: bool) {
         *self.is_away.lock().unwrap_or_else(PoisonError::into_inner) = is_away;
         if is_away {
             for line in self.lines.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
-                // One that is closed already is.
+                // The connection may be closed already.
                 let _closed = line.shutdown(std::net::Shutdown::Both);
             }
         }
     }
 }
 
-/// Takes packets of one client until it goes. What was not acknowledged comes again, and counts once.
+/// Reads packets of one client until it disconnects. A message without acknowledgement is repeated, and counts once.
 fn serve_client(mut stream: TcpStream, book: &Shared) -> Option<()> {
     loop {
         let mut head = [0; 1];
@@ -269,7 +269,7 @@ fn serve_client(mut stream: TcpStream, book: &Shared) -> Option<()> {
             3 => {
                 let topic = usize::from(u16::from_be_bytes([body[0], body[1]]));
                 let id = [body[2 + topic], body[3 + topic]];
-                take(book, &body[2..2 + topic], &body[4 + topic..]);
+                handle_packet(book, &body[2..2 + topic], &body[4 + topic..]);
                 stream.write_all(&[0x40, 2, id[0], id[1]]).ok()?;
             }
             12 => stream.write_all(&[0xd0, 0]).ok()?,
@@ -278,19 +278,19 @@ fn serve_client(mut stream: TcpStream, book: &Shared) -> Option<()> {
     }
 }
 
-fn take(book: &Shared, topic: &[u8], payload: &[u8]) -> Option<()> {
+fn handle_packet(book: &Shared, topic: &[u8], payload: &[u8]) -> Option<()> {
     let number = std::str::from_utf8(topic).ok()?.strip_prefix("armctl/r")?.split_once('/')?.0.parse().ok()?;
     let envelope: serde_json::Value = serde_json::from_slice(payload).ok()?;
     let is_held = envelope["data"]["held"].as_bool()?;
     {
-        // A change that is told once more is none.
+        // A repeated state is not a change.
         let book = book.lock().unwrap_or_else(PoisonError::into_inner);
-        let count = |key: bool| book.told.get(&(number, key)).map_or(0, Vec::len);
+        let count = |key: bool| book.published_at.get(&(number, key)).map_or(0, Vec::len);
         let is_new = if is_held { count(true) < count(false) } else { count(false) <= count(true) };
         if !is_new {
             return None;
         }
     }
-    note(book, |book| &mut book.told, (number, is_held));
+    note(book, |book| &mut book.published_at, (number, is_held));
     Some(())
 }

@@ -1,10 +1,10 @@
-//! How much of a core `armctl top` takes to look at 50 controllers ten times a second.
+//! CPU time of `armctl top` that polls 50 controllers ten times per second.
 //!
-//! The controllers are simulated, on the loopback, in threads of this process: most of them yerc, some toyo and yrcx.
-//! `top` is a process of its own, on a pseudo-terminal whose output is read as it comes; what it used of the processor
-//! while it showed them is what Linux counts for it, the kernel's part included.
+//! The controllers are simulated on the loopback in threads of this process: most of them yerc, some toyo and yrcx.
+//! `top` is a separate process on a pseudo-terminal whose output is read. Its CPU time is that of Linux statistics,
+//! including the kernel.
 //!
-//! `cargo bench --bench top`; `-- --quick`, and `cargo test --benches`, only show that it works.
+//! `cargo bench --bench top`; `-- --quick`, and `cargo test --benches`, only check that it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 

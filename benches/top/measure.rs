@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 use anyhow::ensure;
 
 use crate::common::controllers::{Delays, serve};
-use crate::common::process::used;
+use crate::common::process::cpu_time;
 use crate::common::run;
 use crate::common::table::{Goal, Row, Table};
 use crate::terminal::Terminal;
 
-/// How many controllers of yerc, toyo and yrcx there are, and how long they are watched.
+/// Number of controllers of yerc, toyo and yrcx, and duration.
 struct Effort {
     fleet: [usize; 3],
     time: Duration,
@@ -21,14 +21,14 @@ struct Effort {
 const FULL: Effort = Effort { fleet: [40, 5, 5], time: Duration::from_secs(10), every: "100ms" };
 const QUICK: Effort = Effort { fleet: [2, 1, 1], time: Duration::from_millis(300), every: "100ms" };
 
-/// Most of a core, in percent, that the issue allows.
+/// Maximum percentage of a core.
 const QUARTER: f64 = 25.0;
 
 pub fn main() -> anyhow::Result<()> {
     run(&[("top", top)], &FULL, &QUICK)
 }
 
-/// All in a list, and one of them on its screen.
+/// All robots in a list, and one of them in detail.
 fn top(effort: &Effort) -> anyhow::Result<Table> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("robots.toml");
@@ -38,10 +38,10 @@ fn top(effort: &Effort) -> anyhow::Result<Table> {
     command.env("LANG", "C.UTF-8").env("XDG_RUNTIME_DIR", folder.path()).env_remove("NO_COLOR");
     let mut terminal = Terminal::start(command, 120, 60)?;
     let count: usize = effort.fleet.iter().sum();
-    terminal.shows(&format!("{count} robots · {count} answer"));
+    terminal.wait_for_picture(&format!("{count} robots · {count} answer"));
     let in_list = share(&mut terminal, effort.time)?;
     terminal.press("\r");
-    terminal.shows("SIGNALS");
+    terminal.wait_for_picture("SIGNALS");
     let on_screen = share(&mut terminal, effort.time)?;
     terminal.press("q");
     ensure!(terminal.end().success(), "top did not end well");
@@ -52,12 +52,12 @@ fn top(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// What it uses of a core, in percent, while it is shown for so long.
+/// CPU time as a percentage of a core, during this time.
 fn share(terminal: &mut Terminal, time: Duration) -> anyhow::Result<f64> {
-    let (began, before) = (Instant::now(), used(terminal.child.id())?);
+    let (began, before) = (Instant::now(), cpu_time(terminal.child.id())?);
     while began.elapsed() < time {
         ensure!(terminal.read(), "top wrote nothing any more");
     }
-    let used = used(terminal.child.id())?.saturating_sub(before);
+    let used = cpu_time(terminal.child.id())?.saturating_sub(before);
     Ok(100.0 * used.as_secs_f64() / began.elapsed().as_secs_f64())
 }

@@ -1,7 +1,7 @@
-//! How well armctl uses a serial line, and how fast it works on programs without one.
+//! Use of a serial line, and speed of offline program commands.
 //!
 //! `cargo bench --bench toyo` measures everything (the line takes one and a half minutes), with `-- check` only that;
-//! `-- --quick`, and `cargo test --benches`, only show that all of it works.
+//! `-- --quick`, and `cargo test --benches`, only check that it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -27,13 +27,13 @@ use armctl::transport::line::Pace;
 use armctl::transport::stream_server::StreamServer;
 
 use common::table::{Goal, Row, Table};
-use common::{clocked, in_turn, median, run, runtime};
+use common::{measure_time, median, run, run_alternately, runtime};
 
 /// 9600 baud, 8 data bits, even parity, one stop bit (TO 1-2).
 const BAUD: u32 = 9600;
 const BITS: u32 = 11;
 
-/// How much work is done; enough for figures, or just enough to see that it works.
+/// Amount of work; enough for figures, or only for a check.
 struct Effort {
     points: i32,
     steps: usize,
@@ -45,7 +45,7 @@ struct Effort {
 const FULL: Effort = Effort { points: 999, steps: 5000, checks: 50, instructions: 1_000_000, runs: 5 };
 const QUICK: Effort = Effort { points: 5, steps: 500, checks: 3, instructions: 10_000, runs: 1 };
 
-/// The comparisons, by the word that chooses one.
+/// Comparisons, by their argument.
 const COMPARISONS: [(&str, common::Compare<Effort>); 3] =
     [("points", points), ("check", check), ("instructions", instructions)];
 
@@ -53,19 +53,19 @@ fn main() -> anyhow::Result<()> {
     run(&COMPARISONS, &FULL, &QUICK)
 }
 
-/// Rows of the coordinate table over a line of 9600 baud, beside the time that their characters need.
+/// Rows of the coordinate table over a line of 9600 baud, compared with the time of their characters.
 fn points(effort: &Effort) -> anyhow::Result<Table> {
     let address = serve()?;
     let runtime = runtime()?;
     let mut link = connect(&runtime, address)?;
     let table = Parameter::named("point").context("there is a coordinate table")?;
     let mut characters = 0;
-    let elapsed = clocked(&mut || {
+    let elapsed = measure_time(&mut || {
         runtime.block_on(async {
             for row in 1..=effort.points {
                 let request = Request::read_parameter(table, Some(row))?;
                 let answer = link.raw(&request).await?;
-                // With CR and LF; while the last LF of a request travels, the controller may answer already.
+                // With CR and LF; the controller may answer during the last LF of a request.
                 characters += request.text().len() + 1 + answer.text().len() + 2;
             }
             anyhow::Ok(())
@@ -76,14 +76,14 @@ fn points(effort: &Effort) -> anyhow::Result<Table> {
     let mut table = Table::new(format!("{} points over a line of {BAUD} baud", effort.points));
     table.row(Row::new("the characters alone, 11 bits each", format!("{:.1} s", least.as_secs_f64())));
     let row = Row::new("armctl, Link::raw", format!("{:.1} s", elapsed.as_secs_f64()));
-    table.row(row.against(busy, Goal::AtLeast(0.95)));
+    table.row(row.compared_with(busy, Goal::AtLeast(0.95)));
     Ok(table)
 }
 
-/// A program of as many steps as a controller holds.
+/// A program with the maximum number of steps.
 fn check(effort: &Effort) -> anyhow::Result<Table> {
     let text = long_program(effort.steps);
-    let [times] = in_turn(
+    let [times] = run_alternately(
         effort.checks,
         [&mut || {
             let checked = program::check(text.as_bytes(), effort.steps);
@@ -101,7 +101,7 @@ fn check(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Jumps, calls, counters and moves, one label in ten steps.
+/// Jumps, calls, counters and moves, with one label in ten steps.
 fn long_program(steps: usize) -> String {
     const BODY: [&str; 9] = [
         "MOVP a PT=1 CN=0 S V=0 POST",
@@ -125,9 +125,9 @@ fn long_program(steps: usize) -> String {
     lines.join("\n")
 }
 
-/// A loop of a counter and a jump in the simulator, which takes its time from us.
+/// A loop of a counter and a jump in the simulator, with a clock from the test.
 fn instructions(effort: &Effort) -> anyhow::Result<Table> {
-    let [times] = in_turn(
+    let [times] = run_alternately(
         effort.runs,
         [&mut || {
             let start = Start::parse(
@@ -170,7 +170,7 @@ fn serve() -> anyhow::Result<SocketAddr> {
     told.recv().context("the server listens")
 }
 
-/// Connects as a command does.
+/// Connects like a command.
 fn connect(runtime: &tokio::runtime::Runtime, address: SocketAddr) -> anyhow::Result<Link> {
     let selection = Selection { target: Some(format!("tcp://{address}").parse()?), ..Selection::default() };
     let sources = Sources { selection, ..Sources::default() };

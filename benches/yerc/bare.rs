@@ -1,4 +1,4 @@
-//! The least that a client can do: a blocking socket, no sessions, no repeats, hardly a check.
+//! Minimal client: a blocking socket, without sessions, retries, and nearly without checks.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
@@ -9,17 +9,17 @@ use armctl::controller::yerc::wire::{HEADER_LEN, LAST_BLOCK, MAX_FRAME};
 
 use crate::peers::{ACK, BLOCK, STATUS_ANSWER, STATUS_REQUEST, block};
 
-/// Loopback loses nothing; should it, the run ends instead of hanging.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// The loopback loses nothing; if it does, the run ends instead of hanging.
+const TIMEOUT: Duration = Duration::from_secs(5);
 
 fn open(peer: SocketAddr) -> io::Result<UdpSocket> {
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
     socket.connect(peer)?;
-    socket.set_read_timeout(Some(PATIENCE))?;
+    socket.set_read_timeout(Some(TIMEOUT))?;
     Ok(socket)
 }
 
-/// A client to whom the answers mean nothing.
+/// A client that does not decode answers.
 pub struct Echo(UdpSocket);
 
 impl Echo {
@@ -27,7 +27,7 @@ impl Echo {
         Ok(Self(open(peer)?))
     }
 
-    /// A datagram out, a datagram back.
+    /// Sends one datagram and receives one.
     pub fn round_trip(&mut self) -> io::Result<()> {
         let mut buffer = [0; MAX_FRAME];
         self.0.send(&[0; STATUS_REQUEST])?;
@@ -36,7 +36,7 @@ impl Echo {
     }
 }
 
-/// A client of a file server that takes blocks as they come.
+/// A file client that accepts blocks in the order of arrival.
 pub struct Download {
     socket: UdpSocket,
     request: Vec<u8>,
@@ -52,7 +52,7 @@ impl Download {
         Ok(Self { socket: open(peer)?, request, ack })
     }
 
-    /// Fetches the file and says how large it is.
+    /// Fetches the file and returns its size.
     pub fn run(&mut self) -> io::Result<u64> {
         let mut buffer = [0; MAX_FRAME];
         let mut bytes = 0;

@@ -1,11 +1,11 @@
-//! How fast armctl is, side by side with the least that could do the same work.
+//! Speed of armctl compared with minimal programs for the same work.
 //!
-//! Every comparison runs its contenders in turn, round by round, so that whatever else the machine does strikes them
-//! alike; the figures are medians, and a ratio is the median of the ratios of neighbours. Everything goes over
-//! loopback to servers of the same kind: a thread that blocks in its socket.
+//! Every comparison alternates its contenders in each round, so that other load affects all of them. The figures are
+//! medians, and a ratio is the median of the ratios of adjacent runs. Everything uses the loopback and servers of the
+//! same kind: a thread that blocks in its socket.
 //!
-//! `cargo bench --bench yerc` measures everything, with `-- status download` only that; `-- --quick`, and
-//! `cargo test --benches`, only show that all of it works.
+//! `cargo bench --bench yerc` measures everything, with `-- status download` only that; `-- --quick`, and `cargo test
+//! --benches`, only check that it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -28,12 +28,12 @@ use moto_hses_client::HsesClient;
 use tokio::runtime::Runtime;
 
 use common::table::{Goal, Row, Table};
-use common::{Work, in_turn, median, ratio, run, runtime};
+use common::{Work, median, ratio, run, run_alternately, runtime};
 use peers::Controller;
 
 const MIB: u64 = 1024 * 1024;
 
-/// How much work is done; enough for figures, or just enough to see that it works.
+/// Amount of work; enough for figures, or only for a check.
 struct Effort {
     status_rounds: usize,
     exchanges: u32,
@@ -49,7 +49,7 @@ const FULL: Effort =
 const QUICK: Effort =
     Effort { status_rounds: 3, exchanges: 200, download_rounds: 3, download: MIB / 2, starts: 5, big: 2 * MIB };
 
-/// The comparisons, by the word that chooses one.
+/// Comparisons, by their argument.
 const COMPARISONS: [(&str, common::Compare<Effort>); 4] =
     [("status", status), ("download", download), ("start", start), ("memory", memory)];
 
@@ -57,7 +57,7 @@ fn main() -> anyhow::Result<()> {
     run(&COMPARISONS, &FULL, &QUICK)
 }
 
-/// Status round trips: our link, a bare echo of the same sizes, the client of `moto-hses-client`.
+/// Status round trips: our link, a bare echo of the same size, the client of `moto-hses-client`.
 fn status(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(0)?;
     let runtime = runtime()?;
@@ -84,18 +84,20 @@ fn status(effort: &Effort) -> anyhow::Result<Table> {
         })
     };
     let [ours, bare, other] =
-        in_turn(effort.status_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }, &mut { other }])?;
+        run_alternately(effort.status_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }, &mut { other }])?;
     let per_second = |times: &[f64]| format!("{:.0} /s", f64::from(exchanges) / median(times));
     let mut table = Table::new("status round trips over loopback");
     table.row(Row::new("bare blocking UDP echo, 32 bytes out, 40 back", per_second(&bare)));
     let ratio = ratio(&bare, &ours);
-    table.row(Row::new("armctl, Link::ask(ReadStatus)", per_second(&ours)).against(ratio, Goal::AtLeast(0.8)));
+    table.row(Row::new("armctl, Link::ask(ReadStatus)", per_second(&ours)).compared_with(ratio, Goal::AtLeast(0.8)));
     let ahead = common::ratio(&other, &ours);
-    table.row(Row::new("moto-hses-client, read_status", per_second(&other)).against_ours(ahead, Goal::MoreThan(1.0)));
+    table.row(
+        Row::new("moto-hses-client, read_status", per_second(&other)).compared_with_armctl(ahead, Goal::MoreThan(1.0)),
+    );
     Ok(table)
 }
 
-/// A file from the controller into nowhere: our link, and a bare loop that checks the block number.
+/// Download without storing: our link, and a bare loop that checks the block number.
 fn download(effort: &Effort) -> anyhow::Result<Table> {
     let size = effort.download;
     let controller = Controller::start(size)?;
@@ -119,23 +121,23 @@ fn download(effort: &Effort) -> anyhow::Result<Table> {
         ensure!(bytes == size, "{bytes} bytes came");
         Ok(())
     };
-    let [ours, bare] = in_turn(effort.download_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
+    let [ours, bare] = run_alternately(effort.download_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
     let rate = |times: &[f64]| format!("{:.1} MiB/s", mebibytes(size) / median(times));
     let mut table = Table::new(format!("download of {:.1} MiB in blocks of 479 bytes", mebibytes(size)));
     table.row(Row::new("bare blocking stop-and-wait", rate(&bare)));
     let ratio = ratio(&bare, &ours);
-    table.row(Row::new("armctl, Link::download", rate(&ours)).against(ratio, Goal::AtLeast(0.9)));
+    table.row(Row::new("armctl, Link::download", rate(&ours)).compared_with(ratio, Goal::AtLeast(0.9)));
     Ok(table)
 }
 
-/// `armctl yerc status` from start to exit, beside a process that does nothing.
+/// `armctl yerc status` from start to exit, compared with a process that does nothing.
 fn start(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(0)?;
     let mut status = process::armctl(&controller, &["yerc", "status"]);
-    let ours = || process::succeed(&mut status);
-    let mut nothing = process::nothing();
-    let bare = || process::succeed(&mut nothing);
-    let [ours, bare] = in_turn(effort.starts, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
+    let ours = || process::assert_success(&mut status);
+    let mut nothing = process::run_empty_process();
+    let bare = || process::assert_success(&mut nothing);
+    let [ours, bare] = run_alternately(effort.starts, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
     let mut table = Table::new("a whole process, start to exit");
     let millis = |times: &[f64]| median(times) * 1e3;
     table.row(Row::new("true", format!("{:.2} ms", millis(&bare))));
@@ -144,22 +146,22 @@ fn start(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// The most memory that a large download takes.
+/// Peak memory of a large download.
 fn memory(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(effort.big)?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().to_str().context("the folder for temporary files is not UTF-8")?;
     let mut get = process::armctl(&controller, &["yerc", "file", "get", "BIG.DAT", "--output", path]);
     let peak = process::peak_memory(&mut get)?;
-    let got = std::fs::metadata(folder.path().join("BIG.DAT"))?.len();
-    ensure!(got == effort.big, "{got} bytes were stored");
+    let received = std::fs::metadata(folder.path().join("BIG.DAT"))?.len();
+    ensure!(received == effort.big, "{received} bytes were stored");
     let mut table = Table::new(format!("memory for a download of {:.0} MiB", mebibytes(effort.big)));
     let row = Row::new("armctl yerc file get, resident at most", format!("{:.1} MiB", mebibytes(peak)));
     table.row(row.goal(mebibytes(peak), Goal::AtMost(20.0, "MiB")));
     Ok(table)
 }
 
-/// Connects as a command does.
+/// Connects like a command.
 fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let target = controller.url().parse()?;
     let selection = Selection { target: Some(target), ..Selection::default() };

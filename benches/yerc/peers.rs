@@ -1,4 +1,4 @@
-//! What the contenders talk to: threads that block in a UDP socket and do as little as they can.
+//! Minimal servers for the contenders: threads that block in a UDP socket.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
@@ -6,13 +6,13 @@ use std::thread;
 
 use armctl::controller::yerc::wire::{AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
 
-/// Room for any frame.
+/// Size of the largest frame.
 const BUFFER: usize = 2048;
-/// Offset of the request's id, which the answer repeats (FS and DX 3.1).
+/// Offset of the request id, which the answer repeats (FS and DX 3.1).
 pub const ID: usize = 11;
 /// Offset of the block number.
 pub const BLOCK: usize = 12;
-/// Offset of the flag that tells an ACK from a request.
+/// Offset of the flag that distinguishes an ACK from a request.
 pub const ACK: usize = 10;
 
 /// Size of the frames of a status exchange: request without data, answer with two words.
@@ -22,25 +22,25 @@ pub const STATUS_ANSWER: usize = HEADER_LEN + 8;
 
 /// The two servers of a controller. They end with the process.
 pub struct Controller {
-    /// Answers every request as one for the status.
+    /// Answers every request like a status request.
     pub robot: SocketAddr,
-    /// Has one file, whatever the name.
+    /// Has one file with any name.
     pub file: SocketAddr,
 }
 
 impl Controller {
-    /// With a file of `size` bytes.
+    /// Starts it with a file of `size` bytes.
     pub fn start(size: u64) -> io::Result<Self> {
         Ok(Self { robot: serve(status())?, file: serve(file(size))? })
     }
 
-    /// How a command line names it.
+    /// Target of a command line.
     pub fn url(&self) -> String {
         format!("udp://{}?file_port={}", self.robot, self.file.port())
     }
 }
 
-/// Answers what arrives on a port of the system's choice with what `respond` puts into the buffer, if anything.
+/// Answers datagrams on a free port with the content that `respond` writes into the buffer, if any.
 fn serve(mut respond: impl FnMut(&[u8], &mut Vec<u8>) + Send + 'static) -> io::Result<SocketAddr> {
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
     let address = socket.local_addr()?;
@@ -49,7 +49,7 @@ fn serve(mut respond: impl FnMut(&[u8], &mut Vec<u8>) + Send + 'static) -> io::R
         let mut answer = Vec::with_capacity(BUFFER);
         while let Ok((len, client)) = socket.recv_from(&mut buffer) {
             respond(&buffer[..len], &mut answer);
-            // A client that is gone hears nothing.
+            // The client may have closed its socket.
             if !answer.is_empty() {
                 let _gone = socket.send_to(&answer, client);
             }
@@ -58,7 +58,7 @@ fn serve(mut respond: impl FnMut(&[u8], &mut Vec<u8>) + Send + 'static) -> io::R
     Ok(address)
 }
 
-/// Play mode, servo on: the same in every answer but the id.
+/// Play mode, servo on: the same answer except for the id.
 fn status() -> impl FnMut(&[u8], &mut Vec<u8>) {
     let mut frame = answer(Division::Robot, 0x81, LAST_BLOCK, &[0x42, 0, 0, 0, 0x40, 0, 0, 0]);
     move |request, out| {
@@ -89,7 +89,7 @@ fn file(size: u64) -> impl FnMut(&[u8], &mut Vec<u8>) {
     }
 }
 
-/// The block number of a frame.
+/// Block number of a frame.
 pub fn block(frame: &[u8]) -> u32 {
     u32::from_le_bytes(frame[BLOCK..BLOCK + 4].try_into().expect("four bytes"))
 }

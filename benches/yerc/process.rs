@@ -1,4 +1,4 @@
-//! Whole processes: how long they take and how much memory.
+//! Time and memory of complete processes.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -9,38 +9,38 @@ use anyhow::{Context as _, ensure};
 
 use crate::peers::Controller;
 
-/// Pause between two looks at a process. The figure is a high-water mark, so only what happens after the last look,
-/// at the very end, can be missed.
-const LOOK: Duration = Duration::from_millis(2);
+/// Interval of the memory reads. The figure is a high-water mark, so only an increase after the last read can be
+/// missed.
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// The binary of the same build, against `controller`.
+/// The binary of the same build, for `controller`.
 pub fn armctl(controller: &Controller, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     command.arg("--target").arg(controller.url()).args(args);
     for name in ["ARMCTL_CONFIG", "ARMCTL_TARGET", "ARMCTL_TIMEOUT", "ARMCTL_RETRIES", "ARMCTL_ENCODING"] {
         command.env_remove(name);
     }
-    silent(command)
+    run_silently(command)
 }
 
 /// A process that only starts and ends.
-pub fn nothing() -> Command {
-    silent(Command::new("true"))
+pub fn run_empty_process() -> Command {
+    run_silently(Command::new("true"))
 }
 
-fn silent(mut command: Command) -> Command {
+fn run_silently(mut command: Command) -> Command {
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command
 }
 
-/// Runs it to its end.
-pub fn succeed(command: &mut Command) -> anyhow::Result<()> {
+/// Runs a process to its end.
+pub fn assert_success(command: &mut Command) -> anyhow::Result<()> {
     let status = command.status()?;
     ensure!(status.success(), "{command:?} ended with {status}");
     Ok(())
 }
 
-/// The most bytes that were resident while it ran.
+/// Peak resident memory in bytes.
 pub fn peak_memory(command: &mut Command) -> anyhow::Result<u64> {
     let mut child = command.spawn()?;
     let path = format!("/proc/{}/status", child.id());
@@ -52,13 +52,13 @@ pub fn peak_memory(command: &mut Command) -> anyhow::Result<u64> {
         if let Some(status) = child.try_wait()? {
             break status;
         }
-        thread::sleep(LOOK);
+        thread::sleep(POLL_INTERVAL);
     };
     ensure!(status.success(), "{command:?} ended with {status}");
     peak.context("this system has no /proc that tells the memory of a process")
 }
 
-/// The line `VmHWM:  1234 kB`.
+/// Parses the line `VmHWM:  1234 kB`.
 fn high_water(status: &str) -> Option<u64> {
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().strip_suffix(" kB")?.parse::<u64>().ok().map(|kib| kib * 1024)

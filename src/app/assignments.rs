@@ -31,8 +31,8 @@ pub fn split_assignments(args: &[OsString], whole: &Command) -> Option<Vec<OsStr
     } else {
         for (at, word) in typed.rest_positions.iter().zip(&typed.rest).skip(1) {
             let flag = word.split_once('=').map(|(name, _)| name);
-            let mut own = verb.get_arguments().filter(|argument| !argument.is_global_set());
-            if flag.is_some() && own.any(|argument| argument.get_long() == flag) {
+            let mut own_flags = verb.get_arguments().filter(|argument| !argument.is_global_set());
+            if flag.is_some() && own_flags.any(|argument| argument.get_long() == flag) {
                 line[*at] = vec![format!("--{word}").into()];
             }
         }
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_read_the_same_everywhere() {
+    fn all_commands_accept_the_same_ranges() {
         let mut found = BTreeSet::new();
         let is_one = |verb: &Command| verb.get_name() == "get" && verb.get_positionals().next().is_some();
         verbs(&Cli::command(), "", &is_one, &mut found);
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_read_the_same_everywhere() {
+    fn all_commands_accept_the_same_assignments() {
         let mut found = BTreeSet::new();
         verbs(&Cli::command(), "", &|verb| verb.get_name() == "set", &mut found);
         let listed = of(SETTINGS.iter().copied().chain(NO_SETTINGS));
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_is_the_same_as_its_words() {
+    fn assignment_equals_separate_words() {
         let whole = Cli::command();
         let parted = |line: &str| {
             let line = split_assignments(&words(line), &whole)?;

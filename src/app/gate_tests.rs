@@ -12,9 +12,9 @@ use crate::app::suggestions;
 use crate::cli::Cli;
 use crate::command::AnyCommand;
 use crate::command::common::Common;
+use crate::command::example_lines::{all, robot_lines};
 use crate::command::fleet::common;
 use crate::command::frame::run::Run;
-use crate::command::leaf_commands::{all, leaves};
 use crate::controller::Risk::{Destroy, Motion, Read, Write};
 use crate::failure::{Failure, Kind};
 use crate::gate::Intent;
@@ -80,7 +80,7 @@ struct Seen {
     fleet: Result<(), Failure>,
 }
 
-fn seen(line: &str) -> Result<Seen, String> {
+fn observe(line: &str) -> Result<Seen, String> {
     fn of(command: &dyn AnyCommand, family: &str) -> Seen {
         Seen {
             intent: command.intent(None),
@@ -111,10 +111,10 @@ fn seen(line: &str) -> Result<Seen, String> {
 }
 
 #[test]
-fn every_command_is_held_by_the_gate() {
+fn gate_checks_every_command() {
     let mut wrong = Vec::new();
-    for (line, risk) in leaves() {
-        let Seen { intent, alone, read_only, fleet } = match seen(line) {
+    for (line, risk) in robot_lines() {
+        let Seen { intent, alone, read_only, fleet } = match observe(line) {
             Ok(seen) => seen,
             Err(why) => {
                 wrong.push(why);
@@ -143,7 +143,7 @@ fn every_command_is_held_by_the_gate() {
                     || line.split(' ').any(|word| ["backup", "diff"].contains(&word)),
             ),
             ("a fleet", refused(&fleet) == (*risk >= Destroy || (*risk > Read && !is_stop && refused(&read_only)))),
-            ("its first grant", intent.granted_at_first() <= if is_when_known { (*risk).min(Write) } else { *risk }),
+            ("its first grant", intent.initial_risk() <= if is_when_known { (*risk).min(Write) } else { *risk }),
         ] {
             if !is_right {
                 wrong.push(format!("{line}: {what} ({:?}, {:?})", intent.risk, intent.confirmation));
@@ -154,7 +154,7 @@ fn every_command_is_held_by_the_gate() {
 }
 
 #[test]
-fn every_command_has_examples_that_parse() {
+fn every_command_has_valid_examples() {
     let mut leaves = BTreeSet::new();
     let whole = Cli::command();
     for word in whole.get_subcommands() {
@@ -181,7 +181,7 @@ fn collect(command: &clap::Command, path: &str, leaves: &mut BTreeSet<String>) {
 }
 
 #[test]
-fn no_tip_proposes_what_is_dangerous() {
+fn no_suggestion_is_dangerous() {
     for line in
         ["init", "home", "delete x", "toyo inti", "yerc job strat", "yrcx mvoe --point 1", "toyo jgo", "servo on"]
     {

@@ -11,10 +11,10 @@ use super::typed_line::TypedLine;
 use super::{complete, on_this_thread, wants_json};
 use crate::cli::Cli;
 use crate::command::Candidate;
+use crate::command::example_lines::preselects;
 use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::prompt::ask;
 use crate::command::frame::run::RunError;
-use crate::command::leaf_commands::preselects;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
 

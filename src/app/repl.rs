@@ -6,7 +6,7 @@
 
 mod assistant;
 mod editor;
-mod meaning;
+mod line_parser;
 mod prompt;
 mod terminal;
 
@@ -17,9 +17,9 @@ use anyhow::Context as _;
 use tokio::io::{AsyncBufRead, AsyncBufReadExt as _, AsyncReadExt as _, BufReader};
 
 use self::assistant::Assistant;
-use self::editor::{Editor, Typed};
-use self::meaning::{Meaning, family_help};
-use self::prompt::{Prompt, Seen, look};
+use self::editor::{Editor, Input};
+use self::line_parser::{LineParser, family_help};
+use self::prompt::{Prompt, RobotState, read_state};
 use self::terminal::Terminal;
 use super::batch::{self, refuse_repetition};
 use super::parser::{Parser, Refusal};
@@ -65,7 +65,7 @@ pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), RunError> 
 struct Repl {
     globals: Globals,
     screen: Screen,
-    meaning: Meaning,
+    meaning: LineParser,
     /// Robot for lines without a selection, if it is one robot of a known family.
     robot: Option<Robot>,
 }
@@ -94,7 +94,7 @@ impl Repl {
         if let (true, Some(robot)) = (prefix.is_empty(), &robot) {
             prefix.push(robot.family.name().to_owned());
         }
-        Ok(Self { screen: screen(&globals), globals, meaning: Meaning::new(prefix), robot })
+        Ok(Self { screen: screen(&globals), globals, meaning: LineParser::new(prefix), robot })
     }
 
     /// Runs lines from a terminal.
@@ -126,11 +126,13 @@ impl Repl {
         let mut is_new = true;
         loop {
             let seen = match &self.robot {
-                Some(robot) if !self.globals.dry_run => look(robot, &line_of(manager, "repl"), &self.screen).await,
-                _ => Seen::NotAsked,
+                Some(robot) if !self.globals.dry_run => {
+                    read_state(robot, &line_of(manager, "repl"), &self.screen).await
+                }
+                _ => RobotState::NotAsked,
             };
             if std::mem::take(&mut is_new) {
-                for left in seen.left_over() {
+                for left in seen.leftovers() {
                     self.screen.note(&format!("still active from before: {}; {}", left.what, left.undo));
                 }
             }
@@ -138,22 +140,22 @@ impl Repl {
             let typed = tokio::select! {
                 typed = editor.read(prompt) => typed,
                 how = termination_request() => {
-                    terminal.take_back().await;
+                    terminal.restore_control().await;
                     // The cursor is still after the typed text.
                     self.screen.ask_note("");
-                    return Err(ended(how));
+                    return Err(interrupted(how));
                 }
             };
             let text = match typed {
-                Typed::Line(text) => text,
-                Typed::Interrupted if is_second => return Err(ended("Ctrl-C again")),
-                Typed::Interrupted => {
+                Input::Line(text) => text,
+                Input::Interrupted if is_second => return Err(interrupted("Ctrl-C again")),
+                Input::Interrupted => {
                     self.screen.note("Ctrl-C again, `exit` or Ctrl-D ends the prompt.");
                     is_second = true;
                     continue;
                 }
-                Typed::End => return Ok(()),
-                Typed::Failed(failure) => return Err(failure.into()),
+                Input::End => return Ok(()),
+                Input::Failed(failure) => return Err(failure.into()),
             };
             is_second = false;
             // Pasted text can have several lines.
@@ -165,7 +167,7 @@ impl Repl {
                 }
             }
             if let Some(how) = clear_interrupt() {
-                return Err(ended(how));
+                return Err(interrupted(how));
             }
         }
     }
@@ -274,6 +276,6 @@ fn failed(screen: &Screen, stopped: RunError) -> Next {
     Next::Failed(report_failure(screen, stopped))
 }
 
-fn ended(how: &str) -> RunError {
+fn interrupted(how: &str) -> RunError {
     Failure::new(Kind::Interrupted, how).into()
 }

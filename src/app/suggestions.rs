@@ -11,7 +11,7 @@ use clap::{Arg, Command};
 
 use super::spellings::families_with;
 use super::typed_line::TypedLine;
-use crate::command::leaf_commands::{self, is_dangerous};
+use crate::command::example_lines::{self, is_dangerous};
 use crate::controller::Risk;
 use crate::controller::nearest::nearest;
 use crate::failure::decimal_point;
@@ -156,7 +156,8 @@ fn risk(line: &str, whole: &Command) -> Option<&'static str> {
         return None;
     }
     let (_, words) = find_command(&words, whole);
-    let most = leaf_commands::leaves().filter(|(line, _)| line.split(' ').take(words.len()).eq(words.iter().copied()));
+    let most =
+        example_lines::robot_lines().filter(|(line, _)| line.split(' ').take(words.len()).eq(words.iter().copied()));
     Some(match most.map(|(_, risk)| *risk).max() {
         Some(Risk::Destroy) => "deletes or overwrites",
         _ => "moves or powers the robot",
@@ -258,7 +259,7 @@ fn suggest_value(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) ->
 
 /// Example of a command that is not dangerous.
 fn suggest_example(path: &[&str]) -> Option<String> {
-    let mut lines = leaf_commands::examples(path).filter(|_| leaf_commands::preselects(path));
+    let mut lines = example_lines::examples(path).filter(|_| example_lines::preselects(path));
     lines.next().map(|line| format!("example: `armctl {line}`"))
 }
 

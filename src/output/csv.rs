@@ -12,13 +12,13 @@ use serde_json::Value;
 use super::escape;
 
 /// Limit of nesting. Deeper values are one cell.
-const DEEPEST: usize = 5;
+const MAX_DEPTH: usize = 5;
 /// Column with the value of an entry.
 const VALUE: &str = "value";
 /// Columns of the result of a robot.
 const OUTCOME: [&str; 5] = ["ok", "error_kind", "error_code", "error_message", "error_hint"];
 /// Longest list with one column per entry.
-const LONGEST: u64 = 16;
+const MAX_COLUMNS: u64 = 16;
 
 /// Rows of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +51,7 @@ struct Column {
 
 impl Sheet {
     /// Columns of a report with this schema.
-    pub fn of(schema: &Value, rows: RowsOf) -> Self {
+    pub fn from_schema(schema: &Value, rows: RowsOf) -> Self {
         let mut sheet = Self { common: Vec::new(), lists: Vec::new(), outcome: Vec::new() };
         let all = fields(schema, &[schema]);
         if all.is_empty() {
@@ -61,7 +61,7 @@ impl Sheet {
             let entries: Vec<&Value> = variants.iter().flat_map(|one| items(schema, one)).collect();
             let mut columns = Vec::new();
             for (field, of_field) in fields(schema, &entries) {
-                add(schema, &field, &pointer("", &field), &of_field, DEEPEST, &mut columns);
+                add(schema, &field, &pointer("", &field), &of_field, MAX_DEPTH, &mut columns);
             }
             let is_list = !columns.is_empty();
             let is_wanted = match rows {
@@ -75,7 +75,7 @@ impl Sheet {
             if is_list {
                 sheet.lists.push((name, columns));
             } else {
-                add(schema, &name, &pointer("", &name), &variants, DEEPEST, &mut sheet.common);
+                add(schema, &name, &pointer("", &name), &variants, MAX_DEPTH, &mut sheet.common);
             }
         }
         let has_several = sheet.lists.len() > 1;
@@ -91,12 +91,12 @@ impl Sheet {
     /// Adds the columns of the result of each robot, as far as entries do not have them.
     #[must_use]
     pub fn with_outcome(mut self) -> Self {
-        self.outcome = OUTCOME.into_iter().filter(|name| !self.has(name)).collect();
+        self.outcome = OUTCOME.into_iter().filter(|name| !self.has_column(name)).collect();
         self
     }
 
     /// Whether a column with this name exists.
-    pub fn has(&self, name: &str) -> bool {
+    pub fn has_column(&self, name: &str) -> bool {
         self.columns().any(|column| column == name)
     }
 
@@ -125,9 +125,9 @@ impl Sheet {
             let has_values = columns.iter().any(|column| is_value(&column));
             let chosen =
                 columns.iter().filter(|column| if has_values { is_value(column) } else { !is_outcome(column) });
-            let told = |column: &Column| entry.pointer(&column.pointer).map_or_else(String::new, plain);
+            let cell_text = |column: &Column| entry.pointer(&column.pointer).map_or_else(String::new, plain);
             let before = before.iter().map(|text| escape::line(text).into_owned());
-            let cells: Vec<String> = before.chain(chosen.map(told)).collect();
+            let cells: Vec<String> = before.chain(chosen.map(cell_text)).collect();
             out.push_str(cells.join("\t").trim_end_matches('\t'));
             out.push('\n');
         };
@@ -141,7 +141,7 @@ impl Sheet {
 
     /// Appends the row of a robot without a report. `before` are the cells of other columns.
     pub fn failed(&self, before: &[&str], error: &Value, out: &mut String) {
-        let before: Vec<String> = before.iter().map(|text| harmless(text)).collect();
+        let before: Vec<String> = before.iter().map(|text| neutralize_formula(text)).collect();
         let cells: Vec<String> = self.columns().map(|column| outcome(column, Some(error))).collect();
         line(out, before.iter().chain(&cells).map(String::as_str));
     }
@@ -154,7 +154,7 @@ impl Sheet {
         let cells = |columns: &[Column], value: &Value| -> Vec<String> {
             columns.iter().map(|column| value.pointer(&column.pointer).map_or_else(String::new, cell)).collect()
         };
-        let mut common: Vec<String> = before.iter().map(|text| harmless(text)).collect();
+        let mut common: Vec<String> = before.iter().map(|text| neutralize_formula(text)).collect();
         common.extend(cells(&self.common, data));
         if self.lists.is_empty() {
             return line(out, common.iter().map(String::as_str).chain(outcome()));
@@ -188,10 +188,12 @@ fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize,
     let leaf = || Column { name: name.to_owned(), pointer: place.to_owned() };
     let Some(depth) = depth.checked_sub(1) else { return columns.push(leaf()) };
     let nested = fields(root, variants);
-    let lists: Vec<&Value> = variants.iter().flat_map(|one| expanded(root, one)).filter(|one| is_list(one)).collect();
+    let lists: Vec<&Value> =
+        variants.iter().flat_map(|one| resolve_references(root, one)).filter(|one| is_list(one)).collect();
     let of_list: Vec<&Value> = lists.iter().flat_map(|one| items(root, one)).collect();
-    let length = lists.iter().filter_map(|list| list["maxItems"].as_u64()).max().filter(|length| *length <= LONGEST);
-    let is_plain = variants.iter().flat_map(|one| expanded(root, one)).any(is_plain);
+    let length =
+        lists.iter().filter_map(|list| list["maxItems"].as_u64()).max().filter(|length| *length <= MAX_COLUMNS);
+    let is_plain = variants.iter().flat_map(|one| resolve_references(root, one)).any(is_plain);
     if is_plain || (length.is_none() && !lists.is_empty() && fields(root, &of_list).is_empty()) {
         columns.push(leaf());
     }
@@ -206,7 +208,7 @@ fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize,
 /// Properties of values with these schemas, each with its own schemas, in order.
 fn fields<'a>(root: &'a Value, variants: &[&'a Value]) -> Vec<(String, Vec<&'a Value>)> {
     let mut all: Vec<(String, Vec<&Value>)> = Vec::new();
-    for schema in variants.iter().flat_map(|one| expanded(root, one)) {
+    for schema in variants.iter().flat_map(|one| resolve_references(root, one)) {
         for (name, field) in schema["properties"].as_object().into_iter().flatten() {
             match all.iter_mut().find(|(known, _)| known == name) {
                 Some((_, schemas)) => schemas.push(field),
@@ -218,30 +220,31 @@ fn fields<'a>(root: &'a Value, variants: &[&'a Value]) -> Vec<(String, Vec<&'a V
 }
 
 fn is_required(root: &Value, name: &str) -> bool {
-    let lists = expanded(root, root).into_iter().filter_map(|schema| schema["required"].as_array());
+    let lists = resolve_references(root, root).into_iter().filter_map(|schema| schema["required"].as_array());
     lists.flatten().any(|required| required == name)
 }
 
 /// Schemas of the items of a list.
 fn items<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
-    let lists = expanded(root, schema).into_iter().filter(|one| is_list(one));
+    let lists = resolve_references(root, schema).into_iter().filter(|one| is_list(one));
     lists
         .flat_map(|list| list.get("items").into_iter().chain(list["prefixItems"].as_array().into_iter().flatten()))
         .collect()
 }
 
 /// The schema with references and alternatives resolved.
-fn expanded<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
+fn resolve_references<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
     let mut found = Vec::new();
-    let mut open = vec![(schema, DEEPEST)];
+    let mut open = vec![(schema, MAX_DEPTH)];
     while let Some((schema, depth)) = open.pop() {
         let Some(depth) = depth.checked_sub(1) else { continue };
         found.push(schema);
         let reference = schema["$ref"].as_str().and_then(|reference| reference.strip_prefix('#'));
         let alternatives = ["allOf", "anyOf", "oneOf"].into_iter().filter_map(|kind| schema[kind].as_array()).flatten();
-        let below: Vec<_> = reference.and_then(|place| root.pointer(place)).into_iter().chain(alternatives).collect();
+        let pointers: Vec<_> =
+            reference.and_then(|place| root.pointer(place)).into_iter().chain(alternatives).collect();
         // The stack is last in, first out.
-        open.extend(below.into_iter().rev().map(|schema| (schema, depth)));
+        open.extend(pointers.into_iter().rev().map(|schema| (schema, depth)));
     }
     found
 }
@@ -271,7 +274,7 @@ fn pointer(place: &str, field: &str) -> String {
 
 /// Value of a cell; empty if the value has its own columns.
 fn cell(value: &Value) -> String {
-    harmless(&text(value))
+    neutralize_formula(&text(value))
 }
 
 /// Value in a tab-separated line.
@@ -295,7 +298,7 @@ fn text(value: &Value) -> String {
 
 /// Makes a text harmless for terminals and spreadsheets. A text that could be a formula gets an apostrophe (OWASP).
 /// Signed numbers and a single dash are not formulas.
-pub(super) fn harmless(text: &str) -> String {
+pub(super) fn neutralize_formula(text: &str) -> String {
     let shown = escape::lines(text);
     let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
     if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
@@ -359,7 +362,7 @@ mod tests {
     const HEADER: &str = "group,code,sub_code_raw,value,value_x_mm,axes_1,axes_2,remedies,alarms_group\n";
 
     fn sheet() -> Sheet {
-        Sheet::of(&schema_for!(Report).to_value(), RowsOf::Lists)
+        Sheet::from_schema(&schema_for!(Report).to_value(), RowsOf::Lists)
     }
 
     fn rows(sheet: &Sheet, data: &Value) -> String {
@@ -386,7 +389,7 @@ mod tests {
         }
         let values = |schema: schemars::Schema, data: Value, before: &[&str]| {
             let mut out = String::new();
-            Sheet::of(&schema.to_value(), RowsOf::Lists).values(before, &data, &mut out);
+            Sheet::from_schema(&schema.to_value(), RowsOf::Lists).values(before, &data, &mut out);
             out
         };
         let items = Items { items: vec![Item { name: "B0", value: -5 }, Item { name: "B1", value: 7 }] };
@@ -396,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_the_same_with_no_entry_and_with_many() {
+    fn columns_do_not_depend_on_the_number_of_entries() {
         let none = serde_json::to_value(Report { group: 1, alarms: Vec::new() }).unwrap();
         assert_eq!((sheet().header(&[]).as_str(), rows(&sheet(), &none).as_str()), (HEADER, ""));
         let alarm = |sub_code, value| Alarm {
@@ -417,24 +420,24 @@ mod tests {
     }
 
     #[test]
-    fn a_report_without_a_list_is_one_row() {
+    fn report_without_a_list_is_one_row() {
         #[derive(JsonSchema)]
         #[expect(dead_code, reason = "only its schema matters")]
         struct Status {
             mode: Option<String>,
             held: bool,
         }
-        let sheet = Sheet::of(&schema_for!(Status).to_value(), RowsOf::Lists);
+        let sheet = Sheet::from_schema(&schema_for!(Status).to_value(), RowsOf::Lists);
         assert_eq!(sheet.header(&["robot"]), "robot,mode,held\n");
         let mut out = String::new();
         sheet.rows(&["=r"], &json!({"held": true}), None, &mut out);
         assert_eq!(out, "'=r,,true\n");
-        let text = Sheet::of(&schema_for!(String).to_value(), RowsOf::Lists);
+        let text = Sheet::from_schema(&schema_for!(String).to_value(), RowsOf::Lists);
         assert_eq!((text.header(&[]).as_str(), rows(&text, &json!("-x")).as_str()), ("value\n", "'-x\n"));
     }
 
     #[test]
-    fn a_robot_that_failed_is_a_row_of_the_same_columns() {
+    fn failed_robot_is_a_row_with_the_same_columns() {
         #[derive(JsonSchema)]
         #[expect(dead_code, reason = "only its schema matters")]
         struct Held {
@@ -453,7 +456,7 @@ mod tests {
             items: Vec<Item>,
         }
         let error = json!({"exit": 4, "kind": "no_answer", "code": null, "message": "no answer, at all"});
-        let status = Sheet::of(&schema_for!(Held).to_value(), RowsOf::Lists).with_outcome();
+        let status = Sheet::from_schema(&schema_for!(Held).to_value(), RowsOf::Lists).with_outcome();
         assert_eq!(status.header(&["robot"]), "robot,held,ok,error_kind,error_code,error_message,error_hint\n");
         let mut out = String::new();
         status.rows(&["a"], &json!({"held": true}), None, &mut out);
@@ -461,7 +464,7 @@ mod tests {
         status.failed(&["c"], &error, &mut out);
         let no_answer = "false,no_answer,,\"no answer, at all\",\n";
         assert_eq!(out, format!("a,true,true,,,,\nb,,{no_answer}c,,{no_answer}"));
-        let items = Sheet::of(&schema_for!(Items).to_value(), RowsOf::Lists).with_outcome();
+        let items = Sheet::from_schema(&schema_for!(Items).to_value(), RowsOf::Lists).with_outcome();
         assert_eq!(items.header(&[]), "name,ok,error_code,error_kind,error_message,error_hint\n");
         let mut out = String::new();
         items.rows(&[], &json!({"items": [{"name": "B0", "ok": true}]}), None, &mut out);
@@ -470,7 +473,7 @@ mod tests {
     }
 
     #[test]
-    fn several_lists_name_their_columns() {
+    fn prefixes_columns_of_several_lists() {
         #[derive(JsonSchema)]
         #[expect(dead_code, reason = "only its schema matters")]
         struct Two {
@@ -482,15 +485,15 @@ mod tests {
         let settings = schemars::generate::SchemaSettings::draft2020_12().for_serialize();
         let schema = settings.into_generator().into_root_schema_for::<Two>().to_value();
         let data = json!({"signals": [{"raw": 1}], "groups": [{"raw": 2}]});
-        let both = Sheet::of(&schema, RowsOf::Lists);
+        let both = Sheet::from_schema(&schema, RowsOf::Lists);
         assert_eq!(both.header(&[]), "signals_raw,groups_raw\n");
         assert_eq!(rows(&both, &data), "1,\n,2\n");
-        let one = Sheet::of(&schema, RowsOf::List("groups"));
+        let one = Sheet::from_schema(&schema, RowsOf::List("groups"));
         assert_eq!((one.header(&[]).as_str(), rows(&one, &data).as_str()), ("raw\n", "2\n"));
     }
 
     #[test]
-    fn cells_do_nothing_on_a_terminal_or_in_a_spreadsheet() {
+    fn neutralizes_control_characters_and_formulas() {
         let cases = [
             ("=1+1", "'=1+1\n"),
             ("@SUM", "'@SUM\n"),
@@ -500,7 +503,7 @@ mod tests {
             ("\u{1b}[2J", "\\x1b[2J\n"),
             ("a,\"b\"", "\"a,\"\"b\"\"\"\n"),
         ];
-        let sheet = Sheet::of(&schema_for!(String).to_value(), RowsOf::Lists);
+        let sheet = Sheet::from_schema(&schema_for!(String).to_value(), RowsOf::Lists);
         for (text, expected) in cases {
             assert_eq!(rows(&sheet, &json!(text)), expected, "{text:?}");
         }

@@ -15,12 +15,12 @@ use serde_json::ser::{CompactFormatter, Formatter, PrettyFormatter, Serializer};
 /// Escapes one line of text: characters that a terminal does not simply draw become `\n`, `\x1b`, `\u{202e}`.
 /// Backslashes are not escaped, because the result is for reading and not for parsing.
 pub fn line(text: &str) -> Cow<'_, str> {
-    neutralise(text, is_hidden)
+    escape_hidden(text, is_hidden)
 }
 
 /// Escapes several lines: as [`line()`], but line feeds are kept.
 pub fn lines(text: &str) -> Cow<'_, str> {
-    neutralise(text, |character| character != '\n' && is_hidden(character))
+    escape_hidden(text, |character| character != '\n' && is_hidden(character))
 }
 
 /// Compact JSON, safe for a terminal.
@@ -151,7 +151,7 @@ fn is_hidden(character: char) -> bool {
             .is_ok()
 }
 
-fn neutralise(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
+fn escape_hidden(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     let Some(first) = text.find(&hidden) else {
         return Cow::Borrowed(text);
     };
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_steers_a_terminal_becomes_visible() {
+    fn shows_control_characters() {
         for (text, shown) in [
             ("\x1b]0;title\x07", "\\x1b]0;title\\x07"),
             ("a\0b\x7f", "a\\x00b\\x7f"),
@@ -220,18 +220,18 @@ mod tests {
     }
 
     #[test]
-    fn several_lines_keep_line_feeds_only() {
+    fn keeps_line_feeds_of_several_lines() {
         assert_eq!(lines("a\r\nb\x1b\u{85}c\n"), "a\\r\nb\\x1b\\x85c\n");
         assert!(matches!(lines("a\nb\n"), Cow::Borrowed("a\nb\n")));
     }
 
     #[test]
-    fn the_table_is_ascending() {
+    fn hidden_ranges_are_ascending() {
         assert!(HIDDEN.is_sorted_by(|a, b| a.start() <= a.end() && a.end() < b.start()));
     }
 
     #[test]
-    fn json_escapes_what_json_would_let_through() {
+    fn json_escapes_hidden_characters() {
         let value = json!({"name\u{9b}": "\x1b\x7f\u{85}\u{202e}\u{2028}\u{e0041}\"\\é溶"});
         let text = json_line(&value).unwrap();
         assert_eq!(text, r#"{"name\u009b":"\u001b\u007f\u0085\u202e\u2028\udb40\udc41\"\\é溶"}"#);
@@ -239,14 +239,14 @@ mod tests {
     }
 
     #[test]
-    fn both_layouts_are_those_of_serde_json() {
+    fn layouts_match_serde_json() {
         let value = json!({"a": [1, 2.5, [], {}], "b": {"c": null, "d": [true, "x"]}, "e": "y"});
         assert_eq!(json_line(&value).unwrap(), serde_json::to_string(&value).unwrap());
         assert_eq!(json_pretty(&value).unwrap(), serde_json::to_string_pretty(&value).unwrap());
     }
 
     /// Text with many special characters.
-    fn nasty() -> impl Strategy<Value = String> {
+    fn hostile_text() -> impl Strategy<Value = String> {
         let character = prop_oneof![
             any::<char>(),
             prop::char::range('\0', '\u{FF}'),
@@ -258,9 +258,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nothing_hidden_is_left(text in nasty()) {
-            let shown = line(&text);
-            prop_assert!(!shown.chars().any(|c| c.is_control() || is_hidden(c)), "{:?}", shown);
+        fn escapes_every_hidden_character(text in hostile_text()) {
+            let escaped = line(&text);
+            prop_assert!(!escaped.chars().any(|c| c.is_control() || is_hidden(c)), "{:?}", escaped);
             let shown = lines(&text);
             prop_assert!(!shown.chars().any(|c| c != '\n' && (c.is_control() || is_hidden(c))), "{:?}", shown);
             prop_assert_eq!(shown.matches('\n').count(), text.matches('\n').count());
@@ -269,11 +269,11 @@ mod tests {
         }
 
         #[test]
-        fn json_is_safe_and_means_the_same(map in prop::collection::btree_map(nasty(), nasty(), 0..6)) {
+        fn escaped_json_has_the_same_value(map in prop::collection::btree_map(hostile_text(), hostile_text(), 0..6)) {
             for text in [json_line(&map).unwrap(), json_pretty(&map).unwrap()] {
                 prop_assert!(!text.chars().any(|c| c != '\n' && (c.is_control() || is_hidden(c))), "{:?}", text);
-                let back: BTreeMap<String, String> = serde_json::from_str(&text).unwrap();
-                prop_assert_eq!(&back, &map);
+                let parsed: BTreeMap<String, String> = serde_json::from_str(&text).unwrap();
+                prop_assert_eq!(&parsed, &map);
             }
             prop_assert!(!json_line(&map).unwrap().contains('\n'));
         }

@@ -18,19 +18,19 @@ use ratatui::{Frame, Terminal};
 pub use ratatui::crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 #[cfg(unix)]
-use super::leave;
+use super::immediate_exit;
 use super::{Screen, is_dumb};
 use crate::failure::Failure;
 
 /// Whether the terminal is in full-screen mode.
-static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+static IS_ACTIVE: AtomicBool = AtomicBool::new(false);
 /// Installs a panic hook that restores the terminal before it prints.
-static BEFORE_PANICS: Once = Once::new();
+static OLD_PANIC_HOOK: Once = Once::new();
 
 /// Buffer for a screen update, so that it is written at once.
-const PICTURE: usize = 64 * 1024;
+const BUFFER_SIZE: usize = 64 * 1024;
 /// Interval at which the key thread checks for its end.
-const GLANCE: Duration = Duration::from_millis(100);
+const KEY_POLL: Duration = Duration::from_millis(100);
 
 /// The terminal in full-screen mode, until it is dropped.
 #[derive(Debug)]
@@ -61,20 +61,20 @@ impl Screen {
 
     /// Enters full-screen mode.
     pub fn fullscreen(&self) -> Result<Fullscreen, Failure> {
-        BEFORE_PANICS.call_once(|| {
+        OLD_PANIC_HOOK.call_once(|| {
             let usual = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |panic| {
                 restore();
                 usual(panic);
             }));
         });
-        let taken =
-            take().and_then(|()| Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(PICTURE, io::stdout()))));
+        let taken = activate()
+            .and_then(|()| Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(BUFFER_SIZE, io::stdout()))));
         match taken {
             Ok(terminal) => Ok(Fullscreen { terminal: ManuallyDrop::new(terminal) }),
             Err(error) => {
                 restore();
-                Err(lost(&error))
+                Err(terminal_lost(&error))
             }
         }
     }
@@ -83,26 +83,26 @@ impl Screen {
 impl Fullscreen {
     /// Draws the differences to the last screen.
     pub fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) -> Result<(), Failure> {
-        self.terminal.draw(render).map(|_| ()).map_err(|error| lost(&error))
+        self.terminal.draw(render).map(|_| ()).map_err(|error| terminal_lost(&error))
     }
 
     /// Enters full-screen mode again and redraws everything, because another program can have written on the terminal.
     pub fn refresh(&mut self) -> Result<(), Failure> {
         restore();
         // `clear` would ask the terminal for its cursor position, and the answer would appear among the keys.
-        let mut anew = || {
-            take()?;
+        let mut is_full_redraw = || {
+            activate()?;
             let size = self.terminal.size()?;
             self.terminal.resize(size.into())
         };
-        anew().map_err(|error| lost(&error))
+        is_full_redraw().map_err(|error| terminal_lost(&error))
     }
 
     /// Restores the terminal and suspends the process, as Ctrl-Z does. Returns when the process continues.
     #[cfg(unix)]
     pub fn suspend(&mut self) -> Result<(), Failure> {
         restore();
-        leave::suspend();
+        immediate_exit::suspend();
         self.refresh()
     }
 
@@ -127,7 +127,7 @@ impl Keys {
         let thread = std::thread::spawn(move || {
             // If SIGHUP is ignored, as under `nohup`, no signal reports a closed terminal. Waiting for keys would then
             // be a busy loop.
-            while !watched.load(Ordering::Relaxed) && is_terminal_there(GLANCE) {
+            while !watched.load(Ordering::Relaxed) && terminal_exists(KEY_POLL) {
                 match event::poll(Duration::ZERO) {
                     Ok(false) => {}
                     Ok(true) => {
@@ -156,7 +156,7 @@ impl Drop for Keys {
 
 /// Whether stdin is still a terminal. Waits for a key, at most `within`.
 #[cfg(unix)]
-fn is_terminal_there(within: Duration) -> bool {
+fn terminal_exists(within: Duration) -> bool {
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
     let stdin = io::stdin();
     let mut watched = [PollFd::new(&stdin, PollFlags::IN)];
@@ -173,15 +173,15 @@ fn is_terminal_there(within: Duration) -> bool {
     true
 }
 
-fn take() -> io::Result<()> {
-    IS_TAKEN.store(true, Ordering::Relaxed);
+fn activate() -> io::Result<()> {
+    IS_ACTIVE.store(true, Ordering::Relaxed);
     enable_raw_mode()?;
     execute!(io::stdout(), EnterAlternateScreen, Hide)
 }
 
 /// Restores the terminal. Errors are ignored.
 pub fn restore() {
-    if IS_TAKEN.swap(false, Ordering::Relaxed) {
+    if IS_ACTIVE.swap(false, Ordering::Relaxed) {
         // First what no other thread can block.
         let _cooked = disable_raw_mode();
         let _shown = execute!(io::stdout(), ResetColor, LeaveAlternateScreen, Show);
@@ -189,7 +189,7 @@ pub fn restore() {
     }
 }
 
-fn lost(error: &io::Error) -> Failure {
+fn terminal_lost(error: &io::Error) -> Failure {
     Failure::io("the terminal", error)
 }
 
@@ -207,7 +207,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn signs_beyond_ascii_need_a_locale_and_a_terminal_that_have_them() {
+    fn unicode_needs_a_utf8_locale_and_terminal() {
         assert!(is_unicode(Some("xterm"), Some("en_GB.UTF-8")));
         assert!(is_unicode(None, Some("ja_JP.utf8")));
         assert!(!is_unicode(Some("linux"), Some("en_GB.UTF-8")));

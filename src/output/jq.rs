@@ -5,7 +5,7 @@ pub mod worker;
 
 use serde_json::Value;
 
-use super::busy;
+use super::busy_work;
 use crate::failure::{Failure, Kind};
 
 use self::worker::FilterError;
@@ -39,14 +39,14 @@ impl Filter {
     }
 
     fn ask(&self, input: Option<&Value>, mut take: impl FnMut(Value) -> Result<(), Failure>) -> Result<(), Failure> {
-        let _busy = busy::busy();
-        let mut taken = Ok(());
-        let asked = ask(&self.text, input, |value| {
-            taken = take(value);
-            taken.is_ok()
+        let _busy = busy_work::register();
+        let mut taken_count = Ok(());
+        let result = ask(&self.text, input, |value| {
+            taken_count = take(value);
+            taken_count.is_ok()
         });
-        taken?;
-        asked.map_err(|trouble| match trouble {
+        taken_count?;
+        result.map_err(|message| match message {
             FilterError::Mistake(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
                 .hint("a filter gets the whole envelope: try '.data', or remove --jq to see the envelope"),
             FilterError::Failed(why) => Failure::new(Kind::Malformed, format!("jq filter '{}': {why}", self.text))
@@ -76,7 +76,7 @@ fn answers() -> std::io::Stdout {
 
 /// Marks a report failure after a change, so that the user does not correct the line and repeat the change.
 #[must_use]
-pub fn after_a_change(failure: Failure) -> Failure {
+pub fn failure_after_change(failure: Failure) -> Failure {
     if failure.kind == Kind::PipeClosed {
         return failure;
     }
@@ -90,7 +90,7 @@ mod tests {
 
     use super::*;
 
-    fn made(filter: &str, input: &Value) -> Result<Vec<Value>, Failure> {
+    fn outputs(filter: &str, input: &Value) -> Result<Vec<Value>, Failure> {
         let mut values = Vec::new();
         Filter::new(filter)?.apply(input, |value| {
             values.push(value);
@@ -100,22 +100,22 @@ mod tests {
     }
 
     #[test]
-    fn values_come_out_as_jq_makes_them() {
-        let made = made(".data | .axes[] | select(. > 1)", &json!({"data": {"axes": [1, 2, 3.5]}}));
+    fn outputs_match_jq() {
+        let made = outputs(".data | .axes[] | select(. > 1)", &json!({"data": {"axes": [1, 2, 3.5]}}));
         assert_eq!(made.unwrap(), [json!(2), json!(3.5)]);
     }
 
     #[test]
-    fn mistakes_are_usage_failures() {
+    fn syntax_errors_are_usage_failures() {
         assert!(Filter::new(".data[").unwrap_err().message.contains("cannot be parsed"));
         assert!(Filter::new("nonsense").unwrap_err().message.contains("'nonsense' is not defined"));
-        assert!(made(".a.b", &json!({"a": 1})).is_err());
+        assert!(outputs(".a.b", &json!({"a": 1})).is_err());
     }
 
     #[test]
-    fn rows_are_written_as_jq_writes_them() {
+    fn writes_rows_like_jq() {
         let rows = json!([[1, 2.5, null, "say \"hi\"", true], ["tab\tand\nline \\"]]);
-        let made = |filter: &str| made(filter, &rows);
+        let made = |filter: &str| outputs(filter, &rows);
         assert_eq!(made(".[0] | @csv").unwrap(), [json!("1,2.5,,\"say \"\"hi\"\"\",true")]);
         assert_eq!(made(".[1] | @tsv").unwrap(), [json!("tab\\tand\\nline \\\\")]);
         assert!(made("@csv").unwrap_err().message.contains("array is no cell"));
@@ -123,14 +123,14 @@ mod tests {
     }
 
     #[test]
-    fn only_false_and_null_are_untrue() {
+    fn only_false_and_null_are_false() {
         for (filter, expected) in [(".ok", true), (".no", false), ("0", true), ("false", false), ("empty", false)] {
             assert_eq!(Filter::new(filter).unwrap().is_true(&json!({"ok": true})).unwrap(), expected, "{filter}");
         }
     }
 
     #[test]
-    fn values_come_as_they_are_made_and_no_more_than_are_taken() {
+    fn streams_only_the_taken_outputs() {
         let mut count = 0;
         let stopped = Filter::new("repeat(1)").unwrap().apply(&Value::Null, |_| {
             count += 1;

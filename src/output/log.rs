@@ -40,17 +40,17 @@ impl Level {
 }
 
 /// Longest field value, in characters.
-const LONGEST: usize = 200;
+const MAX_VALUE_LENGTH: usize = 200;
 
 /// Escapes a field value, and limits its length.
 pub fn value(text: &str) -> String {
-    let text: String = text.chars().take(LONGEST).collect();
+    let text: String = text.chars().take(MAX_VALUE_LENGTH).collect();
     escape::line(&text).into_owned()
 }
 
 impl Screen {
     /// Whether messages of this level are printed.
-    pub fn wants(&self, level: Level) -> bool {
+    pub fn is_enabled(&self, level: Level) -> bool {
         match level {
             Level::Error | Level::Warning => true,
             Level::Notice => !self.quiet,
@@ -60,7 +60,7 @@ impl Screen {
 
     /// Logs a message with journal fields.
     pub fn log(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
-        if !self.wants(level) {
+        if !self.is_enabled(level) {
             return;
         }
         let text = escape::line(text);
@@ -113,10 +113,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fields_are_plain_or_quoted_and_bounded() {
+    fn quotes_and_limits_fields() {
         let fields = [("robot", "cell3"), ("why", "no answer"), ("text", "a\"b\\c\n"), ("none", "")];
         assert_eq!(list(&fields), " robot=cell3 why=\"no answer\" text=\"a\\\"b\\\\c\\\\n\" none=\"\"");
-        assert_eq!(list(&[("long", &"x".repeat(999))]).len(), LONGEST + " long=".len());
+        assert_eq!(list(&[("long", &"x".repeat(999))]).len(), MAX_VALUE_LENGTH + " long=".len());
         assert_eq!(list(&[("evil", "\u{1b}[2J")]), " evil=\"\\\\x1b[2J\"");
     }
 }

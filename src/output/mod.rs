@@ -2,14 +2,14 @@
 //!
 //! stdout has only data; prompts, progress, hints and logs go to stderr.
 
-pub mod busy;
+pub mod busy_work;
 pub mod csv;
 pub mod editor;
 pub mod envelope;
 pub mod escape;
 pub mod fullscreen;
+pub mod immediate_exit;
 pub mod jq;
-pub mod leave;
 pub mod log;
 mod pager;
 pub mod painter;
@@ -187,14 +187,14 @@ impl Screen {
 
     /// Writes raw data.
     pub fn bytes(&self, bytes: &[u8]) -> Result<(), Failure> {
-        let _busy = busy::busy();
+        let _busy = busy_work::register();
         let mut stdout = io::stdout().lock();
         Ok(stdout.write_all(bytes).and_then(|()| stdout.flush()).context("stdout")?)
     }
 
     /// Writes a value as JSON: one line in a pipe or with `jsonl`, indented on a terminal.
     pub fn json(&self, value: &impl Serialize) -> Result<(), Failure> {
-        let _busy = busy::busy();
+        let _busy = busy_work::register();
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
         let mut text = if pretty { escape::json_pretty(value) } else { escape::json_line(value) }
             .map_err(|error| Failure::local(format!("report as JSON: {error}")))?;
@@ -283,7 +283,7 @@ impl Screen {
     fn prose(text: &str) {
         if io::stderr().is_terminal() {
             let (_, columns) = dialoguer::console::Term::stderr().size();
-            Self::stderr(&wrap::wrapped(text, columns.max(40).into()));
+            Self::stderr(&wrap::wrap(text, columns.max(40).into()));
         } else {
             Self::stderr(text);
         }

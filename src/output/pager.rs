@@ -5,20 +5,20 @@ use std::process::Command;
 
 use dialoguer::console::Term;
 
-use super::wrap::wrapped;
+use super::wrap::wrap;
 use super::{Screen, is_dumb};
 use crate::failure::Failure;
 
 /// Limit of a text that fits into a pipe without a reader.
-const MOST: usize = 60_000;
+const MAX_LINES: usize = 60_000;
 
 impl Screen {
     /// Prints a text, with a pager if it is longer than the terminal.
     pub fn read(&self, text: &str) -> Result<(), Failure> {
         let (rows, _) = Term::stdout().size();
         let is_terminal = self.is_stdout_terminal();
-        let text = if is_terminal { wrapped(text, self.width().into()) } else { text.into() };
-        let is_long = text.lines().count() >= rows.into() && text.len() < MOST;
+        let text = if is_terminal { wrap(text, self.width().into()) } else { text.into() };
+        let is_long = text.lines().count() >= rows.into() && text.len() < MAX_LINES;
         let can_page = self.pager && is_long && is_terminal && self.can_interrupt() && !is_dumb();
         if can_page && show(&text) { Ok(()) } else { self.data(&text) }
     }

@@ -71,7 +71,7 @@ pub struct Painter<'a> {
 
 impl Painter<'_> {
     /// Draws text at the left of a line. Returns its width.
-    pub fn left(&mut self, line: Rect, text: &str, style: Style) -> u16 {
+    pub fn draw_left(&mut self, line: Rect, text: &str, style: Style) -> u16 {
         let line = line.intersection(self.buffer.area);
         if line.is_empty() {
             return 0;
@@ -88,23 +88,23 @@ impl Painter<'_> {
     }
 
     /// Draws text at the right of a line. Text that does not fit is cut.
-    pub fn right(&mut self, line: Rect, text: &str, style: Style) {
+    pub fn draw_right(&mut self, line: Rect, text: &str, style: Style) {
         let taken = u16::try_from(width(&escape::line(text))).unwrap_or(u16::MAX).min(line.width);
         let start = line.x + (line.width - taken);
-        self.left(Rect { x: start, width: taken, ..line }, text, style);
+        self.draw_left(Rect { x: start, width: taken, ..line }, text, style);
     }
 
     /// Draws parts of a line in sequence. Returns their width.
-    pub fn parts(&mut self, line: Rect, parts: &[(&str, Style)]) -> u16 {
+    pub fn draw_parts(&mut self, line: Rect, parts: &[(&str, Style)]) -> u16 {
         let mut taken = 0;
         for (text, style) in parts {
-            taken += self.left(after(line, taken), text, *style);
+            taken += self.draw_left(rest_after(line, taken), text, *style);
         }
         taken
     }
 
     /// Draws the last line of a screen: keys, as many as fit. The last two are always shown.
-    pub fn keys(&mut self, line: Rect, keys: &[&Explained]) {
+    pub fn draw_keys(&mut self, line: Rect, keys: &[&Explained]) {
         let (accent, quiet) = (self.palette.accent(), self.palette.quiet());
         let columns = |key: &Explained| width(key.key) + width(key.short) + 3;
         let mut at = 1;
@@ -116,8 +116,8 @@ impl Painter<'_> {
             if needed > usize::from(line.width) + 2 && !is_last {
                 continue;
             }
-            let place = after(line, at);
-            self.parts(
+            let place = rest_after(line, at);
+            self.draw_parts(
                 Rect { width: place.width.min(taken), ..place },
                 &[(key.key, accent), (" ", quiet), (key.short, quiet)],
             );
@@ -126,12 +126,17 @@ impl Painter<'_> {
     }
 
     /// Draws the help with all keys over the screen.
-    pub fn help<'a>(&mut self, area: Rect, title: &str, keys: impl ExactSizeIterator<Item = &'a Explained> + Clone) {
+    pub fn draw_help<'a>(
+        &mut self,
+        area: Rect,
+        title: &str,
+        keys: impl ExactSizeIterator<Item = &'a Explained> + Clone,
+    ) {
         const KEY: u16 = 8;
         let columns = keys.clone().map(|key| width(key.full)).max().unwrap_or_default();
-        let wanted =
+        let needed =
             (u16::try_from(columns).unwrap_or_default() + KEY + 6, u16::try_from(keys.len()).unwrap_or_default() + 5);
-        let (columns, lines) = (wanted.0.min(area.width), wanted.1.min(area.height));
+        let (columns, lines) = (needed.0.min(area.width), needed.1.min(area.height));
         let place = Rect {
             x: area.x + (area.width - columns) / 2,
             y: area.y + (area.height - lines) / 2,
@@ -146,11 +151,11 @@ impl Painter<'_> {
             width: place.width.saturating_sub(6),
             height: place.height.saturating_sub(2),
         };
-        self.left(line_of(inside, 0), title, Style::new().add_modifier(Modifier::BOLD));
+        self.draw_left(line_of(inside, 0), title, Style::new().add_modifier(Modifier::BOLD));
         for (line, key) in (2..).zip(keys) {
             let line = line_of(inside, line);
-            self.left(Rect { width: line.width.min(KEY), ..line }, key.key, self.palette.accent());
-            self.left(after(line, KEY), key.full, Style::new());
+            self.draw_left(Rect { width: line.width.min(KEY), ..line }, key.key, self.palette.accent());
+            self.draw_left(rest_after(line, KEY), key.full, Style::new());
         }
     }
 
@@ -161,7 +166,7 @@ impl Painter<'_> {
 }
 
 /// Rest of a line after `columns`.
-pub fn after(line: Rect, columns: u16) -> Rect {
+pub fn rest_after(line: Rect, columns: u16) -> Rect {
     let columns = columns.min(line.width);
     Rect { x: line.x + columns, width: line.width - columns, ..line }
 }
@@ -177,7 +182,7 @@ pub fn width(text: &str) -> usize {
 }
 
 /// Breaks a text between words.
-pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
+pub fn wrap(text: &str, columns: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
         let last = lines.last().map_or(0, |line| width(line));
@@ -242,11 +247,11 @@ mod tests {
     }
 
     fn left(columns: u16, text: &str) -> String {
-        drawn(columns, |painter, line| _ = painter.left(line, text, Style::new()))
+        drawn(columns, |painter, line| _ = painter.draw_left(line, text, Style::new()))
     }
 
     #[test]
-    fn text_is_cut_where_there_is_no_room() {
+    fn truncates_text() {
         assert_eq!(left(5, "abc"), "abc  ");
         assert_eq!(left(5, "abcdef"), "abcd…");
         assert_eq!(left(1, "ab"), "…");
@@ -257,21 +262,21 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_broken_between_words() {
-        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
-        assert_eq!(wrapped("immeasurable", 3), ["immeasurable"]);
-        assert_eq!(wrapped("", 3), [""]);
+    fn wraps_between_words() {
+        assert_eq!(wrap("one two three", 7), ["one two", "three"]);
+        assert_eq!(wrap("immeasurable", 3), ["immeasurable"]);
+        assert_eq!(wrap("", 3), [""]);
     }
 
     #[test]
-    fn numbers_stand_on_the_right() {
-        let right = |text: &str| drawn(5, |painter, line| painter.right(line, text, Style::new()));
+    fn aligns_numbers_right() {
+        let right = |text: &str| drawn(5, |painter, line| painter.draw_right(line, text, Style::new()));
         assert_eq!(right("1.0"), "  1.0");
         assert_eq!(right("1234567"), "1234…");
     }
 
     #[test]
-    fn what_steers_a_terminal_is_shown_instead() {
+    fn shows_control_characters() {
         assert_eq!(left(12, "a\x1b[2Jb"), "a\\x1b[2Jb   ");
     }
 }

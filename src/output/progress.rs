@@ -11,8 +11,8 @@ use super::{Screen, escape};
 pub struct Progress {
     bar: Option<ProgressBar>,
     lines: bool,
-    what: String,
-    done: u64,
+    label: String,
+    completed: u64,
     next_line: NextLine,
 }
 
@@ -26,9 +26,9 @@ enum NextLine {
 }
 
 /// Bytes between two lines if the total is unknown.
-const LINE_EVERY: u64 = 1 << 20;
+const LINE_INTERVAL: u64 = 1 << 20;
 /// Shorter work prints no lines.
-const QUICK: Duration = Duration::from_secs(10);
+const QUICK_DURATION: Duration = Duration::from_secs(10);
 
 impl Screen {
     /// Starts the progress of a transfer; `total` if known.
@@ -39,7 +39,7 @@ impl Screen {
         };
         let next_line = match total {
             Some(total) => NextLine::Tenths { total, began: Instant::now(), told: 0, in_kib: true },
-            None => NextLine::Bytes(LINE_EVERY),
+            None => NextLine::Bytes(LINE_INTERVAL),
         };
         self.progress(what, total, template, next_line)
     }
@@ -55,12 +55,12 @@ impl Screen {
     pub fn parts_progress(&self, what: &str, total: usize) -> Progress {
         let next_line = NextLine::Tenths { total: total as u64, began: Instant::now(), told: 0, in_kib: false };
         let lines = !self.can_redraw() && !self.quiet && !self.is_json();
-        Progress { bar: None, lines, what: what.to_owned(), done: 0, next_line }
+        Progress { bar: None, lines, label: what.to_owned(), completed: 0, next_line }
     }
 
     /// Starts a spinner for work of unknown duration.
     pub fn spinner(&self, what: &str) -> Progress {
-        self.progress(what, None, "{msg} {spinner} {elapsed}", NextLine::Bytes(LINE_EVERY))
+        self.progress(what, None, "{msg} {spinner} {elapsed}", NextLine::Bytes(LINE_INTERVAL))
     }
 
     fn progress(&self, what: &str, total: Option<u64>, template: &str, next_line: NextLine) -> Progress {
@@ -74,14 +74,14 @@ impl Screen {
             bar.enable_steady_tick(Duration::from_millis(100));
             bar
         });
-        Progress { bar, lines: !self.quiet && !self.is_json(), what, done: 0, next_line }
+        Progress { bar, lines: !self.quiet && !self.is_json(), label: what, completed: 0, next_line }
     }
 }
 
 impl Progress {
     /// Adds completed bytes or items.
     pub fn advance(&mut self, more: u64) {
-        self.done += more;
+        self.completed += more;
         match &self.bar {
             Some(bar) => bar.inc(more),
             None if self.lines => self.line(Instant::now()),
@@ -91,10 +91,10 @@ impl Progress {
 
     /// Prints a line if one is due.
     fn line(&mut self, now: Instant) {
-        let (what, done) = (&self.what, self.done);
+        let (what, done) = (&self.label, self.completed);
         match &mut self.next_line {
             NextLine::Bytes(due) if done >= *due => {
-                *due = done - done % LINE_EVERY + LINE_EVERY;
+                *due = done - done % LINE_INTERVAL + LINE_INTERVAL;
                 Screen::stderr(&format!("{what} {} KiB\n", done >> 10));
             }
             NextLine::Bytes(_) => {}
@@ -107,7 +107,7 @@ impl Progress {
     }
 
     /// Changes the text next to the bar; without a terminal, prints nothing.
-    pub fn say(&self, text: &str) {
+    pub fn print_line(&self, text: &str) {
         if let Some(bar) = &self.bar {
             bar.set_message(escape::line(text).into_owned());
         }
@@ -125,16 +125,16 @@ impl Drop for Progress {
 /// Line for a new tenth; `told` is the last one.
 fn tenth(done: u64, total: u64, passed: Duration, told: &mut u64, in_kib: bool) -> Option<String> {
     let tenths = done.saturating_mul(10) / total.max(1);
-    if tenths <= *told || passed < QUICK {
+    if tenths <= *told || passed < QUICK_DURATION {
         return None;
     }
     *told = tenths;
     let (done_now, total_now, unit) = if in_kib { (done >> 10, total >> 10, " KiB") } else { (done, total, "") };
-    Some(format!("{}0 %, {done_now} of {total_now}{unit}, {} left", tenths, left(done, total, passed)))
+    Some(format!("{}0 %, {done_now} of {total_now}{unit}, {} left", tenths, remaining(done, total, passed)))
 }
 
 /// Estimated remaining time: `1 min 20 s`.
-fn left(done: u64, total: u64, passed: Duration) -> String {
+fn remaining(done: u64, total: u64, passed: Duration) -> String {
     let rest = u128::from(total.saturating_sub(done)) * passed.as_millis() / u128::from(done.max(1));
     let seconds = rest.div_ceil(1000);
     if seconds < 60 { format!("{seconds} s") } else { format!("{} min {} s", seconds / 60, seconds % 60) }
@@ -145,26 +145,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn in_a_log_there_is_a_line_for_each_tenth() {
+    fn prints_a_line_per_tenth_in_a_log() {
         let passed = Duration::from_secs(10);
-        let mut told = 0;
-        let lines: Vec<String> = (1..=200).filter_map(|done| tenth(done, 200, passed, &mut told, false)).collect();
+        let mut last = 0;
+        let lines: Vec<String> = (1..=200).filter_map(|done| tenth(done, 200, passed, &mut last, false)).collect();
         assert_eq!(lines.len(), 10);
         assert_eq!(
             (lines[0].as_str(), lines[9].as_str()),
             ("10 %, 20 of 200, 1 min 30 s left", "100 %, 200 of 200, 0 s left")
         );
-        assert_eq!(tenth(200, 200, passed, &mut told, false), None, "no tenth is told twice");
+        assert_eq!(tenth(200, 200, passed, &mut last, false), None, "no tenth is told twice");
         assert_eq!(tenth(2048, 4096, passed, &mut 0, true).as_deref(), Some("50 %, 2 of 4 KiB, 10 s left"));
         assert_eq!(tenth(1, 2, Duration::from_secs(1), &mut 0, false), None, "what is quick has no lines");
     }
 
     #[test]
-    fn the_rest_takes_as_long_as_what_was_done() {
+    fn estimates_the_remaining_time() {
         let passed = Duration::from_secs(10);
-        assert_eq!(left(100, 999, passed), "1 min 30 s");
-        assert_eq!(left(500, 999, passed), "10 s");
-        assert_eq!(left(0, 10, passed), "1 min 40 s");
-        assert_eq!(left(10, 10, passed), "0 s");
+        assert_eq!(remaining(100, 999, passed), "1 min 30 s");
+        assert_eq!(remaining(500, 999, passed), "10 s");
+        assert_eq!(remaining(0, 10, passed), "1 min 40 s");
+        assert_eq!(remaining(10, 10, passed), "0 s");
     }
 }

@@ -44,12 +44,12 @@ impl Screen {
 
 /// Saved terminal settings.
 #[cfg(unix)]
-static FOUND: Mutex<Option<rustix::termios::Termios>> = Mutex::new(None);
+static SAVED_MODES: Mutex<Option<rustix::termios::Termios>> = Mutex::new(None);
 
 /// Saves the terminal settings before a line editor changes them.
 #[cfg(unix)]
 pub fn save() {
-    *FOUND.lock().unwrap_or_else(PoisonError::into_inner) = rustix::termios::tcgetattr(std::io::stdin()).ok();
+    *SAVED_MODES.lock().unwrap_or_else(PoisonError::into_inner) = rustix::termios::tcgetattr(std::io::stdin()).ok();
 }
 
 /// Restores the saved terminal settings.
@@ -57,7 +57,7 @@ pub fn save() {
 pub fn restore() {
     use rustix::termios::{LocalModes, tcgetattr};
 
-    if let Some(found) = &*FOUND.lock().unwrap_or_else(PoisonError::into_inner) {
+    if let Some(found) = &*SAVED_MODES.lock().unwrap_or_else(PoisonError::into_inner) {
         // A program in raw mode has also switched on bracketed paste.
         if tcgetattr(std::io::stdin()).is_ok_and(|now| !now.local_modes.contains(LocalModes::ICANON)) {
             Screen::stderr("\x1b[?2004l");
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_yes_is_yes() {
+    fn only_yes_confirms() {
         for yes in ["y\n", "Y", " yes\r\n", "YES"] {
             assert!(is_yes(yes.as_bytes()), "{yes:?}");
         }

@@ -12,7 +12,7 @@ use super::{Screen, escape, prompt};
 use crate::failure::{Failure, Kind};
 
 /// Number of visible lines of a list.
-const ROWS: usize = 12;
+const MAX_ROWS: usize = 12;
 
 /// Plain text style of questions.
 struct Plain;
@@ -32,27 +32,27 @@ impl Screen {
             Some(usual) => input.default(usual.to_owned()),
             None => input,
         };
-        asked(|term| input.interact_text_on(term)).map(|line| line.trim().to_owned())
+        answer_of(|term| input.interact_text_on(term)).map(|line| line.trim().to_owned())
     }
 
     /// Asks for one entry of a list, the first by default. Returns its index.
     pub fn ask_choice(&self, question: &str, options: &[String]) -> Result<usize, Failure> {
         let select = Select::with_theme(&Plain).with_prompt(escape::line(question)).items(self.lines(options));
-        let select = select.default(0).max_length(ROWS);
-        asked(|term| select.interact_on_opt(term))?.ok_or_else(left)
+        let select = select.default(0).max_length(MAX_ROWS);
+        answer_of(|term| select.interact_on_opt(term))?.ok_or_else(remaining)
     }
 
     /// Asks for one entry of a long list, with a search text. The first is preselected only with `has_first`.
     pub fn ask_one_of(&self, question: &str, options: &[String], has_first: bool) -> Result<usize, Failure> {
         let select = FuzzySelect::with_theme(&Plain).with_prompt(escape::line(question)).items(self.lines(options));
         let select = if has_first { select.default(0) } else { select };
-        asked(|term| select.max_length(ROWS).interact_on_opt(term))?.ok_or_else(left)
+        answer_of(|term| select.max_length(MAX_ROWS).interact_on_opt(term))?.ok_or_else(remaining)
     }
 
     /// Asks for yes or no; `usual` for an empty answer.
     pub fn ask_yes(&self, question: &str, usual: bool) -> Result<bool, Failure> {
         let confirm = Confirm::with_theme(&Plain).with_prompt(escape::line(question)).default(usual);
-        asked(|term| confirm.wait_for_newline(true).interact_on_opt(term))?.ok_or_else(left)
+        answer_of(|term| confirm.wait_for_newline(true).interact_on_opt(term))?.ok_or_else(remaining)
     }
 
     /// Restores the terminal after an interrupted question.
@@ -68,15 +68,15 @@ impl Screen {
     }
 }
 
-fn asked<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failure> {
+fn answer_of<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failure> {
     prompt::save();
     ask(&Term::stderr()).map_err(|Error::IO(error)| match error.kind() {
-        io::ErrorKind::Interrupted => left(),
+        io::ErrorKind::Interrupted => remaining(),
         _ => Failure::new(Kind::Rejected, "no answer").hint("answer the question at a terminal"),
     })
 }
 
 /// Failure for Esc or Ctrl-C.
-fn left() -> Failure {
+fn remaining() -> Failure {
     Failure::new(Kind::Interrupted, "interrupted")
 }

@@ -34,7 +34,7 @@ impl Redraw {
     }
 
     /// Next part of the text, preceded by the codes that remove the old one.
-    pub fn over(&self, text: String) -> String {
+    pub fn with_erase(&self, text: String) -> String {
         if !self.is_on() {
             return text;
         }
@@ -61,21 +61,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_text_replaces_the_one_before_and_nothing_else() {
+    fn replaces_only_the_previous_text() {
         let redraw = Redraw::default();
-        assert_eq!(redraw.over("a\n".to_owned()), "a\n");
+        assert_eq!(redraw.with_erase("a\n".to_owned()), "a\n");
         redraw.begin();
-        assert_eq!(redraw.over("a\nb\n".to_owned()), "a\nb\n");
-        assert_eq!(redraw.over("c\n".to_owned()), "c\n");
+        assert_eq!(redraw.with_erase("a\nb\n".to_owned()), "a\nb\n");
+        assert_eq!(redraw.with_erase("c\n".to_owned()), "c\n");
         redraw.begin();
-        assert!(redraw.over("d\n".to_owned()).starts_with("\x1b["));
+        assert!(redraw.with_erase("d\n".to_owned()).starts_with("\x1b["));
         redraw.begin();
         redraw.forget();
-        assert_eq!(redraw.over("e\n".to_owned()), "e\n");
+        assert_eq!(redraw.with_erase("e\n".to_owned()), "e\n");
     }
 
     #[test]
-    fn long_lines_take_several_of_the_terminal() {
+    fn counts_wrapped_lines() {
         assert_eq!([0, 1, 80, 81, 160].map(|columns| rows(columns, 80)), [1, 1, 1, 2, 2]);
     }
 }

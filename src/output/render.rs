@@ -7,11 +7,11 @@ use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArra
 use dialoguer::console::measure_text_width;
 
 use super::view::{Cell, Section, Table, Tone, View};
-use super::{busy, escape};
+use super::{busy_work, escape};
 
 /// The view as text of at most `width` columns.
 pub fn text(view: &View, width: u16, color: bool) -> String {
-    let _busy = busy::busy();
+    let _busy = busy_work::register();
     let parts: Vec<String> = view.sections.iter().map(|section| section_text(section, width, color)).collect();
     parts.join("\n")
 }
@@ -56,7 +56,7 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
             }
             text
         }
-        Section::Lines(lines) => lines.iter().map(|line| painted(line, color) + "\n").collect(),
+        Section::Lines(lines) => lines.iter().map(|line| with_color(line, color) + "\n").collect(),
         Section::Fields(fields) => fields_text(fields, width, color),
         Section::Table(Table { rows, empty, .. }) if rows.is_empty() => format!("{empty}\n"),
         Section::Table(table) => {
@@ -65,8 +65,8 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
             if layout.least() > usize::from(width) {
                 return records(table, width, color);
             }
-            let mut layout = layout.fit(width);
-            table.rows.chunks(LONG).map(|rows| layout.piece(rows, color)).collect()
+            let mut layout = layout.fit_width(width);
+            table.rows.chunks(LONG_VALUE).map(|rows| layout.piece(rows, color)).collect()
         }
     }
 }
@@ -77,7 +77,7 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
     let names = fields.iter().map(|(name, _)| measure_text_width(name)).max().unwrap_or_default();
     let padding = usize::from(PADDING);
     let width = usize::from(width);
-    let room = width.saturating_sub(names + 2 * padding).max(WORD);
+    let room = width.saturating_sub(names + 2 * padding).max(MIN_WORD);
     let mut out = String::new();
     for (name, cell) in fields {
         let text = escape::line(&cell.text);
@@ -90,11 +90,11 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
         };
         let mut line =
             if is_beside { format!("{name}{:padding$}", "") } else { format!("{}\n{:INDENT$}", name.trim_end(), "") };
-        for (at, part) in folded(&text, room).lines().enumerate() {
+        for (at, part) in fold(&text, room).lines().enumerate() {
             if at > 0 {
                 line = format!("{:indent$}", "");
             }
-            line.push_str(&dyed(part, cell.tone, color));
+            line.push_str(&with_sgr(part, cell.tone, color));
             out.push_str(line.trim_end());
             out.push('\n');
         }
@@ -110,7 +110,7 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
 const PADDING: u16 = 2;
 
 /// Number of rows laid out at a time, to limit memory.
-const LONG: usize = 1000;
+const LONG_VALUE: usize = 1000;
 
 /// Layout of a table whose rows are rendered in pieces: first all rows are measured, then the columns are fitted to a
 /// width. So all pieces look like one table.
@@ -127,7 +127,7 @@ struct Column {
     /// Width of the widest cell; after fitting, the assigned width.
     width: usize,
     /// Minimum width without broken words.
-    least: usize,
+    min_width: usize,
     is_number: bool,
     is_whole: bool,
 }
@@ -137,7 +137,7 @@ impl Layout {
     pub fn new(names: &[&'static str]) -> Self {
         let column = |name: &&str| {
             let (width, least) = (measure_text_width(name), least(name));
-            Column { width, least, is_number: true, is_whole: false }
+            Column { width, min_width: least, is_number: true, is_whole: false }
         };
         Self { names: names.to_vec(), columns: names.iter().map(column).collect(), width: 0, has_header: false }
     }
@@ -148,7 +148,7 @@ impl Layout {
             let text = escape::line(&cell.text);
             let width = measure_text_width(&text);
             column.width = column.width.max(width);
-            column.least = column.least.max(if cell.is_whole { width } else { least(&text) });
+            column.min_width = column.min_width.max(if cell.is_whole { width } else { least(&text) });
             column.is_number = column.is_number && (cell.is_number || cell.text == "-");
             column.is_whole = column.is_whole || cell.is_whole;
         }
@@ -161,20 +161,20 @@ impl Layout {
 
     /// Minimum total width without broken words.
     fn least(&self) -> usize {
-        let words = self.columns.iter().map(|column| if column.is_whole { column.width } else { column.least });
+        let words = self.columns.iter().map(|column| if column.is_whole { column.width } else { column.min_width });
         words.sum::<usize>() + self.gaps()
     }
 
     /// Assigns the width: small columns get what they need, the others share the rest. No column is narrower than its
     /// longest word.
     #[must_use]
-    pub fn fit(mut self, width: u16) -> Self {
+    pub fn fit_width(mut self, width: u16) -> Self {
         self.width = width;
         // The last column is also followed by a space, if there is room.
         let room =
             usize::from(width).saturating_sub(self.gaps() + usize::from(PADDING)).max(self.least() - self.gaps());
         let at = |column: &Column, share: usize| {
-            if column.is_whole { column.width } else { column.width.min(share.max(column.least)) }
+            if column.is_whole { column.width } else { column.width.min(share.max(column.min_width)) }
         };
         let total = |columns: &[Column], share| columns.iter().map(|column| at(column, share)).sum::<usize>();
         let share = (1..=room).rev().find(|share| total(&self.columns, *share) <= room).unwrap_or(1);
@@ -199,7 +199,7 @@ impl Layout {
         }
         for row in rows {
             let cells = row.iter().zip(&self.columns);
-            grid.add_row(cells.map(|(cell, column)| styled(cell, column.width)).collect::<Vec<_>>());
+            grid.add_row(cells.map(|(cell, column)| apply_tone(cell, column.width)).collect::<Vec<_>>());
         }
         for (column, Column { width, .. }) in grid.column_iter_mut().zip(&self.columns) {
             let width = u16::try_from(*width).unwrap_or(u16::MAX).saturating_add(PADDING);
@@ -221,12 +221,12 @@ fn grid(width: u16, color: bool) -> comfy_table::Table {
 }
 
 /// Longest part of a breakable word that is kept together.
-const WORD: usize = 16;
+const MIN_WORD: usize = 16;
 
 /// Whether a word can be broken anywhere: very long words, bytes and bits, and languages without blanks.
 fn may_break(word: &str) -> bool {
     let is_digit = |byte: u8| byte.is_ascii_hexdigit() || b"?_[]".contains(&byte);
-    word.len() >= GIANT || !word.is_ascii() || word.bytes().all(is_digit)
+    word.len() >= GIANT_WORD || !word.is_ascii() || word.bytes().all(is_digit)
 }
 
 /// Parts of a word that stay together: lists are split after commas, addresses are not split.
@@ -239,7 +239,7 @@ fn pieces(word: &str) -> impl Iterator<Item = &str> {
 fn least(text: &str) -> usize {
     let of_piece = |piece: &str| {
         let wide = measure_text_width(piece);
-        if may_break(piece) { wide.min(WORD) } else { wide }
+        if may_break(piece) { wide.min(MIN_WORD) } else { wide }
     };
     text.split(' ').flat_map(pieces).map(of_piece).max().unwrap_or_default()
 }
@@ -254,19 +254,19 @@ fn records(table: &Table, width: u16, color: bool) -> String {
 }
 
 /// Length of a very long word. Normal breaking would take quadratic time.
-const GIANT: usize = 4096;
+const GIANT_WORD: usize = 4096;
 
 /// Breaks a text into lines of `room` columns, between words.
-fn folded(text: &str, room: usize) -> String {
+fn fold(text: &str, room: usize) -> String {
     let mut out = String::with_capacity(text.len() + text.len() / room.max(1) + 1);
     let mut column = 0;
     for (at, word) in text.split(' ').enumerate() {
-        let is_short = word.len() < GIANT && measure_text_width(word) <= room;
+        let is_short = word.len() < GIANT_WORD && measure_text_width(word) <= room;
         let whole = is_short.then_some(word);
         let parts = pieces(word).filter(|_| !is_short);
         for (part_at, part) in whole.into_iter().chain(parts).enumerate() {
             let gap = usize::from(at > 0 && part_at == 0);
-            let wide = if part.len() < GIANT { measure_text_width(part) } else { usize::MAX / 2 };
+            let wide = if part.len() < GIANT_WORD { measure_text_width(part) } else { usize::MAX / 2 };
             if column > 0 && column + gap + wide > room {
                 out.push('\n');
                 column = 0;
@@ -294,8 +294,8 @@ fn folded(text: &str, room: usize) -> String {
     out
 }
 
-fn styled(cell: &Cell, room: usize) -> comfy_table::Cell {
-    let shown = comfy_table::Cell::new(folded(&escape::line(&cell.text), room));
+fn apply_tone(cell: &Cell, room: usize) -> comfy_table::Cell {
+    let shown = comfy_table::Cell::new(fold(&escape::line(&cell.text), room));
     let shown = match cell.tone {
         Tone::Plain => shown,
         Tone::Good => shown.fg(Color::Green),
@@ -306,12 +306,12 @@ fn styled(cell: &Cell, room: usize) -> comfy_table::Cell {
 }
 
 /// A line without breaks, with its color.
-pub fn painted(line: &Cell, color: bool) -> String {
-    dyed(&escape::line(&line.text), line.tone, color).into_owned()
+pub fn with_color(line: &Cell, color: bool) -> String {
+    with_sgr(&escape::line(&line.text), line.tone, color).into_owned()
 }
 
 /// A text with the color of its tone.
-fn dyed(text: &str, tone: Tone, color: bool) -> Cow<'_, str> {
+fn with_sgr(text: &str, tone: Tone, color: bool) -> Cow<'_, str> {
     let code = match tone {
         Tone::Good if color => 32,
         Tone::Warning if color => 33,
@@ -335,7 +335,7 @@ fn column_id(name: &str) -> String {
 /// Text of a cell; numbers are unchanged.
 #[cfg(test)]
 fn csv_cell(cell: &Cell) -> String {
-    if cell.is_number { escape::lines(&cell.text).into_owned() } else { super::csv::harmless(&cell.text) }
+    if cell.is_number { escape::lines(&cell.text).into_owned() } else { super::csv::neutralize_formula(&cell.text) }
 }
 
 #[cfg(test)]
@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_stand_right_and_wide_characters_count_double() {
+    fn aligns_numbers_and_counts_wide_characters_twice() {
         assert_eq!(
             text(&sample(), 80, false),
             "NAME            X (MM)\nてすと           1.000\na,\"b\"\\x1b[31m  -20.500\n"
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_table_looks_like_a_short_one() {
+    fn long_table_has_the_layout_of_a_short_one() {
         let table = |rows: usize| {
             let mut table = Table::new(&["number", "time", "message"], "");
             for number in 0..rows {
@@ -367,14 +367,14 @@ mod tests {
             }
             text(&View::table(table), 60, false)
         };
-        let (short, long) = (table(LONG), table(2 * LONG + 10));
+        let (short, long) = (table(LONG_VALUE), table(2 * LONG_VALUE + 10));
         assert!(long.starts_with(&short), "{}\n{}", &short[..600], &long[..600]);
         assert!(long.lines().all(|line| line.len() <= 60) && long.lines().count() > short.lines().count());
     }
 
     /// A quadratic algorithm would take hours here.
     #[test]
-    fn a_word_of_megabytes_is_laid_out_in_lines() {
+    fn wraps_a_giant_word() {
         let giant = "A".repeat(8 << 20);
         let mut table = Table::new(&["number", "raw"], "");
         table.row([Cell::number("1"), format!("before {giant} after").into()]);
@@ -387,15 +387,15 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_coloured_one_by_one() {
+    fn colors_each_line() {
         let lines = || vec![Cell::from("-a\u{1b}[0m").tone(Tone::Bad), Cell::from(" b")];
-        let view = View::default().and(Section::Lines(lines()));
+        let view = View::default().append(Section::Lines(lines()));
         assert_eq!(text(&view, 80, false), "-a\\x1b[0m\n b\n");
         assert_eq!(text(&view, 80, true), "\x1b[31m-a\\x1b[0m\x1b[0m\n b\n");
     }
 
     #[test]
-    fn what_is_whole_stays_on_a_line() {
+    fn keeps_whole_cells_on_one_line() {
         let mut table = Table::new(&["name", "time"], "");
         table.row(["word ".repeat(20).into(), Cell::from("2026/03/14 08:00").whole()]);
         let text = text(&View::table(table), 40, false);
@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn no_word_is_broken_at_any_width() {
+    fn never_breaks_words() {
         let url = "profinet://cell-3@enp4s0?ip=192.168.1.5&cycle=16ms&watchdog=320ms&words=le&startup=advanced";
         let list = "base:x=1000.000,y=0.000,z=1200.000,rx=180.0000,ry=0.0000,rz=0.0000,tool=0,user=0,form=front";
         let rows = [
@@ -430,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn an_address_stays_on_a_line() {
+    fn keeps_an_address_on_one_line() {
         let mut table = Table::new(&["robot", "target", "what it says"], "");
         let url = "profinet://cell-3@enp4s0?ip=192.168.1.5";
         table.row(["cell3".into(), url.into(), "word ".repeat(20).into()]);
@@ -440,7 +440,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_that_would_break_words_becomes_a_list() {
+    fn shows_a_narrow_table_as_a_list() {
         let mut table = Table::new(&["robot", "mode", "state"], "");
         table.row(["weld1".into(), "play".into(), "stopped".into()]);
         table.row(["weld2".into(), "auto".into(), "running".into()]);
@@ -451,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_fit_the_width() {
+    fn fits_tables_to_the_width() {
         let view = View::fields([("text", Cell::from("word ".repeat(40)))]);
         assert!(text(&view, 80, false).lines().all(|line| line.chars().count() <= 80));
     }

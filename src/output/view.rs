@@ -53,7 +53,7 @@ impl Cell {
     }
 
     /// A value that can be missing.
-    pub fn maybe<T: Into<Self>>(value: Option<T>) -> Self {
+    pub fn optional<T: Into<Self>>(value: Option<T>) -> Self {
         value.map_or_else(|| Self::from("-"), Into::into)
     }
 }
@@ -191,7 +191,7 @@ impl View {
 
     /// Adds a part.
     #[must_use]
-    pub fn and(mut self, section: Section) -> Self {
+    pub fn append(mut self, section: Section) -> Self {
         self.sections.push(section);
         self
     }

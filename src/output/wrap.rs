@@ -6,7 +6,7 @@ use dialoguer::console::measure_text_width;
 
 /// Breaks the text into lines of at most `width` columns, only between words, so that an address or a command can be
 /// copied. Continued lines have the indentation of their first line.
-pub fn wrapped(text: &str, width: usize) -> Cow<'_, str> {
+pub fn wrap(text: &str, width: usize) -> Cow<'_, str> {
     if text.lines().all(|line| measure_text_width(line) <= width) {
         return text.into();
     }
@@ -37,12 +37,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_break_between_words_and_keep_their_indentation() {
-        assert_eq!(wrapped("short\nlines\n", 8), "short\nlines\n");
-        assert_eq!(wrapped("one two three four\n", 9), "one two\nthree\nfour\n");
-        assert_eq!(wrapped("a\n  bb ccc dddd\n", 7), "a\n  bb\n  ccc\n  dddd\n");
-        assert_eq!(wrapped("see https://example.org/a/b?c=d now", 12), "see\nhttps://example.org/a/b?c=d\nnow");
-        assert_eq!(wrapped("\u{1b}[31merror:\u{1b}[0m no answer", 10), "\u{1b}[31merror:\u{1b}[0m no\nanswer");
-        assert_eq!(wrapped("Continue? [y/N] ", 80), "Continue? [y/N] ");
+    fn wraps_between_words_and_keeps_indentation() {
+        assert_eq!(wrap("short\nlines\n", 8), "short\nlines\n");
+        assert_eq!(wrap("one two three four\n", 9), "one two\nthree\nfour\n");
+        assert_eq!(wrap("a\n  bb ccc dddd\n", 7), "a\n  bb\n  ccc\n  dddd\n");
+        assert_eq!(wrap("see https://example.org/a/b?c=d now", 12), "see\nhttps://example.org/a/b?c=d\nnow");
+        assert_eq!(wrap("\u{1b}[31merror:\u{1b}[0m no answer", 10), "\u{1b}[31merror:\u{1b}[0m no\nanswer");
+        assert_eq!(wrap("Continue? [y/N] ", 80), "Continue? [y/N] ");
     }
 }

@@ -53,17 +53,17 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
 ];
 
 /// Reports about frames, local programs and boards, with the terms of their protocols.
-const APART: [&str; 5] = ["decode.", "sim", "toyo.sim.", "failure", "envelope"];
+const SEPARATE_CONCEPTS: [&str; 5] = ["decode.", "sim", "toyo.sim.", "failure", "envelope"];
 
 #[test]
 fn concepts_have_one_name_type_and_unit() {
     let mut wrong = BTreeSet::new();
     for entry in armctl::command::about::schema::all() {
-        if APART.iter().any(|part| entry.id == *part || part.ends_with('.') && entry.id.starts_with(part)) {
+        if SEPARATE_CONCEPTS.iter().any(|part| entry.id == *part || part.ends_with('.') && entry.id.starts_with(part)) {
             continue;
         }
         let schema = (entry.schema)().to_value();
-        look(&schema, &schema, &mut |key, types| {
+        collect_types(&schema, &schema, &mut |key, types| {
             if EXCEPTIONS.iter().any(|(id, known, _)| key == *known && is_of(entry.id, id)) {
                 return;
             }
@@ -85,7 +85,7 @@ fn every_exception_is_needed() {
     for (id, key, _) in EXCEPTIONS {
         let has = armctl::command::about::schema::all().into_iter().filter(|entry| is_of(entry.id, id)).any(|entry| {
             let (schema, mut found) = ((entry.schema)().to_value(), false);
-            look(&schema, &schema, &mut |other, _| found |= other == *key);
+            collect_types(&schema, &schema, &mut |other, _| found |= other == *key);
             found
         });
         assert!(has, "no report {id} has {key}");
@@ -98,7 +98,7 @@ fn is_of(report: &str, pattern: &str) -> bool {
 }
 
 /// Every key below a schema, with its types except null.
-fn look(schema: &Value, root: &Value, say: &mut impl FnMut(&str, &BTreeSet<String>)) {
+fn collect_types(schema: &Value, root: &Value, say: &mut impl FnMut(&str, &BTreeSet<String>)) {
     match schema {
         Value::Object(fields) => {
             if let Some(properties) = fields.get("properties").and_then(Value::as_object) {
@@ -108,9 +108,9 @@ fn look(schema: &Value, root: &Value, say: &mut impl FnMut(&str, &BTreeSet<Strin
                     say(key, &types);
                 }
             }
-            fields.values().for_each(|value| look(value, root, say));
+            fields.values().for_each(|value| collect_types(value, root, say));
         }
-        Value::Array(items) => items.iter().for_each(|value| look(value, root, say)),
+        Value::Array(items) => items.iter().for_each(|value| collect_types(value, root, say)),
         _ => {}
     }
 }

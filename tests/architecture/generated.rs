@@ -28,11 +28,11 @@ fn man_pages_are_current() {
 
 #[test]
 fn schemas_are_current() {
-    let made = armctl::command::about::schema::files().into_iter().map(|(name, schema)| {
+    let generated = armctl::command::about::schema::files().into_iter().map(|(name, schema)| {
         let text = serde_json::to_string_pretty(&schema).expect("a schema is JSON");
         (name, format!("{text}\n").into_bytes())
     });
-    is_current("docs/schemas", &made.collect());
+    is_current("docs/schemas", &generated.collect());
 }
 
 #[test]
@@ -62,8 +62,8 @@ fn reports_contain_no_sentences() {
         }
     }
     assert_eq!(found, Vec::<&str>::new(), "reports whose data is a sentence");
-    let of = |id: &str| armctl::command::about::schema::all().into_iter().find(|entry| entry.id == id);
-    let hold = (of("yerc.hold").expect("hold reports").schema)().to_value();
+    let entries_with = |id: &str| armctl::command::about::schema::all().into_iter().find(|entry| entry.id == id);
+    let hold = (entries_with("yerc.hold").expect("hold reports").schema)().to_value();
     assert!(["set", "old", "new"].iter().all(|name| hold["properties"].get(name).is_some()), "{hold}");
 }
 
@@ -86,17 +86,18 @@ fn every_robot_command_has_a_schema_and_help() {
 #[test]
 fn command_flags_do_not_shadow_global_flags() {
     // `--all` of a command would also select all robots. `--for` is a duration in all commands.
-    fn look(command: &clap::Command, known: &BTreeSet<String>, path: &str, found: &mut Vec<String>) {
-        let own = || command.get_arguments().flat_map(|argument| flags(argument).map(move |flag| (flag, argument)));
-        let shadowed = own().filter(|(flag, _)| known.contains(flag) && flag != "--for");
+    fn check_flags(command: &clap::Command, known: &BTreeSet<String>, path: &str, found: &mut Vec<String>) {
+        let own_flags =
+            || command.get_arguments().flat_map(|argument| flags(argument).map(move |flag| (flag, argument)));
+        let shadowed = own_flags().filter(|(flag, _)| known.contains(flag) && flag != "--for");
         found.extend(shadowed.map(|(flag, _)| format!("{path} {flag}")));
         // Each term has one flag.
-        let into_folder = own().filter(|(flag, argument)| is_folder(argument) && flag != "--dir");
+        let into_folder = own_flags().filter(|(flag, argument)| is_folder(argument) && flag != "--dir");
         found.extend(into_folder.map(|(flag, _)| format!("{path} {flag}: a folder is --dir")));
-        let global = own().filter(|(_, argument)| argument.is_global_set()).map(|(flag, _)| flag);
+        let global = own_flags().filter(|(_, argument)| argument.is_global_set()).map(|(flag, _)| flag);
         let known: BTreeSet<String> = known.iter().cloned().chain(global).collect();
         for verb in command.get_subcommands() {
-            look(verb, &known, &format!("{path} {}", verb.get_name()), found);
+            check_flags(verb, &known, &format!("{path} {}", verb.get_name()), found);
         }
     }
     /// All accepted forms, including hidden ones.
@@ -112,7 +113,7 @@ fn command_flags_do_not_shadow_global_flags() {
     }
 
     let mut found = Vec::new();
-    look(&armctl::cli::Cli::command(), &BTreeSet::new(), "armctl", &mut found);
+    check_flags(&armctl::cli::Cli::command(), &BTreeSet::new(), "armctl", &mut found);
     assert_eq!(found, Vec::<String>::new());
 }
 
@@ -151,10 +152,10 @@ fn is_current(folder: &str, made: &BTreeMap<String, Vec<u8>>) {
         }
         return;
     }
-    let there = names(&path);
+    let existing = names(&path);
     let stale: Vec<&String> = made
         .keys()
-        .chain(&there)
+        .chain(&existing)
         .filter(|name| std::fs::read(path.join(name)).ok().as_ref() != made.get(*name))
         .collect();
     assert!(

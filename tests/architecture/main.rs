@@ -186,13 +186,13 @@ const LONGEST: usize = 700;
 
 #[test]
 fn dependencies_have_one_direction() {
-    let wrong: Vec<String> = sources().iter().flat_map(trespasses).collect();
+    let wrong: Vec<String> = sources().iter().flat_map(forbidden_paths).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
 fn finds_forbidden_dependencies() {
-    let found = |name: &str, text: &str| trespasses(&Source::new(name, text)).len();
+    let found = |name: &str, text: &str| forbidden_paths(&Source::new(name, text)).len();
     assert_eq!(found("controller/x.rs", "use {crate::text, armctl_transport::udp::Udp};"), 1);
     assert_eq!(found("controller/yerc/x.rs", "fn now() { super::super::super::output::say() }"), 1);
     assert_eq!(
@@ -268,12 +268,12 @@ fn limits_the_length_of_files() {
 #[test]
 fn no_file_names_a_development_machine() {
     // Assembled here, so that this file does not match.
-    let marks = ["home", "root", "work", "Users"].map(|folder| format!("/{folder}/"));
+    let machine_names = ["home", "root", "work", "Users"].map(|folder| format!("/{folder}/"));
     let mut wrong = Vec::new();
     for file in committed(&root()) {
         let Ok(text) = std::fs::read_to_string(&file) else { continue };
         for (number, line) in text.lines().enumerate() {
-            for mark in marks.iter().filter(|mark| line.contains(mark.as_str())) {
+            for mark in machine_names.iter().filter(|mark| line.contains(mark.as_str())) {
                 wrong.push(format!("{}:{}: {mark}", file.display(), number + 1));
             }
         }
@@ -309,7 +309,7 @@ fn every_usage_failure_has_a_hint() {
 }
 
 /// Forbidden paths that a source uses.
-fn trespasses(source: &Source) -> Vec<String> {
+fn forbidden_paths(source: &Source) -> Vec<String> {
     let mut wrong = Vec::new();
     for (line, path) in source.paths() {
         let place = format!("src/{}:{line}", source.name);

@@ -30,7 +30,7 @@ pub fn sources() -> Vec<Source> {
 
 impl Source {
     pub fn new(name: &str, text: &str) -> Self {
-        Self { name: name.to_owned(), text: text.to_owned(), code: bare(text) }
+        Self { name: name.to_owned(), text: text.to_owned(), code: strip_code(text) }
     }
 
     /// Every path of two or more words in the code, with its line. `use` trees are expanded; `super` and `self` are
@@ -47,7 +47,7 @@ impl Source {
             let (word, after) = rest.split_at(end);
             let consumed = if word == "use" {
                 let end = after.find(';').unwrap_or(after.len());
-                spread(&after[..end], "", &mut |path| paths.push((line, resolve(&module, path))));
+                expand_tree(&after[..end], "", &mut |path| paths.push((line, resolve(&module, path))));
                 end
             } else {
                 let mut path = word.to_owned();
@@ -85,7 +85,7 @@ fn is_word(c: char) -> bool {
 }
 
 /// Splits `a::{b, c::{d}}` into `a::b` and `a::c::d`.
-fn spread(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
+fn expand_tree(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
         let path = tree.split(" as ").next().unwrap_or_default();
@@ -101,7 +101,7 @@ fn spread(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
             '}' => depth -= 1,
             ',' if depth == 0 => {
                 if !inside[start..at].trim().is_empty() {
-                    spread(&inside[start..at], &prefix, take);
+                    expand_tree(&inside[start..at], &prefix, take);
                 }
                 start = at + 1;
             }
@@ -122,14 +122,14 @@ fn resolve(module: &[String], path: &str) -> String {
         }
     }
     if !is_relative {
-        return in_the_house(&module, path);
+        return is_in_crate(&module, path);
     }
     module.extend(words.map(str::to_owned));
     module.join("::")
 }
 
 /// Path as if all members of the workspace were modules of one crate, as in `lib.rs`.
-fn in_the_house(module: &[String], path: &str) -> String {
+fn is_in_crate(module: &[String], path: &str) -> String {
     const MEMBERS: [&str; 4] = ["client", "controller", "files", "transport"];
     let (first, rest) = path.split_once("::").unwrap_or((path, ""));
     let member = match first {
@@ -144,13 +144,13 @@ fn in_the_house(module: &[String], path: &str) -> String {
 }
 
 /// Code without comments and the contents of string and character literals, with the same lines.
-fn bare(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
+fn strip_code(text: &str) -> String {
+    let mut stripped = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(c) = rest.chars().next() {
         let skipped = if rest.starts_with("//") {
             rest.find('\n').unwrap_or(rest.len())
-        } else if let Some(fence) = raw_fence(rest, &out) {
+        } else if let Some(fence) = raw_fence(rest, &stripped) {
             let open = fence.len() + 1;
             let close = format!("\"{}", &fence[1..]);
             rest[open..].find(&close).map_or(rest.len(), |at| open + at + close.len())
@@ -159,14 +159,14 @@ fn bare(text: &str) -> String {
         } else if c == '\'' && is_character(rest) {
             closing(rest, '\'')
         } else {
-            out.push(c);
+            stripped.push(c);
             rest = &rest[c.len_utf8()..];
             continue;
         };
-        out.extend(rest[..skipped].chars().filter(|c| *c == '\n'));
+        stripped.extend(rest[..skipped].chars().filter(|c| *c == '\n'));
         rest = &rest[skipped..];
     }
-    out
+    stripped
 }
 
 /// `r##` of a raw string that begins here.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use armctl::command::leaf_commands::leaves;
+use armctl::command::example_lines::robot_lines;
 use armctl::controller::Risk;
 use armctl::output::csv::{RowsOf, Sheet};
 use serde_json::Value;
@@ -13,7 +13,7 @@ const LEFT_OUT: [&str; 10] =
     ["watch", "--for", "--continuous", "auto-mode", "backup", "diff", "dump", "file", " -t ", "program get"];
 
 /// stdout of a line on the simulator, if it succeeded.
-fn printed(line: &str, format: &str, folder: &Path) -> Option<String> {
+fn print_report(line: &str, format: &str, folder: &Path) -> Option<String> {
     let words = line.split(' ').map(|word| word.trim_matches('\''));
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     command
@@ -31,17 +31,17 @@ fn columns_come_from_the_schema_of_the_json() {
     let folder = tempfile::tempdir().expect("there is room for a folder");
     let mut compared = 0;
     for (line, _) in
-        leaves().filter(|(line, risk)| *risk == Risk::Read && !LEFT_OUT.iter().any(|out| line.contains(out)))
+        robot_lines().filter(|(line, risk)| *risk == Risk::Read && !LEFT_OUT.iter().any(|out| line.contains(out)))
     {
         if line.contains(" -r ") || line.contains("--jq") || line.contains("--json") {
             continue;
         }
-        let Some(json) = printed(line, "json", folder.path()) else { continue };
-        let csv = printed(line, "csv", folder.path()).expect("it is done as CSV, too");
+        let Some(json) = print_report(line, "json", folder.path()) else { continue };
+        let csv = print_report(line, "csv", folder.path()).expect("it is done as CSV, too");
         let envelope: Value = serde_json::from_str(&json).expect("an envelope");
         let command = if envelope.is_array() { &envelope[0]["command"] } else { &envelope["command"] };
-        let of = armctl::command::about::schema::all().into_iter().find(|entry| *command == entry.id);
-        let schema = (of.expect("a schema").schema)().to_value();
+        let schema_of_report = armctl::command::about::schema::all().into_iter().find(|entry| *command == entry.id);
+        let schema = (schema_of_report.expect("a schema").schema)().to_value();
         let head = csv.lines().next().unwrap_or_default();
         let head = head.strip_prefix("robot,").filter(|_| envelope.is_array()).unwrap_or(head);
         let variants = schema["anyOf"].as_array().into_iter().flatten();
@@ -55,7 +55,7 @@ fn columns_come_from_the_schema_of_the_json() {
         let possible: Vec<String> = [RowsOf::Lists, RowsOf::Report]
             .into_iter()
             .chain(lists)
-            .map(|rows| Sheet::of(&schema, rows))
+            .map(|rows| Sheet::from_schema(&schema, rows))
             .map(|sheet| if envelope.is_array() { sheet.with_outcome() } else { sheet }.header(&[]))
             .collect();
         assert!(possible.iter().any(|header| header.trim_end() == head), "{line}: {head}\n{possible:#?}");

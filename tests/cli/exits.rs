@@ -29,7 +29,7 @@ fn peer(answer: impl Fn(&[u8]) -> Option<Vec<u8>> + Send + 'static) -> String {
 }
 
 /// A successful answer without data.
-fn done(request: &[u8]) -> Vec<u8> {
+fn set_value(request: &[u8]) -> Vec<u8> {
     let mut answer = request[..24].to_vec();
     answer[6..8].copy_from_slice(&[0, 0]);
     answer[10] = 1;
@@ -45,7 +45,7 @@ fn failure(output: &Output) -> Value {
     let mut lines = stderr.lines();
     let envelope = lines.next().expect("a line on stderr");
     assert_eq!(lines.next(), None, "one line alone: {stderr}");
-    json::shown(envelope);
+    json::format_value(envelope);
     let envelope: Value = serde_json::from_str(envelope).expect("an envelope");
     assert_eq!(envelope["error"]["exit"].as_i64(), output.status.code().map(i64::from));
     envelope["error"].clone()
@@ -55,7 +55,7 @@ fn failure(output: &Output) -> Value {
 fn exits_5_for_a_malformed_answer() {
     let desk = Desk::new();
     // A status has eight bytes of data; this one has none.
-    let target = peer(|request| Some(done(request)));
+    let target = peer(|request| Some(set_value(request)));
     let output = desk.armctl(&["-t", &target, "yerc", "status", "--json"]).output().expect("it runs");
     assert_eq!(output.status.code(), Some(5), "{output:?}");
     let error = failure(&output);
@@ -81,8 +81,8 @@ fn exits_5_for_garbage() {
 }
 
 /// A controller that refuses reads, and does not answer other requests.
-fn refuses_to_tell(request: &[u8]) -> Option<Vec<u8>> {
-    let mut refused = done(request);
+fn refuses_to_report(request: &[u8]) -> Option<Vec<u8>> {
+    let mut refused = set_value(request);
     refused[25] = 0x08;
     [0x01, 0x0E, 0x33].contains(&request[29]).then_some(refused)
 }
@@ -91,7 +91,7 @@ fn refuses_to_tell(request: &[u8]) -> Option<Vec<u8>> {
 fn exits_6_if_the_answer_of_a_change_is_lost() {
     let desk = Desk::new();
     for change in [&["cycle", "once"][..], &["var", "set", "B0=1"], &["hold", "on"], &["job", "select", "MAIN"]] {
-        let target = peer(refuses_to_tell);
+        let target = peer(refuses_to_report);
         let mut line = vec!["-t", &target, "--json", "--timeout", "100ms", "yerc"];
         line.extend(change);
         let output = desk.armctl(&line).output().expect("it runs");
@@ -115,7 +115,7 @@ fn exits_4_if_the_old_value_is_not_answered() {
 #[test]
 fn describes_exit_6() {
     let desk = Desk::new();
-    let target = peer(refuses_to_tell);
+    let target = peer(refuses_to_report);
     let line = ["-t", &target, "--timeout", "100ms", "yerc", "cycle", "once"];
     let output = desk.armctl(&line).output().expect("it runs");
     let stderr = String::from_utf8_lossy(&output.stderr).replace(&target, "udp://127.0.0.1:10040");
@@ -154,8 +154,8 @@ fn exits_0_if_the_reader_of_a_watch_closes() {
     let mut child = spawn(desk.armctl(&["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]));
     first_line(&mut child);
     let status = child.wait().expect("it ends by itself");
-    assert_eq!(status.code(), Some(0), "{}", said(&mut child));
-    assert_eq!(said(&mut child), "");
+    assert_eq!(status.code(), Some(0), "{}", read_output(&mut child));
+    assert_eq!(read_output(&mut child), "");
 }
 
 #[test]
@@ -163,10 +163,10 @@ fn interrupted_during_a_watch() {
     let desk = Desk::new();
     let mut child = spawn(desk.armctl(&["--sim", "yerc", "status", "--watch", "1h", "-o", "jsonl"]));
     let line = first_line(&mut child);
-    json::shown(&line);
+    json::format_value(&line);
     interrupt(&child, "INT");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
-    let error: Value = serde_json::from_str(&said(&mut child)).expect("one line of JSON");
+    let error: Value = serde_json::from_str(&read_output(&mut child)).expect("one line of JSON");
     assert_eq!(error["error"]["kind"], "interrupted");
     assert_eq!(error["error"]["exit"], 130);
 }
@@ -187,7 +187,7 @@ fn interrupted_during_a_move() {
     interrupt(&child, "INT");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
     snapbox::assert_data_eq!(
-        said(&mut child),
+        read_output(&mut child),
         snapbox::str![[r#"
 stopping the robot: HOLD on
 interrupted: the robot was stopped: HOLD is on; `yerc hold off` releases it
@@ -225,7 +225,7 @@ fn interrupted_during_a_move_with_on_interrupt_leave() {
     wait(&desk, &simulator, ".data.running");
     interrupt(&child, "INT");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
-    let error: Value = serde_json::from_str(&said(&mut child)).expect("one line of JSON");
+    let error: Value = serde_json::from_str(&read_output(&mut child)).expect("one line of JSON");
     assert_eq!(error["error"]["exit"], 130);
     let output =
         desk.armctl(&["-t", &simulator.target, "yerc", "status", "--jq", ".data.running"]).output().expect("it runs");
@@ -262,13 +262,13 @@ fn server_prints_its_address_and_ends_on_a_signal() {
     for signal in ["INT", "TERM"] {
         let mut child = spawn(desk.armctl(&["sim", "yerc", "--bind", "127.0.0.1:0", "--json"]));
         let line = first_line(&mut child);
-        json::shown(&line);
+        json::format_value(&line);
         let envelope: Value = serde_json::from_str(&line).expect("an envelope");
         let target = envelope["data"]["target"].as_str().expect("a URL");
         assert!(desk.armctl(&["-t", target, "yerc", "status"]).output().expect("it runs").status.success());
         interrupt(&child, signal);
         assert_eq!(child.wait().expect("it ends").code(), Some(0), "this is how one ends a server");
-        assert_eq!(said(&mut child), "");
+        assert_eq!(read_output(&mut child), "");
     }
 }
 
@@ -292,7 +292,7 @@ fn first_line(child: &mut Child) -> String {
 }
 
 /// stderr until the end.
-fn said(child: &mut Child) -> String {
+fn read_output(child: &mut Child) -> String {
     let mut text = String::new();
     let Some(mut stderr) = child.stderr.take() else { return text };
     stderr.read_to_string(&mut text).expect("UTF-8");

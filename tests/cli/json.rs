@@ -8,27 +8,28 @@ use crate::support::schemas::check;
 const WIDTH: usize = 100;
 
 /// Text without our times; times of a controller are always the same.
-fn redacted(text: &str) -> String {
-    let text = replaced(text, "\"time\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
-    let text = replaced(&text, "\"elapsed_ms\":", |value| value.find([',', '}']));
-    let text = replaced(&text, "\"round_trip_ms\":", |value| value.find([',', '}']));
-    let text = replaced(&text, "\"pid\":", |value| value.find([',', '}']));
-    let text = replaced(&text, "\"since\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
-    let text = replaced(&text, "process ", |value| value.find(|c: char| !c.is_ascii_digit()).filter(|end| *end > 0));
-    let text = replaced(&text, " since ", |value| {
+fn redact(text: &str) -> String {
+    let text = replace_dates(text, "\"time\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
+    let text = replace_dates(&text, "\"elapsed_ms\":", |value| value.find([',', '}']));
+    let text = replace_dates(&text, "\"round_trip_ms\":", |value| value.find([',', '}']));
+    let text = replace_dates(&text, "\"pid\":", |value| value.find([',', '}']));
+    let text = replace_dates(&text, "\"since\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
+    let text =
+        replace_dates(&text, "process ", |value| value.find(|c: char| !c.is_ascii_digit()).filter(|end| *end > 0));
+    let text = replace_dates(&text, " since ", |value| {
         Some(DATE.len()).filter(|end| value.as_bytes().get(*end - 3) == Some(&b':'))
     });
-    let text = replaced(&text, "\"taken_at\":\"", |value| value.find('"'));
-    let text = replaced(&text, "\"taken_at\": \"", |value| value.find('"'));
+    let text = replace_dates(&text, "\"taken_at\":\"", |value| value.find('"'));
+    let text = replace_dates(&text, "\"taken_at\": \"", |value| value.find('"'));
     let end = |value: &str| value.starts_with(|next: char| next.is_ascii_digit()).then_some(value.len());
-    replaced(&replaced(&text, "taken at   ", end), "elapsed (ms)  ", end)
+    replace_dates(&replace_dates(&text, "taken at   ", end), "elapsed (ms)  ", end)
 }
 
 /// A time within a sentence.
 const DATE: &str = "2026-11-21 09:31:05";
 
 /// Text with `[..]` for the value after a name; `end` finds the end of the value.
-fn replaced(text: &str, name: &str, end: impl Fn(&str) -> Option<usize>) -> String {
+fn replace_dates(text: &str, name: &str, end: impl Fn(&str) -> Option<usize>) -> String {
     let mut parts = text.split(name);
     let first = parts.next().unwrap_or_default().to_owned();
     parts.fold(first, |done, part| match end(part) {
@@ -38,15 +39,15 @@ fn replaced(text: &str, name: &str, end: impl Fn(&str) -> Option<usize>) -> Stri
 }
 
 /// A line as in a transcript: JSON is indented, and an envelope is checked.
-pub fn shown(line: &str) -> String {
-    let Some(value) = document(line) else { return redacted(line) };
+pub fn format_value(line: &str) -> String {
+    let Some(value) = document(line) else { return redact(line) };
     let one = std::slice::from_ref(&value);
     for envelope in value.as_array().map_or(one, Vec::as_slice).iter().filter(|value| value.get("ok").is_some()) {
         if let Err(why) = check(envelope) {
             panic!("{why} in\n{line}");
         }
     }
-    pretty(&document(&redacted(line)).expect("what stands for a time is JSON, too"), 0)
+    pretty(&document(&redact(line)).expect("what stands for a time is JSON, too"), 0)
 }
 
 fn document(line: &str) -> Option<Value> {
@@ -74,32 +75,32 @@ fn pretty(value: &Value, indent: usize) -> String {
 }
 
 /// Corrupts a document.
-type Spoil<'a> = &'a dyn Fn(&mut Value);
+type Corruption<'a> = &'a dyn Fn(&mut Value);
 
 #[test]
 fn finds_violations_of_the_json_contract() {
-    let whole = serde_json::json!({
+    let valid = serde_json::json!({
         "time": "2026-11-21T09:00:00Z", "robot": "cell3", "family": "yerc", "target": "sim:", "simulated": true,
         "command": "sim.yerc", "ok": true, "data": {"family": "yerc", "model": "fs100", "target": "udp://127.0.0.1"},
     });
-    assert_eq!(check(&whole), Ok(()));
-    let spoilt = |spoil: Spoil<'_>| {
-        let mut envelope = whole.clone();
+    assert_eq!(check(&valid), Ok(()));
+    let corrupted = |spoil: Corruption<'_>| {
+        let mut envelope = valid.clone();
         spoil(&mut envelope);
         envelope
     };
-    let failed = spoilt(&|envelope| {
+    let failed = corrupted(&|envelope| {
         take(envelope, "data");
         envelope["ok"] = false.into();
         envelope["error"] = serde_json::json!({"exit": 3, "kind": "refused", "message": "no"});
     });
     assert_eq!(check(&failed), Ok(()));
-    let rehearsed = spoilt(&|envelope| {
+    let dry_run = corrupted(&|envelope| {
         envelope["data"] = serde_json::json!({"frames": [{"hex": "5945"}], "complete": true, "then": null});
     });
-    assert_eq!(check(&rehearsed), Ok(()));
+    assert_eq!(check(&dry_run), Ok(()));
 
-    let wrong: [(&str, Spoil<'_>); 11] = [
+    let wrong: [(&str, Corruption<'_>); 11] = [
         ("a key too many", &|envelope| envelope["more"] = 1.into()),
         ("no command", &|envelope| take(envelope, "command")),
         ("no data", &|envelope| take(envelope, "data")),
@@ -116,7 +117,7 @@ fn finds_violations_of_the_json_contract() {
         ("a frame of no family", &|envelope| envelope["data"] = serde_json::json!({"frames": [{"hax": "5945"}]})),
     ];
     for (what, spoil) in wrong {
-        assert!(check(&spoilt(spoil)).is_err(), "{what} is not found");
+        assert!(check(&corrupted(spoil)).is_err(), "{what} is not found");
     }
     for (key, value) in [("exit", Value::from(4)), ("kind", "no_such_kind".into()), ("message", Value::Null)] {
         let mut envelope = failed.clone();

@@ -120,8 +120,9 @@ fn every_command_has_transcripts() {
     let missing =
         |seen: &BTreeSet<String>| leaves.iter().filter(|leaf| !seen.contains(*leaf)).cloned().collect::<Vec<_>>();
     assert_eq!(missing(&tables), [""; 0], "commands without a transcript");
-    let untold: Vec<String> = missing(&jsons).into_iter().filter(|leaf| !PLAIN.contains(&leaf.as_str())).collect();
-    assert_eq!(untold, [""; 0], "commands without a transcript in JSON");
+    let without_examples: Vec<String> =
+        missing(&jsons).into_iter().filter(|leaf| !PLAIN.contains(&leaf.as_str())).collect();
+    assert_eq!(without_examples, [""; 0], "commands without a transcript in JSON");
 }
 
 /// The subcommand with these words, such as `yerc file get`.

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use armctl::command::leaf_commands::leaves;
+use armctl::command::example_lines::robot_lines;
 
 use crate::support::simulator::Simulator;
 
@@ -86,7 +86,7 @@ fn difference(line: &str) -> Option<String> {
 
 #[test]
 fn help_examples_work_on_a_served_simulator() {
-    let lines: Vec<&str> = leaves()
+    let lines: Vec<&str> = robot_lines()
         .map(|(line, _)| *line)
         .filter(|line| ["yerc ", "yrcx ", "toyo "].iter().any(|family| line.starts_with(family)))
         .filter(|line| !LEFT_OUT.iter().any(|out| line.contains(out)))
@@ -94,8 +94,8 @@ fn help_examples_work_on_a_served_simulator() {
     assert!(lines.len() > 300, "{} examples", lines.len());
     let next = AtomicUsize::new(0);
     let work = || {
-        let mine = std::iter::from_fn(|| lines.get(next.fetch_add(1, Ordering::Relaxed)));
-        mine.filter_map(|line| difference(line)).collect::<Vec<_>>()
+        let own_part = std::iter::from_fn(|| lines.get(next.fetch_add(1, Ordering::Relaxed)));
+        own_part.filter_map(|line| difference(line)).collect::<Vec<_>>()
     };
     let different: Vec<String> = thread::scope(|scope| {
         let workers: Vec<_> = (0..WORKERS).map(|_| scope.spawn(work)).collect();

@@ -48,7 +48,7 @@ pub fn check(name: &str) {
             if !printed.is_empty() && !printed.lines().last().is_some_and(|last| last.starts_with("## ")) {
                 printed.push('\n');
             }
-            printed.push_str(&format!("{line}\n{}", desk.typed(command, &simulators)));
+            printed.push_str(&format!("{line}\n{}", desk.command_line(command, &simulators)));
         }
     }
     let expected = snapbox::Data::read_from(&path, Some(snapbox::data::DataFormat::Text)).raw();
@@ -120,21 +120,21 @@ impl Desk {
     }
 
     /// Content of the transcript after a command.
-    fn typed(&self, line: &str, simulators: &[Simulator]) -> String {
-        let reached = simulators.iter().fold(line.to_owned(), |line, simulator| simulator.reached(&line));
-        let output = self.command("sh").args(["-c", &reached]).output().expect("sh runs");
-        let shown = |bytes: Vec<u8>| {
+    fn command_line(&self, line: &str, simulators: &[Simulator]) -> String {
+        let served_line = simulators.iter().fold(line.to_owned(), |line, simulator| simulator.reachable_url(&line));
+        let output = self.command("sh").args(["-c", &served_line]).output().expect("sh runs");
+        let output_text = |bytes: Vec<u8>| {
             let text = String::from_utf8(bytes).expect("what is shown is UTF-8");
             let text = simulators.iter().fold(text, |text, simulator| simulator.documented(&text));
             text.replace(&self.path().display().to_string(), "[FOLDER]")
         };
-        let stdout = shown(output.stdout);
+        let stdout = output_text(output.stdout);
         assert!(stdout.is_empty() || stdout.ends_with('\n'), "`{line}` leaves the last line open: {stdout}");
-        let stdout: String = stdout.lines().map(|line| json::shown(line) + "\n").collect();
-        let stderr: String = shown(output.stderr)
+        let stdout: String = stdout.lines().map(|line| json::format_value(line) + "\n").collect();
+        let stderr: String = output_text(output.stderr)
             .lines()
             .filter(|line| !is_progress(line))
-            .map(|line| format!("2> {}\n", json::shown(line).replace('\n', "\n2> ")))
+            .map(|line| format!("2> {}\n", json::format_value(line).replace('\n', "\n2> ")))
             .collect();
         let code = match output.status.code() {
             Some(0) => String::new(),
@@ -188,7 +188,7 @@ impl Simulator {
         Self { process, target: target.trim_end().to_owned(), documented }
     }
 
-    fn reached(&self, command: &str) -> String {
+    fn reachable_url(&self, command: &str) -> String {
         command.replace(self.documented, &format!("'{}'", self.target))
     }
 

@@ -13,7 +13,7 @@ use armctl::transport::eip::wire::{
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-use super::world::{HERE, MS, Mirror, World, settings, setup};
+use super::world::{MS, Mirror, ORIGINATOR_ADDRESS, World, settings, setup};
 
 fn segment() -> impl Strategy<Value = Segment> {
     prop_oneof![
@@ -145,7 +145,7 @@ proptest! {
             bytes
         };
         let mut adapter = Adapter::new(setup(), Mirror::default());
-        adapter.connected(1, HERE);
+        adapter.connected(1, ORIGINATOR_ADDRESS);
         let target = SocketAddrV4::new(Ipv4Addr::LOCALHOST, 1);
         let numbers = Arc::new(Numbers::new(0x0506_0708, 0x0101, 0x1000));
         let mut originator = Originator::new(target, 2222, settings(), numbers).unwrap();
@@ -161,8 +161,8 @@ proptest! {
             while originator.poll(now).is_some() {}
         }
         for (_, image) in &world.images_out {
-            adapter.hear(now, SocketAddrV4::new(HERE, 2222), &damaged(image));
-            adapter.discovered(SocketAddrV4::new(HERE, 2222), &damaged(image));
+            adapter.hear(now, SocketAddrV4::new(ORIGINATOR_ADDRESS, 2222), &damaged(image));
+            adapter.discovered(SocketAddrV4::new(ORIGINATOR_ADDRESS, 2222), &damaged(image));
             if let Ok(datagram) = Cyclic::parse(&damaged(image)) {
                 originator.hear(now + MS, &datagram);
             }

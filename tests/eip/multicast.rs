@@ -16,7 +16,7 @@ use armctl::transport::eip::scanner::Scanner;
 use armctl::transport::eip::settings::{Role, Settings};
 use armctl::transport::eip::tap::Tap;
 
-use world::{Mirror, patient, setup};
+use world::{Mirror, setup, with_long_timeout};
 
 #[tokio::test]
 async fn every_subscriber_receives_a_multicast_group() {
@@ -26,7 +26,7 @@ async fn every_subscriber_receives_a_multicast_group() {
     }
     assert_eq!(Scanner::shared().unwrap().port(), IO_PORT, "it is the same one");
     let server = Server::start(setup(), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None).unwrap();
-    let owner = Settings { multicast: true, ..patient() };
+    let owner = Settings { multicast: true, ..with_long_timeout() };
     let listener = Settings { role: Role::ListenOnly, output: 237, output_size: 0, resting: vec![], ..owner.clone() };
     let mut owner = scanner.open(server.address(), owner, Tap::default()).await.unwrap();
     let mut listener = scanner.open(server.address(), listener, Tap::default()).await.unwrap();

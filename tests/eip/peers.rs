@@ -22,7 +22,7 @@ use armctl::transport::eip::{IO_PORT, PORT};
 use ciplink::adapter::{Adapter, AdapterConfig, Assembly, Event};
 
 use super::pcap;
-use super::world::{MS, Mirror, patient, setup};
+use super::world::{MS, Mirror, setup, with_long_timeout};
 
 /// A loopback address whose port 2222 is free; each parallel test has one.
 fn address(last: u8) -> Option<Ipv4Addr> {
@@ -61,8 +61,10 @@ async fn our_scanner_owns_ciplink() {
     let Some(address) = address(1) else { return println!("{NO_ADDRESS}") };
     let adapter = ciplink(address);
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
-    let mut connection =
-        scanner.open(v4(adapter.addr()), Settings { rpi: 10 * MS, ..patient() }, Tap::default()).await.unwrap();
+    let mut connection = scanner
+        .open(v4(adapter.addr()), Settings { rpi: 10 * MS, ..with_long_timeout() }, Tap::default())
+        .await
+        .unwrap();
     let info = adapter.connections().pop().unwrap();
     assert_eq!((info.input, info.output, info.multicast), (100, Some(150), false));
     assert_eq!((info.o_t_rpi, info.t_o_rpi), (10 * MS, 10 * MS));
@@ -99,7 +101,8 @@ async fn our_scanner_listens_to_ciplink() {
     let adapter = ciplink(address);
     adapter.set_input(100, &[9; 48]).unwrap();
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
-    let inputs = Settings { role: Role::InputOnly, output: 238, output_size: 0, resting: vec![], ..patient() };
+    let inputs =
+        Settings { role: Role::InputOnly, output: 238, output_size: 0, resting: vec![], ..with_long_timeout() };
     let mut connection = scanner.open(v4(adapter.addr()), inputs, Tap::default()).await.unwrap();
     let view = connection.until(|view| view.input.is_some()).await;
     assert_eq!(*view.input.unwrap().image, [9; 48]);
@@ -113,12 +116,12 @@ async fn ciplink_refuses_wrong_settings() {
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
     let cases = [
         (
-            Settings { output_size: 40, resting: vec![0; 40], ..patient() },
+            Settings { output_size: 40, resting: vec![0; 40], ..with_long_timeout() },
             "(0x01/0x0109), the correct size is 54 bytes",
         ),
-        (Settings { input_size: 600, ..patient() }, "(0x01/0x0109), the correct size is 50 bytes"),
-        (Settings { output: 100, input: 150, ..patient() }, "(0x01/0x0117)"),
-        (Settings { rpi: MS, ..patient() }, "(0x01/0x0111)"),
+        (Settings { input_size: 600, ..with_long_timeout() }, "(0x01/0x0109), the correct size is 50 bytes"),
+        (Settings { output: 100, input: 150, ..with_long_timeout() }, "(0x01/0x0117)"),
+        (Settings { rpi: MS, ..with_long_timeout() }, "(0x01/0x0111)"),
     ];
     for (settings, end) in cases {
         let trouble = scanner.open(v4(adapter.addr()), settings, Tap::default()).await.unwrap_err().to_string();
@@ -137,8 +140,8 @@ async fn ciplink_reports_its_identity() {
     let mut client = Client::new(target, Duration::from_secs(20), Tap::default());
     assert_eq!(client.identity().await.unwrap().unwrap().name, "ciplink adapter");
     assert_eq!(client.ask("the image", &Message::get(4, 100, 3)).await.unwrap().data, [0; 48]);
-    let thought = Instances { output: 100, input: 150, configuration: None };
-    let found = probe(&mut client, thought).await.unwrap().connectable.unwrap();
+    let reported = Instances { output: 100, input: 150, configuration: None };
+    let found = probe(&mut client, reported).await.unwrap().connectable.unwrap();
     assert_eq!((found.instances.output, found.instances.input), (150, 100));
     assert_eq!((found.output_size, found.input_size), (Some(48), Some(48)));
     assert!(adapter.next_event(Some(Duration::ZERO)).is_none(), "nothing was opened on the way");
@@ -203,12 +206,12 @@ async fn tshark_decodes_recorded_packets() {
         Tap::new(move |packet| passed.lock().unwrap().add(packet))
     };
     let scanner = Scanner::start(Ipv4Addr::LOCALHOST).unwrap();
-    let mut connection = scanner.open(server.address(), patient(), tap.clone()).await.unwrap();
+    let mut connection = scanner.open(server.address(), with_long_timeout(), tap.clone()).await.unwrap();
     connection.set_run(1, true).unwrap();
     connection.until(|view| view.statistics.received >= 3).await;
     connection.ask("the size", &Message::get(4, 150, 4)).await.unwrap();
     connection.close().await.unwrap();
-    let large = Settings { input_size: 600, ..patient() };
+    let large = Settings { input_size: 600, ..with_long_timeout() };
     scanner.open(server.address(), large, tap.clone()).await.unwrap_err();
     list_identity(Ipv4Addr::UNSPECIFIED, &[server.address()], Duration::from_secs(20), &tap).await.unwrap();
 
@@ -235,11 +238,11 @@ async fn tshark_decodes_recorded_packets() {
             })
             .collect::<Vec<u32>>()
     };
-    let open = "cip.cm.sc == 0x54 && cip.rr == 0";
-    assert_eq!(numbers(open, &["cip.cm.otrpi", "cip.cm.torpi", "cip.cm.timeout_multiplier"]), [20_000, 20_000, 7]);
-    assert_eq!(numbers(open, &["cip.cm.fwo.consize", "cip.cm.fwo.type", "cip.cm.fwo.f_v"]), [54, 50, 2, 2, 0, 0]);
-    assert_eq!(numbers(open, &["cip.cm.fwo.prio", "cip.cm.fwo.transport"]), [2, 2, 1]);
-    assert_eq!(numbers(open, &["cip.connpoint"]), [150, 100]);
+    let begin = "cip.cm.sc == 0x54 && cip.rr == 0";
+    assert_eq!(numbers(begin, &["cip.cm.otrpi", "cip.cm.torpi", "cip.cm.timeout_multiplier"]), [20_000, 20_000, 7]);
+    assert_eq!(numbers(begin, &["cip.cm.fwo.consize", "cip.cm.fwo.type", "cip.cm.fwo.f_v"]), [54, 50, 2, 2, 0, 0]);
+    assert_eq!(numbers(begin, &["cip.cm.fwo.prio", "cip.cm.fwo.transport"]), [2, 2, 1]);
+    assert_eq!(numbers(begin, &["cip.connpoint"]), [150, 100]);
     assert_eq!(
         numbers("cip.cm.sc == 0x54 && cip.rr == 1", &["cip.genstat", "cip.cm.otapi", "cip.cm.toapi"]),
         [0, 20_000, 20_000]
@@ -261,6 +264,6 @@ async fn tshark_decodes_recorded_packets() {
     runs.dedup();
     // Idle until run is set, and idle again before the end.
     assert!([&[true, false][..], &[false, true, false]].contains(&&runs[..]), "{out:?}");
-    let back = read("cipio && !cip.32bitheader", &["udp.length"]);
-    assert!(back.len() >= 3 && back.iter().all(|len| len == "76"), "{back:?}");
+    let reparsed = read("cipio && !cip.32bitheader", &["udp.length"]);
+    assert!(reparsed.len() >= 3 && reparsed.iter().all(|len| len == "76"), "{reparsed:?}");
 }

@@ -19,7 +19,7 @@ use armctl::transport::eip::tap::Tap;
 use armctl::transport::eip::wire::Status;
 use armctl::transport::fault::{FaultSpec, Faults};
 
-use super::world::{MS, Mirror, identity, patient, resting, setup};
+use super::world::{MS, Mirror, identity, resting, setup, with_long_timeout};
 
 const LOOPBACK: Ipv4Addr = Ipv4Addr::LOCALHOST;
 
@@ -28,7 +28,7 @@ fn serve(setup: Setup) -> Server<Mirror> {
 }
 
 fn quick() -> Settings {
-    Settings { rpi: 10 * MS, ..patient() }
+    Settings { rpi: 10 * MS, ..with_long_timeout() }
 }
 
 #[tokio::test]
@@ -67,19 +67,19 @@ async fn reads_images_of_an_owned_device() {
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let owner = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     let mut reader = Reader::open(client(), assembly, MS).await.unwrap();
-    let shows = async |reader: &mut Reader, is_it: &dyn Fn(&Reading) -> bool| {
+    let read_image = async |reader: &mut Reader, is_it: &dyn Fn(&Reading) -> bool| {
         while !is_it(&reader.reading()) {
             reader.changed().await;
         }
     };
     owner.set_image(1, &[0x5A; 48]).unwrap();
     owner.set_run(1, true).unwrap();
-    shows(&mut reader, &|reading| reading.as_deref().is_ok_and(|image| image == [0xA5; 48])).await;
+    read_image(&mut reader, &|reading| reading.as_deref().is_ok_and(|image| image == [0xA5; 48])).await;
     // Reports a silent device, and its return.
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Mute)));
-    shows(&mut reader, &|reading| matches!(reading, Err(EipError::NoAnswer { .. }))).await;
+    read_image(&mut reader, &|reading| matches!(reading, Err(EipError::NoAnswer { .. }))).await;
     server.with(|adapter, _| adapter.set_fault(None));
-    shows(&mut reader, &Result::is_ok).await;
+    read_image(&mut reader, &Result::is_ok).await;
     reader.close().await;
     assert_eq!(server.with(|adapter, _| adapter.peers().count()), 1, "the owner and nobody else");
     owner.close().await.unwrap();
@@ -112,8 +112,8 @@ async fn several_connections_share_a_socket() {
         connections.push(connection);
     }
     for (connection, mark) in connections.iter_mut().zip(1u8..) {
-        let wanted = [!mark; 48];
-        let view = connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == wanted)).await;
+        let expected = [!mark; 48];
+        let view = connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == expected)).await;
         assert_eq!(view.state, State::Open);
     }
 }
@@ -211,14 +211,15 @@ async fn reads_the_identity_over_tcp_and_udp() {
     let mut client = Client::new(server.address(), Duration::from_secs(3), Tap::default());
     assert_eq!(client.identity().await.unwrap(), Some(expected.clone()));
     assert_eq!(client.services().await.unwrap().unwrap().name, "Communications");
-    let nobody = SocketAddrV4::new(LOOPBACK, 9);
+    let absent_device = SocketAddrV4::new(LOOPBACK, 9);
     let found = list_identity(Ipv4Addr::UNSPECIFIED, &[server.address()], Duration::from_secs(20), &Tap::default())
         .await
         .unwrap();
     assert_eq!(found.len(), 1);
     assert_eq!((found[0].address, &found[0].identity), (server.address(), &expected));
-    let found =
-        list_identity(Ipv4Addr::UNSPECIFIED, &[nobody], Duration::from_millis(1), &Tap::default()).await.unwrap();
+    let found = list_identity(Ipv4Addr::UNSPECIFIED, &[absent_device], Duration::from_millis(1), &Tap::default())
+        .await
+        .unwrap();
     assert_eq!(found, []);
 }
 
@@ -228,7 +229,7 @@ async fn tap_receives_all_packets() {
     let seen = Arc::new(Mutex::new(Vec::new()));
     let tap = {
         let seen = Arc::clone(&seen);
-        Tap::new(move |passed| seen.lock().unwrap().push((passed.is_tcp, passed.from, passed.to)))
+        Tap::new(move |packets| seen.lock().unwrap().push((packets.is_tcp, packets.from, packets.to)))
     };
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connection = scanner.open(server.address(), quick(), tap).await.unwrap();

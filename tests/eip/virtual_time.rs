@@ -9,7 +9,7 @@ use armctl::transport::eip::originator::State;
 use armctl::transport::eip::settings::{Multiplier, Role, Settings};
 use armctl::transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
 
-use super::world::{HERE, MS, Mirror, World, identity, resting, settings, setup};
+use super::world::{MS, Mirror, ORIGINATOR_ADDRESS, World, identity, resting, settings, setup};
 
 /// A recognizable image.
 fn image(mark: u8) -> Vec<u8> {
@@ -36,7 +36,7 @@ fn exchanges_images_in_both_directions() {
     let change = world.originator.set_image(generation, &image(3)).unwrap();
     let run = world.originator.set_run(generation, true).unwrap();
     assert!(change < run && world.view().sent < change);
-    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(3))));
+    world.run_until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(3))));
     assert_eq!(world.view().sent, run);
     assert!(world.adapter.application().run);
 }
@@ -86,7 +86,7 @@ fn survives_a_bad_network() {
         let generation = world.view().generation;
         for mark in 1..100 {
             world.originator.set_image(generation, &image(mark)).unwrap();
-            world.until(5000 * MS, |world| {
+            world.run_until(5000 * MS, |world| {
                 world.view().input.is_some_and(|input| *input.image == *native_order(&image(mark)))
             });
         }
@@ -108,7 +108,7 @@ fn close_sends_idle_and_is_confirmed() {
     world.run(100 * MS);
     world.originator.close();
     assert_eq!(world.originator.set_image(generation, &image(1)), Err(EipError::Ended));
-    world.until(1000 * MS, |world| world.originator.is_finished());
+    world.run_until(1000 * MS, |world| world.originator.is_finished());
     assert_eq!((world.view().state, world.view().trouble), (State::Closed, None));
     assert!(!world.adapter.application().run, "the last image was idle");
     world.run(100 * MS);
@@ -125,14 +125,14 @@ fn reopened_device_starts_with_resting_image() {
     world.originator.set_run(1, true).unwrap();
     world.run(200 * MS);
     world.cable = false;
-    world.until(400 * MS, |world| world.view().state == State::Lost);
+    world.run_until(400 * MS, |world| world.view().state == State::Lost);
     assert_eq!(world.view().trouble, Some(EipError::Silent { after: 320 * MS }));
     assert_eq!(world.originator.set_image(1, &image(8)), Err(EipError::Outdated));
     let before = world.adapter.application().history.len();
     world.run(30_000 * MS);
     assert!(matches!(world.adapter.application().events.last(), Some(Event::TimedOut(_))));
     world.cable = true;
-    world.until(20_000 * MS, |world| world.view().generation == 2);
+    world.run_until(20_000 * MS, |world| world.view().generation == 2);
     world.run(1000 * MS);
     assert_eq!(world.view().state, State::Open);
     assert_eq!(world.adapter.application().history[before..], [(resting(), false)], "nothing of before is sent again");
@@ -145,9 +145,9 @@ fn every_opening_has_a_unique_number() {
     let mut world = World::open(setup(), settings(), "");
     for generation in 2..6 {
         world.adapter.set_fault(Some(AdapterFault::Stall));
-        world.until(400 * MS, |world| world.view().state == State::Lost);
+        world.run_until(400 * MS, |world| world.view().state == State::Lost);
         world.adapter.set_fault(None);
-        world.until(20_000 * MS, |world| world.view().generation == generation);
+        world.run_until(20_000 * MS, |world| world.view().generation == generation);
         // After a received image, the next wait is short again.
         world.run(100 * MS);
     }
@@ -178,7 +178,7 @@ fn images_continue_without_tcp() {
     assert_eq!((world.view().state, world.view().generation), (State::Open, 1));
     world.tcp = true;
     world.ask(9, Message::get(1, 1, 1).emit().unwrap());
-    world.until(100 * MS, |world| !world.answers.is_empty());
+    world.run_until(100 * MS, |world| !world.answers.is_empty());
     let answer = Answer::parse("the test", world.answers[0].1.as_ref().unwrap()).unwrap();
     assert_eq!(answer, Answer { status: Status::OK, data: vec![0x7C, 0x02] });
 }
@@ -187,17 +187,17 @@ fn images_continue_without_tcp() {
 fn scanner_waits_ten_seconds_for_the_first_image() {
     let mut world = World::new(setup(), settings(), "");
     world.adapter.set_fault(Some(AdapterFault::Stall));
-    world.until(100 * MS, |world| world.view().state == State::Open);
+    world.run_until(100 * MS, |world| world.view().state == State::Open);
     world.run(9_900 * MS);
     assert_eq!((world.view().state, world.view().input), (State::Open, None));
-    world.until(200 * MS, |world| world.view().state == State::Lost);
+    world.run_until(200 * MS, |world| world.view().state == State::Lost);
     assert_eq!(world.view().trouble, Some(EipError::Silent { after: 10_000 * MS }));
 }
 
 #[test]
 fn adapter_waits_ten_seconds_for_the_first_image_only() {
     let mut world = World::new(setup(), settings(), "");
-    world.until(100 * MS, |world| world.adapter.peers().next().is_some());
+    world.run_until(100 * MS, |world| world.adapter.peers().next().is_some());
     world.cable = false;
     world.run(9_990 * MS);
     assert_eq!(world.adapter.peers().count(), 1);
@@ -255,7 +255,7 @@ fn silent_adapter_ends_the_opening() {
     for (fault, is_it) in cases {
         let mut world = World::new(setup(), settings(), "");
         world.adapter.set_fault(Some(fault));
-        world.until(20_000 * MS, |world| world.originator.is_finished());
+        world.run_until(20_000 * MS, |world| world.originator.is_finished());
         let view = world.view();
         assert_eq!((view.state, view.generation), (State::Closed, 0));
         assert!(is_it(view.trouble.as_ref().unwrap()), "{fault:?}: {:?}", view.trouble);
@@ -266,11 +266,11 @@ fn silent_adapter_ends_the_opening() {
 fn reports_an_absent_device_at_once() {
     let mut world = World::new(setup(), settings(), "");
     world.tcp = false;
-    world.until(100 * MS, |world| world.originator.is_finished());
+    world.run_until(100 * MS, |world| world.originator.is_finished());
     assert!(matches!(world.view().trouble, Some(EipError::Unreachable { .. })));
     let mut world = World::new(setup(), settings(), "");
     world.cable = false;
-    world.until(3000 * MS, |world| world.originator.is_finished());
+    world.run_until(3000 * MS, |world| world.originator.is_finished());
     let after = Duration::from_secs(3);
     assert_eq!(world.view().trouble, Some(EipError::NoAnswer { what: "the TCP connection", after }));
 }
@@ -279,11 +279,11 @@ fn reports_an_absent_device_at_once() {
 #[test]
 fn closes_an_opening_of_unknown_outcome() {
     let mut world = World::new(setup(), settings(), "");
-    world.until(100 * MS, |world| world.adapter.peers().next().is_some());
+    world.run_until(100 * MS, |world| world.adapter.peers().next().is_some());
     world.cable = false;
     world.run(2900 * MS);
     world.cable = true;
-    world.until(10_000 * MS, |world| world.originator.is_finished());
+    world.run_until(10_000 * MS, |world| world.originator.is_finished());
     assert!(matches!(world.view().trouble, Some(EipError::NoAnswer { what: "ForwardOpen", .. })));
     let events = &world.adapter.application().events;
     assert!(matches!(events[..], [Event::Opened(_), Event::Closed(_)]), "{events:?}");
@@ -314,7 +314,7 @@ fn refusals_have_a_reason() {
     for (settings, code, more) in cases {
         let text = format!("{settings:?}");
         let mut world = World::new(setup(), settings, "");
-        world.until(1000 * MS, |world| world.originator.is_finished());
+        world.run_until(1000 * MS, |world| world.originator.is_finished());
         assert_eq!(refusal(&world), Status::connection(code, more), "{text}");
         assert_eq!(world.adapter.peers().count(), 0);
     }
@@ -364,7 +364,7 @@ fn joins_and_leaves_a_multicast_group() {
     world.run(1000 * MS);
     assert_eq!(world.view().generation, 1);
     world.originator.close();
-    world.until(1000 * MS, |world| world.originator.is_finished());
+    world.run_until(1000 * MS, |world| world.originator.is_finished());
     assert!(world.joined.is_empty());
 }
 
@@ -382,7 +382,7 @@ fn second(world: &mut World, settings: &Settings, serial: u16) -> Status {
     };
     world.answers.clear();
     world.ask(50, RrData::new(&open.emit()).emit());
-    world.until(100 * MS, |world| !world.answers.is_empty());
+    world.run_until(100 * MS, |world| !world.answers.is_empty());
     Answer::parse("the test", world.answers[0].1.as_ref().unwrap()).unwrap().status
 }
 
@@ -401,7 +401,7 @@ fn accepts_one_owner_and_many_listeners() {
     assert!((50..=51).contains(&(world.view().statistics.received - before)));
     // Listeners are closed with the last connection that has data sent.
     world.originator.close();
-    world.until(1000 * MS, |world| world.originator.is_finished());
+    world.run_until(1000 * MS, |world| world.originator.is_finished());
     assert_eq!(world.adapter.peers().count(), 0);
     let events = &world.adapter.application().events;
     assert!(matches!(events[2..], [Event::Closed(_), Event::Closed(_)]), "{events:?}");
@@ -440,7 +440,7 @@ fn objects_answer() {
     for (message, expected) in cases {
         world.answers.clear();
         world.ask(50, message.emit().unwrap());
-        world.until(100 * MS, |world| !world.answers.is_empty());
+        world.run_until(100 * MS, |world| !world.answers.is_empty());
         let answer = Answer::parse("the test", world.answers[0].1.as_ref().unwrap()).unwrap();
         let expected = match expected {
             Ok(data) => Answer { status: Status::OK, data },
@@ -450,7 +450,7 @@ fn objects_answer() {
     }
     world.answers.clear();
     world.ask(50, Message::get_all(1, 1).emit().unwrap());
-    world.until(100 * MS, |world| !world.answers.is_empty());
+    world.run_until(100 * MS, |world| !world.answers.is_empty());
     let answer = Answer::parse("the test", world.answers[0].1.as_ref().unwrap()).unwrap();
     let found = Identity::parse_attributes(&answer.data, identity().address).unwrap();
     assert_eq!(found, Identity { status: 0x71, state: None, ..identity() });
@@ -459,7 +459,7 @@ fn objects_answer() {
 #[test]
 fn message_writes_an_image_without_an_owner() {
     let mut adapter = Adapter::new(setup(), Mirror::default());
-    adapter.connected(1, HERE);
+    adapter.connected(1, ORIGINATOR_ADDRESS);
     let mut ask = |frame: Frame<'_>| {
         adapter.received(Duration::ZERO, 1, &frame.emit());
         match adapter.poll(Duration::ZERO) {
@@ -489,5 +489,5 @@ fn ignores_images_of_other_senders() {
     let stranger = std::net::SocketAddrV4::new([10, 0, 0, 9].into(), 2222);
     world.adapter.hear(world.now, stranger, &forged);
     assert_eq!(world.adapter.application().history, before);
-    assert!(!world.originator.expects(HERE, 0x1000));
+    assert!(!world.originator.expects(ORIGINATOR_ADDRESS, 0x1000));
 }

@@ -17,9 +17,9 @@ use armctl::transport::fault::{FaultSpec, Faults};
 
 pub const MS: Duration = Duration::from_millis(1);
 /// Transit time of TCP.
-const TRIP: Duration = MS;
-pub const HERE: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 1);
-pub const THERE: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 2);
+const TRIP_TIME: Duration = MS;
+pub const ORIGINATOR_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 1);
+pub const ADAPTER_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 2);
 
 /// Returns the received image with every bit inverted.
 #[derive(Debug, Default)]
@@ -53,7 +53,7 @@ impl Application for Mirror {
 /// An RCX of 2011, with the values of its data sheet.
 pub fn identity() -> Identity {
     Identity {
-        address: SocketAddrV4::new(THERE, PORT),
+        address: SocketAddrV4::new(ADAPTER_ADDRESS, PORT),
         vendor: 636,
         device_type: 43,
         product: 5,
@@ -74,7 +74,7 @@ pub fn settings() -> Settings {
 }
 
 /// Settings with the longest timeout, for real time: a busy machine must not lose a connection.
-pub fn patient() -> Settings {
+pub fn with_long_timeout() -> Settings {
     Settings { multiplier: Multiplier::of(512).unwrap(), ..settings() }
 }
 
@@ -121,7 +121,7 @@ pub struct World {
 
 impl World {
     pub fn new(setup: Setup, settings: Settings, faults: &str) -> Self {
-        let target = SocketAddrV4::new(THERE, PORT);
+        let target = SocketAddrV4::new(ADAPTER_ADDRESS, PORT);
         let numbers = Arc::new(Numbers::new(0x0506_0708, 0x0101, 0x1000));
         let faults: FaultSpec = if faults.is_empty() { FaultSpec::default() } else { faults.parse().unwrap() };
         Self {
@@ -145,7 +145,7 @@ impl World {
     /// A world with an open connection and a returned image.
     pub fn open(setup: Setup, settings: Settings, faults: &str) -> Self {
         let mut world = Self::new(setup, settings, faults);
-        world.until(20_000 * MS, |world| world.view().input.is_some());
+        world.run_until(20_000 * MS, |world| world.view().input.is_some());
         assert_eq!(world.view().state, State::Open);
         world
     }
@@ -161,7 +161,7 @@ impl World {
     }
 
     /// Runs until the condition is true, which must happen within `most`.
-    pub fn until(&mut self, most: Duration, condition: impl Fn(&Self) -> bool) {
+    pub fn run_until(&mut self, most: Duration, condition: impl Fn(&Self) -> bool) {
         let end = self.now + most;
         while !condition(self) {
             let goes_on = self.step(end);
@@ -210,7 +210,7 @@ impl World {
                     self.send(Packet::ToOriginator(u32::try_from(client).unwrap(), bytes));
                 }
                 Some(Output::HangUp(client)) => self.send(Packet::HangUp(u32::try_from(client).unwrap())),
-                Some(Output::Datagram(to, bytes)) => self.launch(false, to, &bytes),
+                Some(Output::Datagram(to, bytes)) => self.put_on_wire(false, to, &bytes),
                 Some(Output::Discovered(..)) | None => {}
             }
         }
@@ -235,7 +235,7 @@ impl World {
             }
             Action::Datagram(to, bytes) => {
                 self.images_out.push((self.now, bytes.clone()));
-                self.launch(true, to, &bytes);
+                self.put_on_wire(true, to, &bytes);
             }
             Action::Join(group) => self.joined.push(group),
             Action::Leave(group) => self.joined.retain(|joined| *joined != group),
@@ -246,22 +246,22 @@ impl World {
     /// Sends by TCP.
     fn send(&mut self, packet: Packet) {
         if self.cable {
-            self.put(self.now + TRIP, packet);
+            self.place_on_wire(self.now + TRIP_TIME, packet);
         }
     }
 
     /// Sends by UDP.
-    fn launch(&mut self, outward: bool, to: SocketAddrV4, bytes: &[u8]) {
+    fn put_on_wire(&mut self, outward: bool, to: SocketAddrV4, bytes: &[u8]) {
         if !self.cable {
             return;
         }
         let faults = if outward { &mut self.faults.0 } else { &mut self.faults.1 };
         for (at, bytes) in faults.pass(self.now, bytes) {
-            self.put(at, if outward { Packet::ImageOut(to, bytes) } else { Packet::ImageIn(to, bytes) });
+            self.place_on_wire(at, if outward { Packet::ImageOut(to, bytes) } else { Packet::ImageIn(to, bytes) });
         }
     }
 
-    fn put(&mut self, at: Now, packet: Packet) {
+    fn place_on_wire(&mut self, at: Now, packet: Packet) {
         self.order += 1;
         self.wire.push(Reverse((at, self.order, packet)));
     }
@@ -270,7 +270,7 @@ impl World {
         let current = self.connection;
         match packet {
             Packet::Connected(connection) if connection == current => {
-                self.adapter.connected(connection.into(), HERE);
+                self.adapter.connected(connection.into(), ORIGINATOR_ADDRESS);
                 self.originator.connected(self.now);
             }
             Packet::Refused(connection) if connection == current => {
@@ -287,12 +287,12 @@ impl World {
                 self.adapter.hung_up(connection.into());
                 self.originator.hung_up(&EipError::Hangup { what: "the test" });
             }
-            Packet::ImageOut(to, bytes) if to == SocketAddrV4::new(THERE, IO_PORT) => {
-                self.adapter.hear(self.now, SocketAddrV4::new(HERE, IO_PORT), &bytes);
+            Packet::ImageOut(to, bytes) if to == SocketAddrV4::new(ADAPTER_ADDRESS, IO_PORT) => {
+                self.adapter.hear(self.now, SocketAddrV4::new(ORIGINATOR_ADDRESS, IO_PORT), &bytes);
             }
-            Packet::ImageIn(to, bytes) if *to.ip() == HERE || self.joined.contains(to.ip()) => {
+            Packet::ImageIn(to, bytes) if *to.ip() == ORIGINATOR_ADDRESS || self.joined.contains(to.ip()) => {
                 let Ok(datagram) = Cyclic::parse(&bytes) else { return };
-                if self.originator.expects(THERE, datagram.id) {
+                if self.originator.expects(ADAPTER_ADDRESS, datagram.id) {
                     self.originator.hear(self.now, &datagram);
                 }
             }

@@ -25,7 +25,7 @@ pub(crate) enum Class {
 
 /// Direction of a transfer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Way {
+pub(crate) enum TransferKind {
     Save,
     List,
     Load,
@@ -60,7 +60,7 @@ pub(crate) trait Controller {
 
     /// Creates a file with this content. Returns the name for the request and the content that a transfer in this
     /// direction yields.
-    fn offer(&mut self, way: Way, content: &[u8]) -> (&'static [u8], Vec<u8>);
+    fn offer(&mut self, way: TransferKind, content: &[u8]) -> (&'static [u8], Vec<u8>);
 
     /// Removes the file of an upload, if possible.
     fn forget(&mut self);
@@ -93,7 +93,7 @@ pub(crate) struct Run<O> {
     /// Number of busy refusals of the controller.
     pub(crate) busy: usize,
     /// Duration from its first to its last step.
-    pub(crate) lasted: Duration,
+    pub(crate) duration: Duration,
     /// Duration from its last progress (content, or a new frame apart from the id) to its end.
     pub(crate) idle: Duration,
 }
@@ -103,8 +103,8 @@ pub(crate) struct Link<C> {
     /// Controller.
     pub(crate) controller: C,
     now: Now,
-    there: Faults,
-    back: Faults,
+    to_controller: Faults,
+    to_client: Faults,
     flights: BinaryHeap<Flight>,
     launched: u64,
     /// Busy refusals so far.
@@ -115,12 +115,12 @@ pub(crate) struct Link<C> {
 
 impl<C: Controller> Link<C> {
     pub(crate) fn new(controller: C, faults: FaultSpec) -> Self {
-        let (there, back) = Faults::pair(faults);
+        let (to_controller, to_client) = Faults::pair(faults);
         Self {
             controller,
             now: Now::ZERO,
-            there,
-            back,
+            to_controller,
+            to_client,
             flights: BinaryHeap::new(),
             launched: 0,
             busy: 0,
@@ -141,7 +141,7 @@ impl<C: Controller> Link<C> {
         for _ in 0..MOST_STEPS {
             match session.poll(self.now) {
                 Step::Send(frame) => {
-                    if sent.last().is_none_or(|last| !same_but_for_id(last, &frame)) {
+                    if sent.last().is_none_or(|last| !is_equal_except_id(last, &frame)) {
                         progress = self.now;
                     }
                     self.send(&frame);
@@ -159,7 +159,7 @@ impl<C: Controller> Link<C> {
                 }
                 Step::Done(outcome) => {
                     let (lasted, idle) = (self.now.saturating_sub(started), self.now.saturating_sub(progress));
-                    return Run { outcome, data, sent, busy: self.busy - busy, lasted, idle };
+                    return Run { outcome, data, sent, busy: self.busy - busy, duration: lasted, idle };
                 }
             }
         }
@@ -199,8 +199,8 @@ impl<C: Controller> Link<C> {
     fn answer(&mut self, sent: Vec<Vec<u8>>) {
         for answer in sent {
             self.busy += usize::from(is_busy_refusal(&answer));
-            let copies = self.back.pass(self.now + SERVICE_TIME, &answer);
-            self.launch(To::Client, copies);
+            let copies = self.to_client.pass(self.now + SERVICE_TIME, &answer);
+            self.schedule(To::Client, copies);
         }
     }
 
@@ -208,12 +208,12 @@ impl<C: Controller> Link<C> {
         let lost = self.lose_in == Some(0);
         self.lose_in = self.lose_in.and_then(|left| left.checked_sub(1));
         if !lost {
-            let copies = self.there.pass(self.now, frame);
-            self.launch(To::Controller, copies);
+            let copies = self.to_controller.pass(self.now, frame);
+            self.schedule(To::Controller, copies);
         }
     }
 
-    fn launch(&mut self, to: To, copies: Vec<(Now, Vec<u8>)>) {
+    fn schedule(&mut self, to: To, copies: Vec<(Now, Vec<u8>)>) {
         for (at, bytes) in copies {
             self.flights.push(Reverse((at, self.launched, to, bytes)));
             self.launched += 1;
@@ -222,7 +222,7 @@ impl<C: Controller> Link<C> {
 }
 
 /// The id is at offset 11.
-fn same_but_for_id(one: &[u8], other: &[u8]) -> bool {
+fn is_equal_except_id(one: &[u8], other: &[u8]) -> bool {
     one.len() == other.len() && one[..11] == other[..11] && one[12..] == other[12..]
 }
 

@@ -17,8 +17,8 @@ use armctl::controller::yerc::session::{
 use armctl::controller::yerc::wire::{Division, RequestFrame};
 use armctl::transport::fault::{FaultSpec, Share};
 
-use link::{Class, Controller, Link, Run, Way};
-use model::{Manners, Model};
+use link::{Class, Controller, Link, Run, TransferKind};
+use model::{ControllerKind, Model};
 
 /// Each fault alone, all moderately, all at the maximum.
 const FAULTS: [&str; 8] = [
@@ -35,7 +35,7 @@ const MODERATE: &str = "drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=
 
 /// Around the block size of 479, and a file of many blocks.
 const SIZES: [usize; 7] = [0, 1, 478, 479, 480, 958, 10_000];
-const MANNERS: [Manners; 2] = [Manners::Resends, Manners::Naive];
+const MANNERS: [ControllerKind; 2] = [ControllerKind::Resends, ControllerKind::NoResend];
 
 const EXCHANGE_SEEDS: u64 = 3000;
 const TRANSFER_SEEDS: u64 = 200;
@@ -56,7 +56,7 @@ fn content(size: usize, seed: u64) -> Vec<u8> {
     bytes
 }
 
-fn link_to(manners: Manners, faults: FaultSpec) -> Link<Model> {
+fn link_to(manners: ControllerKind, faults: FaultSpec) -> Link<Model> {
     let model = Model::new(manners, faults.busy.per_10_000(), faults.seed);
     Link::new(model, faults)
 }
@@ -68,7 +68,7 @@ const CLASSES: [Class; 4] = [Class::Read, Class::Write, Class::Start, Class::Mov
 /// Result of one exchange.
 struct Exchanged {
     class: Class,
-    ended: Ended,
+    outcome: Ended,
     sends: usize,
 }
 
@@ -78,11 +78,11 @@ fn exchange(link: &mut Link<impl Controller>, class: Class, ids: &Ids) -> Exchan
     let policy = Policy::default();
     let mut session = Exchange::new(&request, class == Class::Read, policy, ids);
     let run = link.run(&mut session, |_| unreachable!("an exchange asks for no content"));
-    let what = format!("{class:?}: {:?} after {:?}, {:?}", run.outcome, run.lasted, session.counters());
+    let what = format!("{class:?}: {:?} after {:?}, {:?}", run.outcome, run.duration, session.counters());
 
     // After a late busy refusal, a change still has its one try.
     let last_try = if class == Class::Read { Duration::ZERO } else { policy.timeout };
-    assert!(run.lasted <= policy.patience() + last_try, "{what}");
+    assert!(run.duration <= policy.patience() + last_try, "{what}");
     assert!(run.data.is_empty(), "{what}");
     match (&run.outcome, class) {
         (Ended::Answered(reply), _) if !reply.status.is_ok() => {
@@ -97,7 +97,7 @@ fn exchange(link: &mut Link<impl Controller>, class: Class, ids: &Ids) -> Exchan
         // Counted at the controller: a duplicate of a refusal must not count as a second refusal.
         assert!((1..=1 + run.busy).contains(&run.sent.len()), "{} left, {} busy; {what}", run.sent.len(), run.busy);
     }
-    Exchanged { class, ended: run.outcome, sends: run.sent.len() }
+    Exchanged { class, outcome: run.outcome, sends: run.sent.len() }
 }
 
 /// Several exchanges of every class on one link, so that late datagrams meet later exchanges.
@@ -108,21 +108,21 @@ fn exchanges(mut link: Link<impl Controller>) -> (Vec<Exchanged>, u32) {
     (done, link.controller.executed())
 }
 
-fn answered_well(exchanged: &Exchanged) -> bool {
-    matches!(&exchanged.ended, Ended::Answered(reply) if reply.status.is_ok())
+fn has_valid_answer(exchanged: &Exchanged) -> bool {
+    matches!(&exchanged.outcome, Ended::Answered(reply) if reply.status.is_ok())
 }
 
 /// Checks the guarantees of exchanges under these faults.
 fn check_exchanges(faults: &FaultSpec, link: Link<impl Controller>) {
     let (all, executed) = exchanges(link);
     let changes = || all.iter().filter(|exchanged| exchanged.class != Class::Read);
-    let done = changes().filter(|exchanged| answered_well(exchanged)).count();
+    let done = changes().filter(|exchanged| has_valid_answer(exchanged)).count();
     let executed = usize::try_from(executed).expect("few executions");
     // Without duplication, the client alone decides whether a change is executed, and only once.
     assert!(executed >= done, "{faults}: {done} reported as done, {executed} executed");
-    let most =
+    let max_executions =
         if faults.dup == Share::NONE { changes().count() } else { 2 * changes().map(|it| it.sends).sum::<usize>() };
-    assert!(executed <= most, "{faults}: {executed} executed of {most}");
+    assert!(executed <= max_executions, "{faults}: {executed} executed of {max_executions}");
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn exchanges_keep_their_guarantees_under_every_fault() {
     for text in FAULTS {
         for seed in 0..EXCHANGE_SEEDS {
             let faults = spec(text, seed);
-            check_exchanges(&faults, link_to(Manners::Resends, faults.clone()));
+            check_exchanges(&faults, link_to(ControllerKind::Resends, faults.clone()));
         }
     }
 }
@@ -139,8 +139,8 @@ fn exchanges_keep_their_guarantees_under_every_fault() {
 fn answers_every_exchange_without_loss() {
     for text in ["seed=0", "delay=0..50ms", "dup=20%"] {
         for seed in 0..EXCHANGE_SEEDS {
-            let (all, _) = exchanges(link_to(Manners::Resends, spec(text, seed)));
-            assert!(all.iter().all(|it| answered_well(it) && it.sends == 1), "{text},seed={seed}");
+            let (all, _) = exchanges(link_to(ControllerKind::Resends, spec(text, seed)));
+            assert!(all.iter().all(|it| has_valid_answer(it) && it.sends == 1), "{text},seed={seed}");
         }
     }
 }
@@ -149,16 +149,16 @@ fn answers_every_exchange_without_loss() {
 fn reads_survive_moderate_loss() {
     let (mut reads, mut good) = (0, 0);
     for seed in 0..EXCHANGE_SEEDS {
-        let (all, _) = exchanges(link_to(Manners::Resends, spec(MODERATE, seed)));
+        let (all, _) = exchanges(link_to(ControllerKind::Resends, spec(MODERATE, seed)));
         reads += all.iter().filter(|it| it.class == Class::Read).count();
-        good += all.iter().filter(|it| it.class == Class::Read && answered_well(it)).count();
+        good += all.iter().filter(|it| it.class == Class::Read && has_valid_answer(it)).count();
     }
     assert!(good * 1000 >= reads * 998, "{good} of {reads} reads");
 }
 
 // ---- transfers
 
-const WAYS: [Way; 3] = [Way::Save, Way::List, Way::Load];
+const WAYS: [TransferKind; 3] = [TransferKind::Save, TransferKind::List, TransferKind::Load];
 
 /// Kinds of ends of transfers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -173,28 +173,28 @@ enum End {
 }
 
 /// Runs a transfer, checks all guarantees, and returns its end.
-fn transfer(link: &mut Link<impl Controller>, way: Way, content: &[u8], ids: &Ids) -> End {
+fn transfer(link: &mut Link<impl Controller>, way: TransferKind, content: &[u8], ids: &Ids) -> End {
     match way {
-        Way::Save | Way::List => download(link, way, content, ids),
-        Way::Load => upload(link, content, ids),
+        TransferKind::Save | TransferKind::List => download(link, way, content, ids),
+        TransferKind::Load => upload(link, content, ids),
     }
 }
 
-fn download(link: &mut Link<impl Controller>, way: Way, content: &[u8], ids: &Ids) -> End {
+fn download(link: &mut Link<impl Controller>, way: TransferKind, content: &[u8], ids: &Ids) -> End {
     let (name, content) = link.controller.offer(way, content);
     let policy = Policy::default();
-    let request = file_request(if way == Way::Save { 0x16 } else { 0x32 }, name);
+    let request = file_request(if way == TransferKind::Save { 0x16 } else { 0x32 }, name);
     let mut session = Download::new(&request, 1 << 20, policy, ids);
     let Run { outcome, data, idle, .. } = link.run(&mut session, |_| unreachable!("a download asks for no content"));
     let what = format!("{} bytes: {outcome:?} idle for {idle:?}, {:?}", content.len(), session.counters());
 
     assert!(idle <= policy.patience(), "{what}");
     assert!(content.starts_with(&data), "what came is no beginning of the file; {what}");
-    let got = data.len() as u64;
+    let received = data.len() as u64;
     match outcome {
         DownloadEnd::Complete { bytes, blocks } => {
             assert_eq!(data, content, "{what}");
-            assert_eq!((bytes, blocks as usize), (got, content.len().div_ceil(479)), "{what}");
+            assert_eq!((bytes, blocks as usize), (received, content.len().div_ceil(479)), "{what}");
             End::Success
         }
         DownloadEnd::Nothing(status) => {
@@ -202,17 +202,17 @@ fn download(link: &mut Link<impl Controller>, way: Way, content: &[u8], ids: &Id
             End::Success
         }
         DownloadEnd::Refused { status, bytes } => {
-            assert_eq!(bytes, got, "{what}");
+            assert_eq!(bytes, received, "{what}");
             assert!(is_busy(status) || link.controller.may_refuse(status), "{what}");
             End::Refused
         }
         DownloadEnd::Violated { bytes, .. } => {
-            assert_eq!(bytes, got, "{what}");
+            assert_eq!(bytes, received, "{what}");
             assert!(link.controller.skips(), "{what}");
             End::Violated
         }
         DownloadEnd::NoAnswer { bytes, .. } => {
-            assert_eq!(bytes, got, "{what}");
+            assert_eq!(bytes, received, "{what}");
             End::NoAnswer
         }
         DownloadEnd::Finished | DownloadEnd::TooLarge { .. } => panic!("{what}"),
@@ -222,7 +222,7 @@ fn download(link: &mut Link<impl Controller>, way: Way, content: &[u8], ids: &Id
 fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
     link.controller.forget();
     let before = link.controller.stored();
-    let (name, _) = link.controller.offer(Way::Load, content);
+    let (name, _) = link.controller.offer(TransferKind::Load, content);
     let policy = Policy::default();
     let request = file_request(0x15, name);
     let mut session = Upload::new(&request, policy, ids);
@@ -268,7 +268,7 @@ fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
 }
 
 /// Transfers of every kind and size under one kind of fault.
-fn transfers(text: &str, manners: Manners, seeds: u64) -> Vec<End> {
+fn transfers(text: &str, manners: ControllerKind, seeds: u64) -> Vec<End> {
     let mut ends = Vec::new();
     for way in WAYS {
         for size in SIZES {
@@ -294,8 +294,8 @@ fn check_moderate_loss(ends: &[End]) {
         ends.len()
     );
     let others = ends.len() - unopened;
-    let good = successes(ends);
-    assert!(good * 1000 >= others * 995, "{good} of {others} transfers");
+    let successful = successes(ends);
+    assert!(successful * 1000 >= others * 995, "{successful} of {others} transfers");
 }
 
 #[test]
@@ -330,14 +330,14 @@ fn every_transfer_succeeds_without_faults() {
 #[test]
 fn transfers_survive_duplication_and_reordering_if_the_controller_resends() {
     for text in ["dup=20%", "reorder=15%", "dup=100%"] {
-        let ends = transfers(text, Manners::Resends, 10);
+        let ends = transfers(text, ControllerKind::Resends, 10);
         assert_eq!(successes(&ends), ends.len(), "{text}");
     }
 }
 
 #[test]
 fn transfers_survive_moderate_loss_if_the_controller_resends() {
-    check_moderate_loss(&transfers(MODERATE, Manners::Resends, TRANSFER_SEEDS));
+    check_moderate_loss(&transfers(MODERATE, ControllerKind::Resends, TRANSFER_SEEDS));
 }
 
 /// Consecutive transfers on one link: late datagrams of one meet the next.
@@ -345,7 +345,7 @@ fn transfers_survive_moderate_loss_if_the_controller_resends() {
 fn consecutive_transfers_do_not_mix() {
     for text in FAULTS {
         for seed in 0..TRANSFER_SEEDS {
-            let mut link = link_to(Manners::Resends, spec(text, seed));
+            let mut link = link_to(ControllerKind::Resends, spec(text, seed));
             let ids = Ids::starting_at(250);
             for round in 0..4 {
                 for way in WAYS {
@@ -360,16 +360,16 @@ fn consecutive_transfers_do_not_mix() {
 /// If the last ACK is lost, the controller sends its last block again, and the ended session acknowledges it.
 #[test]
 fn lingering_repairs_a_lost_last_ack() {
-    let mut link = link_to(Manners::Resends, FaultSpec::default());
-    let (name, _) = link.controller.offer(Way::Save, &[7; 600]);
+    let mut link = link_to(ControllerKind::Resends, FaultSpec::default());
+    let (name, _) = link.controller.offer(TransferKind::Save, &[7; 600]);
     let request = file_request(0x16, name);
     let mut session = Download::new(&request, 1 << 20, Policy::default(), &Ids::default());
     link.lose_client_frame(2);
     let run = link.run(&mut session, |_| unreachable!("a download asks for no content"));
     assert_eq!(run.outcome, DownloadEnd::Complete { bytes: 600, blocks: 2 });
-    assert!(link.controller.transferring());
+    assert!(link.controller.with_transfer());
     let again = link.controller.resend().expect("the last block is not acknowledged");
     let ack = session.linger(&again).expect("the last block once more");
     link.controller.receive(Duration::ZERO, &ack);
-    assert!(!link.controller.transferring());
+    assert!(!link.controller.with_transfer());
 }

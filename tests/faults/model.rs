@@ -4,7 +4,7 @@ use armctl::controller::Now;
 use armctl::controller::yerc::request::Request;
 use armctl::controller::yerc::wire::Status;
 
-use super::link::{Class, Controller, Way};
+use super::link::{Class, Controller, TransferKind};
 
 /// Answer to every read.
 const STATE: [u8; 8] = [0x42, 0, 0, 0, 0x40, 0, 0, 0];
@@ -18,11 +18,11 @@ const BLOCK: usize = 479;
 
 /// Handling of duplicate frames; the manuals do not specify it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Manners {
+pub(crate) enum ControllerKind {
     /// Recognizes a frame by its id and number, and sends its last frame again.
     Resends,
     /// Handles every ACK as a request for the next block and every request as a new one, and never sends a frame again.
-    Naive,
+    NoResend,
 }
 
 /// Transfer state of the controller.
@@ -53,7 +53,7 @@ enum Transfer {
 
 /// Controller.
 pub(crate) struct Model {
-    manners: Manners,
+    manners: ControllerKind,
     busy_per_10_000: u16,
     rng: fastrand::Rng,
     executed: u32,
@@ -108,7 +108,7 @@ fn frame(division: u8, id: u8, block: u32, service: u8, [status, words]: [u8; 2]
 }
 
 impl Model {
-    pub(crate) fn new(manners: Manners, busy_per_10_000: u16, seed: u64) -> Self {
+    pub(crate) fn new(manners: ControllerKind, busy_per_10_000: u16, seed: u64) -> Self {
         Self {
             manners,
             busy_per_10_000,
@@ -121,7 +121,7 @@ impl Model {
     }
 
     /// Whether a transfer waits for the client.
-    pub(crate) fn transferring(&self) -> bool {
+    pub(crate) fn with_transfer(&self) -> bool {
         matches!(self.transfer, Transfer::Out { .. } | Transfer::In { .. })
     }
 
@@ -135,17 +135,17 @@ impl Model {
 
     fn block(&self, id: u8, service: u8, number: u32) -> Vec<u8> {
         let data = self.file.chunks(BLOCK).nth(number as usize - 1).expect("only blocks there are get sent");
-        frame(2, id, self.marked(number), service, [0, 0], 0, data)
+        frame(2, id, self.mark_last(number), service, [0, 0], 0, data)
     }
 
     /// Block number as sent.
-    fn marked(&self, number: u32) -> u32 {
+    fn mark_last(&self, number: u32) -> u32 {
         let last = number as usize == self.file.len().div_ceil(BLOCK);
         if last { number | LAST } else { number }
     }
 
     fn request(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
-        let resends = self.manners == Manners::Resends;
+        let resends = self.manners == ControllerKind::Resends;
         match (frame.division, frame.service) {
             (1, 0x01) if frame.data.is_empty() => Some(frame.answer(LAST, 0, 0, &STATE)),
             (1, _) => {
@@ -180,12 +180,12 @@ impl Model {
     }
 
     /// Handles an ACK of the client.
-    fn acknowledged(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
-        let resends = self.manners == Manners::Resends;
+    fn handle_ack(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
+        let resends = self.manners == ControllerKind::Resends;
         match self.transfer {
             Transfer::Out { id, .. } if resends && id != frame.id => None,
-            Transfer::Out { service, block, .. } if !resends || frame.block == self.marked(block) => {
-                if self.marked(block) & LAST != 0 {
+            Transfer::Out { service, block, .. } if !resends || frame.block == self.mark_last(block) => {
+                if self.mark_last(block) & LAST != 0 {
                     self.transfer = Transfer::OutDone { id: frame.id };
                     return None;
                 }
@@ -201,8 +201,8 @@ impl Model {
     }
 
     /// Handles a data block of the client.
-    fn loaded(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
-        let resends = self.manners == Manners::Resends;
+    fn handle_load(&mut self, frame: &Frame<'_>) -> Option<Vec<u8>> {
+        let resends = self.manners == ControllerKind::Resends;
         let number = frame.block & !LAST;
         let ack = frame.answer(frame.block, 0, 0, &[]);
         let refusal = frame.answer(frame.block, 0x1F, WRONG_BLOCK, &[]);
@@ -235,8 +235,8 @@ impl Controller for Model {
         let answer = match (frame.ack, frame.service) {
             (false, _) if self.rng.u16(0..10_000) < self.busy_per_10_000 => Some(frame.answer(LAST, 0x1F, 0xD8FA, &[])),
             (false, _) => self.request(&frame),
-            (true, 0x15) => self.loaded(&frame),
-            (true, _) => self.acknowledged(&frame),
+            (true, 0x15) => self.handle_load(&frame),
+            (true, _) => self.handle_ack(&frame),
         };
         answer.into_iter().collect()
     }
@@ -263,7 +263,7 @@ impl Controller for Model {
         self.executed
     }
 
-    fn offer(&mut self, _: Way, content: &[u8]) -> (&'static [u8], Vec<u8>) {
+    fn offer(&mut self, _: TransferKind, content: &[u8]) -> (&'static [u8], Vec<u8>) {
         self.file = content.to_vec();
         self.transfer = Transfer::None;
         (b"TESTJOB.JBI", content.to_vec())
@@ -278,6 +278,6 @@ impl Controller for Model {
     }
 
     fn skips(&self) -> bool {
-        self.manners == Manners::Naive
+        self.manners == ControllerKind::NoResend
     }
 }

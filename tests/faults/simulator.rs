@@ -19,10 +19,10 @@ use armctl::controller::yerc::variables::{Value, VariableKind};
 use armctl::controller::yerc::wire::{AnswerFrame, Division, Status};
 use armctl::transport::fault::FaultSpec;
 
-use super::link::{Class, Controller, Link, Way};
+use super::link::{Class, Controller, Link, TransferKind};
 use super::{
-    End, FAULTS, SIZES, WAYS, answered_well, check_exchanges, check_moderate_loss, content, exchange, exchanges,
-    file_request, spec, successes, transfer,
+    End, FAULTS, SIZES, WAYS, check_exchanges, check_moderate_loss, content, exchange, exchanges, file_request,
+    has_valid_answer, spec, successes, transfer,
 };
 
 const MODELS: [Model; 2] = [Dx200, Fs100];
@@ -31,7 +31,7 @@ const TRANSFER_SEEDS: u64 = 25;
 
 /// The client under test, and an observer.
 const CLIENT: u64 = 1;
-const ONLOOKER: u64 = 2;
+const OBSERVER: u64 = 2;
 /// Longer than all work of a controller, including its wait for a lost client.
 const REST: Duration = Duration::from_secs(30);
 /// Longer than the simulator takes for a backup.
@@ -89,7 +89,7 @@ impl Simulated {
     }
 
     /// The same controller at rest and never busy, for reading its state.
-    fn rested(&self) -> Self {
+    fn resting_state(&self) -> Self {
         let mut copy = self.clone();
         copy.now += REST;
         copy.transmit(copy.now);
@@ -97,9 +97,9 @@ impl Simulated {
     }
 
     /// Answer to the observer, with retries while the controller is busy.
-    fn look<Q: Query>(&mut self, query: &Q) -> Q::Answer {
+    fn read_back<Q: Query>(&mut self, query: &Q) -> Q::Answer {
         loop {
-            self.simulator.receive(self.now, Division::Robot, ONLOOKER, &query.request().frame(1));
+            self.simulator.receive(self.now, Division::Robot, OBSERVER, &query.request().frame(1));
             let answer = self.simulator.transmit(self.now).expect("an answer").bytes;
             let answer = AnswerFrame::parse(&answer).expect("a frame");
             if answer.status.is_ok() {
@@ -108,8 +108,8 @@ impl Simulated {
         }
     }
 
-    fn double(&mut self, number: u16) -> i32 {
-        match self.look(&ReadVariable::new(VariableKind::D, number)) {
+    fn duplicate(&mut self, number: u16) -> i32 {
+        match self.read_back(&ReadVariable::new(VariableKind::D, number)) {
             Value::Double(value) => value,
             other => panic!("{other:?}"),
         }
@@ -119,7 +119,7 @@ impl Simulated {
     fn file(&mut self, name: &[u8]) -> Option<Vec<u8>> {
         let session = Download::new(&file_request(0x16, name), 1 << 20, Policy::default(), &Ids::default());
         let mut session = session.with_first_wait(LONG);
-        let mut link = Link::new(Onlooker(self), FaultSpec::default());
+        let mut link = Link::new(Observer(self), FaultSpec::default());
         let run = link.run(&mut session, |_| unreachable!("a download asks for no content"));
         match run.outcome {
             DownloadEnd::Complete { .. } => Some(run.data),
@@ -195,25 +195,25 @@ impl Controller for Simulated {
     }
 
     fn executed(&self) -> u32 {
-        let mut rested = self.rested();
+        let mut rested = self.resting_state();
         let position = ReadPosition::new(self.model, Group::R1, Coordinates::Base).expect("a robot");
-        let x = |simulated: &mut Self| simulated.look(&position).axes.as_slice()[0];
-        let travelled = x(&mut rested) - x(&mut Self::new(&start_of(self.model), &FaultSpec::default()));
-        assert_eq!(travelled % STEP, 0, "a move was cut short or changed");
+        let x = |simulated: &mut Self| simulated.read_back(&position).axes.as_slice()[0];
+        let distance = x(&mut rested) - x(&mut Self::new(&start_of(self.model), &FaultSpec::default()));
+        assert_eq!(distance % STEP, 0, "a move was cut short or changed");
         let mut writes = 0;
         for number in FIRST_WRITTEN..FIRST_WRITTEN + self.written {
-            let value = rested.double(number);
+            let value = rested.duplicate(number);
             assert!([0, number.into()].contains(&value), "D{number} is {value}");
             writes += u32::from(value != 0);
         }
-        (travelled / STEP + rested.double(0)).unsigned_abs() + writes
+        (distance / STEP + rested.duplicate(0)).unsigned_abs() + writes
     }
 
-    fn offer(&mut self, way: Way, bytes: &[u8]) -> (&'static [u8], Vec<u8>) {
+    fn offer(&mut self, way: TransferKind, bytes: &[u8]) -> (&'static [u8], Vec<u8>) {
         match way {
-            Way::Load => (b"NEW.DAT", Vec::new()),
-            Way::Save => (name(bytes.len()), content(bytes.len(), SEED)),
-            Way::List => {
+            TransferKind::Load => (b"NEW.DAT", Vec::new()),
+            TransferKind::Save => (name(bytes.len()), content(bytes.len(), SEED)),
+            TransferKind::List => {
                 let mut names = SIZES.map(name).to_vec();
                 names.extend(self.stored().map(|_| &b"NEW.DAT"[..]));
                 names.sort_unstable();
@@ -225,7 +225,7 @@ impl Controller for Simulated {
     fn forget(&mut self) {}
 
     fn stored(&self) -> Option<Vec<u8>> {
-        self.rested().file(b"NEW.DAT")
+        self.resting_state().file(b"NEW.DAT")
     }
 
     fn skips(&self) -> bool {
@@ -234,11 +234,11 @@ impl Controller for Simulated {
 }
 
 /// The other client, on a link without faults.
-struct Onlooker<'a>(&'a mut Simulated);
+struct Observer<'a>(&'a mut Simulated);
 
-impl Controller for Onlooker<'_> {
+impl Controller for Observer<'_> {
     fn receive(&mut self, now: Now, datagram: &[u8]) -> Vec<Vec<u8>> {
-        self.0.exchange(ONLOOKER, now, datagram)
+        self.0.exchange(OBSERVER, now, datagram)
     }
 
     fn wake(&self) -> Option<Now> {
@@ -265,7 +265,7 @@ impl Controller for Onlooker<'_> {
         self.0.executed()
     }
 
-    fn offer(&mut self, way: Way, content: &[u8]) -> (&'static [u8], Vec<u8>) {
+    fn offer(&mut self, way: TransferKind, content: &[u8]) -> (&'static [u8], Vec<u8>) {
         self.0.offer(way, content)
     }
 
@@ -310,7 +310,7 @@ fn executes_everything_once_without_faults() {
     for model in MODELS {
         for text in ["seed=0", "delay=0..50ms"] {
             let (all, executed) = exchanges(link_to(model, spec(text, 3)));
-            assert!(all.iter().all(answered_well), "{text}");
+            assert!(all.iter().all(has_valid_answer), "{text}");
             assert_eq!((all.len(), executed), (12, 9), "{text}");
         }
     }
@@ -385,8 +385,8 @@ fn batch_backup_is_complete_or_fails() {
             }
         }
     }
-    let both = |first, second| seen.contains(&(first, second));
-    assert!(both(End::Success, End::Success) && both(End::NoAnswer, End::Success), "{seen:?}");
+    let both_ids = |first, second| seen.contains(&(first, second));
+    assert!(both_ids(End::Success, End::Success) && both_ids(End::NoAnswer, End::Success), "{seen:?}");
     assert!(seen.iter().all(|(_, second)| *second != End::Unknown));
 }
 
@@ -398,7 +398,7 @@ fn backup(link: &mut Link<Simulated>, ids: &Ids, first_wait: Option<Duration>) -
     if let Some(wait) = first_wait {
         session = session.with_first_wait(wait);
     }
-    let expected = link.controller.rested().file(&order.data);
+    let expected = link.controller.resting_state().file(&order.data);
     let run = link.run(&mut session, |_| unreachable!("a download asks for no content"));
     let what = format!("{:?} idle for {:?}, {:?}", run.outcome, run.idle, session.counters());
     assert!(run.idle <= first_wait.unwrap_or(Policy::default().patience()), "{what}");

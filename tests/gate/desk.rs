@@ -6,19 +6,19 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// Home folder of a test, with inventory, sessions and files.
-pub struct Desk {
+pub struct Workspace {
     pub folder: TempDir,
 }
 
 /// Result of a command line.
 #[derive(Debug)]
-pub struct Came {
+pub struct CommandResult {
     pub exit: Option<i32>,
     pub stdout: String,
     pub stderr: String,
 }
 
-impl Desk {
+impl Workspace {
     /// With this text in `robots.toml`.
     pub fn new(inventory: &str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
@@ -37,8 +37,8 @@ impl Desk {
     }
 
     /// Runs a command line without a terminal for questions.
-    pub fn run(&self, line: &str) -> Came {
-        came(&self.command(line).output().expect("it runs"))
+    pub fn run(&self, line: &str) -> CommandResult {
+        result_of(&self.command(line).output().expect("it runs"))
     }
 
     /// `data` of a command line that must succeed.
@@ -58,7 +58,7 @@ impl Desk {
     }
 }
 
-pub fn came(output: &Output) -> Came {
+pub fn result_of(output: &Output) -> CommandResult {
     let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).expect("UTF-8");
-    Came { exit: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
+    CommandResult { exit: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
 }

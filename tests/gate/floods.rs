@@ -10,19 +10,19 @@ use std::time::Duration;
 
 use serialport::{SerialPort as _, TTYPort};
 
-use super::desk::{Came, Desk, came};
+use super::desk::{CommandResult, Workspace, result_of};
 
 /// How a peer sends.
 #[derive(Debug, Clone, Copy)]
-enum Manner {
+enum FloodKind {
     Floods,
     /// Single bytes or datagrams, each long before the timeout of a try.
     Trickles,
 }
 
-const MANNERS: [Manner; 2] = [Manner::Floods, Manner::Trickles];
+const MANNERS: [FloodKind; 2] = [FloodKind::Floods, FloodKind::Trickles];
 
-impl Manner {
+impl FloodKind {
     /// Sends this repeatedly until the peer closes.
     fn send(self, text: &[u8], mut send: impl FnMut(&[u8]) -> bool) {
         match self {
@@ -38,7 +38,7 @@ impl Manner {
 }
 
 /// A TCP server that sends this to each client.
-fn tcp(text: &'static [u8], manner: Manner) -> u16 {
+fn tcp(text: &'static [u8], manner: FloodKind) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = listener.local_addr().expect("an address").port();
     thread::spawn(move || {
@@ -50,7 +50,7 @@ fn tcp(text: &'static [u8], manner: Manner) -> u16 {
 }
 
 /// A UDP server that answers every request with this.
-fn udp(manner: Manner) -> u16 {
+fn udp(manner: FloodKind) -> u16 {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let port = socket.local_addr().expect("an address").port();
     thread::spawn(move || {
@@ -66,7 +66,7 @@ fn udp(manner: Manner) -> u16 {
 }
 
 /// A serial line with this input, until the returned handle is dropped.
-fn pty(text: &'static [u8], manner: Manner) -> (TTYPort, String) {
+fn pty(text: &'static [u8], manner: FloodKind) -> (TTYPort, String) {
     let (mut master, port) = TTYPort::pair().expect("a pseudo-terminal");
     let path = port.name().expect("it has a name");
     master.set_timeout(Duration::from_secs(3600)).expect("it waits for room");
@@ -75,29 +75,29 @@ fn pty(text: &'static [u8], manner: Manner) -> (TTYPort, String) {
 }
 
 /// Result of a line, with limited memory and a limit of one minute.
-fn run(desk: &Desk, target: &str, line: &str) -> Came {
+fn run(desk: &Workspace, target: &str, line: &str) -> CommandResult {
     let armctl = env!("CARGO_BIN_EXE_armctl");
     let line = format!("ulimit -v 900000; exec timeout 60 {armctl} -t '{target}' --timeout 500ms --yes {line}");
     let mut command = Command::new("sh");
     command.env_clear().env("PATH", "/usr/bin:/bin").env("HOME", desk.folder.path()).args(["-c", &line]);
-    came(&command.output().expect("it runs"))
+    result_of(&command.output().expect("it runs"))
 }
 
 #[test]
 fn gives_up_a_flooding_slcan_adapter() {
-    let desk = Desk::new("");
+    let desk = Workspace::new("");
     for text in [&b"t4058AABBCCDDEEFF0011\r"[..], b"t42b8AABBCCDDEEFF0011\r", b"\r", b"t"] {
-        let target = format!("slcan://127.0.0.1:{}?mac=5", tcp(text, Manner::Floods));
+        let target = format!("slcan://127.0.0.1:{}?mac=5", tcp(text, FloodKind::Floods));
         for line in ["yrcx devicenet identity", "yrcx status", "yrcx stop"] {
-            let came = run(&desk, &target, line);
-            assert!(came.exit == Some(5) && came.stderr.contains("sends without end"), "{line}: {came:?}");
+            let result = run(&desk, &target, line);
+            assert!(result.exit == Some(5) && result.stderr.contains("sends without end"), "{line}: {result:?}");
         }
     }
 }
 
 #[test]
 fn flooding_and_trickling_peers_do_not_block_commands() {
-    let desk = Desk::new("");
+    let desk = Workspace::new("");
     let check = |target: &str, cases: &[(&str, i32, &str)]| {
         for (line, exit, part) in cases {
             let came = run(&desk, target, line);
@@ -114,7 +114,7 @@ fn flooding_and_trickling_peers_do_not_block_commands() {
             check(&format!("eip://127.0.0.1:{}", tcp(text, manner)), &silent);
         }
         check(
-            &format!("slcan://127.0.0.1:{}?mac=5", tcp(b"t4058AABBCCDDEEFF0011\r", Manner::Trickles)),
+            &format!("slcan://127.0.0.1:{}?mac=5", tcp(b"t4058AABBCCDDEEFF0011\r", FloodKind::Trickles)),
             &[("yrcx status", 5, "sends without end")],
         );
         let (_port, path) = pty(b"\x68\x05\x05", manner);
@@ -133,17 +133,17 @@ fn sends_one_request_to_an_unknown_peer() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     let asked = Arc::new(Mutex::new(Vec::new()));
-    let heard = Arc::clone(&asked);
+    let requests = Arc::clone(&asked);
     thread::spawn(move || {
         for mut client in listener.incoming().map_while(Result::ok) {
             let lines = BufReader::new(client.try_clone().unwrap()).lines();
             for line in lines.map_while(Result::ok) {
-                heard.lock().unwrap().push(line);
+                requests.lock().unwrap().push(line);
                 client.write_all(b"@OK\r\n").unwrap_or_default();
             }
         }
     });
-    let desk = Desk::new("");
+    let desk = Workspace::new("");
     let came = run(&desk, &format!("tcp://127.0.0.1:{port}"), "--retries 2 toyo position");
     assert!(came.exit == Some(5) && came.stderr.contains("it answers another request"), "{came:?}");
     assert_eq!(*asked.lock().unwrap(), ["@SYSP", "@SYSP", "@SYSP"]);

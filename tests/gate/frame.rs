@@ -1,6 +1,6 @@
 //! Rules for every family.
 
-use super::desk::Desk;
+use super::desk::Workspace;
 use crate::support::simulator::Simulator;
 
 fn entry(name: &str, target: &str, more: &str) -> String {
@@ -11,7 +11,7 @@ fn entry(name: &str, target: &str, more: &str) -> String {
 fn read_only_applies_to_every_name_of_an_address() {
     let controller = Simulator::start("yerc");
     let (address, settings) = controller.place();
-    let desk = Desk::new(&entry("line3", &controller.url, "read_only = true"));
+    let desk = Workspace::new(&entry("line3", &controller.url, "read_only = true"));
     let spellings = [
         "-r line3".to_owned(),
         format!("-t udp://{address}?{settings}"),
@@ -33,15 +33,15 @@ fn read_only_applies_to_every_name_of_an_address() {
 #[test]
 fn session_of_a_read_only_robot_passes_reads_and_stops_only() {
     let controller = Simulator::start("yerc");
-    let desk = Desk::new(&entry("line3", &controller.url, "read_only = true"));
+    let desk = Workspace::new(&entry("line3", &controller.url, "read_only = true"));
     assert_eq!(desk.run("-r line3 session open --background").exit, Some(0));
     // A client without this entry: the same address in another inventory.
     std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
-    let around = |words: &str| desk.run(&format!("--config other.toml -t {} yerc {words}", controller.url));
-    let refused = around("var set B0=1");
+    let without_session = |words: &str| desk.run(&format!("--config other.toml -t {} yerc {words}", controller.url));
+    let refused = without_session("var set B0=1");
     assert!(refused.exit == Some(7) && refused.stderr.contains("is read-only"), "{refused:?}");
-    assert_eq!(around("hold on").exit, Some(0));
-    assert_eq!(around("status").exit, Some(0));
+    assert_eq!(without_session("hold on").exit, Some(0));
+    assert_eq!(without_session("status").exit, Some(0));
     assert!(desk.data("-r line3 yerc var get B0").to_string().contains("\"value\":0"));
     assert_eq!(desk.run("session close line3").exit, Some(0));
 }
@@ -61,7 +61,7 @@ fn read_only_applies_to_an_open_session() {
         ),
     ] {
         let controller = Simulator::start(family);
-        let desk = Desk::new(&entry("cell", &controller.url, ""));
+        let desk = Workspace::new(&entry("cell", &controller.url, ""));
         assert_eq!(desk.run("-r cell session open --background").exit, Some(0), "{family}");
         // Another inventory does not have this setting.
         std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
@@ -86,7 +86,7 @@ fn read_only_applies_to_an_open_session() {
 fn yrcx_command_connection_outside_a_session_is_a_motion() {
     let controller = Simulator::start("yrcx");
     let inventory = [entry("free", &controller.url, ""), entry("kept", "eip://127.0.0.1:1", "read_only = true")];
-    let desk = Desk::new(&inventory.concat());
+    let desk = Workspace::new(&inventory.concat());
     desk.fails("-r free yrcx info version", 7, "stops the robot");
     desk.fails("-r kept yrcx info version --yes", 7, "is read-only");
     desk.fails("-r kept session open", 7, "a session takes control of the controller");
@@ -100,7 +100,7 @@ fn yrcx_command_connection_outside_a_session_is_a_motion() {
 #[test]
 fn opens_the_session_of_a_robot_with_hold() {
     let controller = Simulator::start("yrcx");
-    let desk = Desk::new(&entry("cell", &controller.url, "hold = true"));
+    let desk = Workspace::new(&entry("cell", &controller.url, "hold = true"));
     let first = desk.run("-r cell yrcx info version");
     assert!(first.exit == Some(0) && first.stderr.contains("session opened"), "{first:?}");
     let second = desk.run("-r cell yrcx info version");
@@ -117,7 +117,7 @@ fn several_robots_must_be_named() {
         .enumerate()
         .map(|(number, controller)| entry(&format!("c{number}"), &controller.url, "tags = [\"weld\"]"))
         .collect();
-    let desk = Desk::new(&inventory);
+    let desk = Workspace::new(&inventory);
     for choice in ["--tag weld", "--all", "-r c*"] {
         for order in ["file delete TEST.JBI --yes", "servo on --yes"] {
             desk.fails(&format!("{choice} yerc {order}"), 7, "on 2 of 2 robots");
@@ -129,7 +129,7 @@ fn several_robots_must_be_named() {
 
 #[test]
 fn rejects_flags_without_effect() {
-    let desk = Desk::new("");
+    let desk = Workspace::new("");
     for (line, part) in [
         ("robots add foo udp://127.0.0.1 --tag line1", "--tag has no effect"),
         ("robots list --sim", "--sim and -t cannot select robots in the inventory"),
@@ -148,7 +148,7 @@ fn rejects_flags_without_effect() {
 
 #[test]
 fn endless_motion_needs_a_limit_without_a_terminal() {
-    let desk = Desk::new("");
+    let desk = Workspace::new("");
     desk.fails("--sim yrcx jog pulse 1 + --yes", 2, "no terminal for Ctrl-C");
     assert_eq!(desk.run("--sim yrcx jog pulse 1 + --for 50ms --yes").exit, Some(0));
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::desk::Desk;
+use super::desk::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
@@ -78,7 +78,7 @@ fn every_sentence_of_the_page_has_a_test() {
 #[test]
 fn each_risk_needs_the_documented_confirmation() {
     let controller = Simulator::start("yerc");
-    let desk = Desk::new("");
+    let desk = Workspace::new("");
     let run = |words: &str| desk.run(&format!("-t {} yerc {words}", controller.url)).exit;
     let jobs = || desk.data(&format!("-t {} yerc file list", controller.url)).to_string();
     for (words, needs_yes) in [
@@ -101,7 +101,7 @@ fn each_risk_needs_the_documented_confirmation() {
 }
 
 /// A command line at a terminal.
-fn at_terminal(desk: &Desk, line: &str) -> Terminal {
+fn at_terminal(desk: &Workspace, line: &str) -> Terminal {
     let mut command = desk.command(line);
     command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
     Terminal::start(command, 200, 30).expect("it starts")
@@ -110,18 +110,18 @@ fn at_terminal(desk: &Desk, line: &str) -> Terminal {
 #[test]
 fn question_names_robot_and_action_and_no_sends_nothing() {
     let controller = Simulator::start("yerc");
-    let desk = Desk::new(&format!("[[robot]]\nname = \"cell3\"\ntarget = \"{}\"\n", controller.url));
+    let desk = Workspace::new(&format!("[[robot]]\nname = \"cell3\"\ntarget = \"{}\"\n", controller.url));
     let position = || desk.data("-r cell3 yerc position")["positions"][1].clone();
     let before = position();
     for (answer, exit) in [("n\r", 7), ("yo\r", 7), ("\r", 7), ("\x04", 7), ("y\r", 0)] {
-        let mut asked = at_terminal(&desk, "-r cell3 yerc move relative --z -5 --speed 100mm/s");
-        asked.says("REAL CONTROLLER: cell3");
-        asked.says(controller.url.as_str());
-        asked.says("100.0 mm/s");
-        asked.says("Z: 1200.000 -> 1195.000 mm");
-        asked.says("Continue? [y/N]");
-        asked.press(answer);
-        assert_eq!(asked.end().code(), Some(exit), "{answer:?}");
+        let mut question_text = at_terminal(&desk, "-r cell3 yerc move relative --z -5 --speed 100mm/s");
+        question_text.wait_for_text("REAL CONTROLLER: cell3");
+        question_text.wait_for_text(controller.url.as_str());
+        question_text.wait_for_text("100.0 mm/s");
+        question_text.wait_for_text("Z: 1200.000 -> 1195.000 mm");
+        question_text.wait_for_text("Continue? [y/N]");
+        question_text.press(answer);
+        assert_eq!(question_text.end().code(), Some(exit), "{answer:?}");
         assert_eq!(position() != before, exit == 0, "{answer:?}");
     }
 }
@@ -129,7 +129,7 @@ fn question_names_robot_and_action_and_no_sends_nothing() {
 #[test]
 fn clearing_memory_needs_a_typed_word() {
     let controllers = [Simulator::start("toyo"), Simulator::start("yrcx")];
-    let desk = Desk::new("");
+    let desk = Workspace::new("");
     let [toyo, yrcx] = [0, 1].map(|index| controllers[index].url.as_str());
     for line in [
         format!("-t {toyo} toyo init points"),
@@ -137,9 +137,9 @@ fn clearing_memory_needs_a_typed_word() {
         format!("-t {yrcx} yrcx abs-reset --axis 2"),
     ] {
         let mut asked = at_terminal(&desk, &line);
-        asked.says("REAL CONTROLLER");
+        asked.wait_for_text("REAL CONTROLLER");
         // Also if the connection itself is a risk.
-        asked.says("Type '");
+        asked.wait_for_text("Type '");
         asked.press("y\r");
         assert_eq!(asked.end().code(), Some(7), "{line}");
     }
@@ -148,7 +148,7 @@ fn clearing_memory_needs_a_typed_word() {
 #[test]
 fn built_in_simulator_never_asks() {
     let served = Simulator::start("yerc");
-    let desk = Desk::new("[[robot]]\nname = \"desk\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n");
+    let desk = Workspace::new("[[robot]]\nname = \"desk\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n");
     for order in ["servo on", "file delete COUNT.JBI"] {
         for sim in ["--sim", "-t sim:", "-r desk"] {
             assert_eq!(desk.run(&format!("{sim} yerc {order}")).exit, Some(0), "{sim} {order}");
@@ -163,7 +163,8 @@ fn stop_is_always_allowed() {
         [("yerc", "hold on", "servo on"), ("toyo", "stop", "home"), ("yrcx", "stop", "servo on")]
     {
         let controller = Simulator::start(family);
-        let desk = Desk::new(&format!("[[robot]]\nname = \"r\"\ntarget = \"{}\"\nread_only = true\n", controller.url));
+        let desk =
+            Workspace::new(&format!("[[robot]]\nname = \"r\"\ntarget = \"{}\"\nread_only = true\n", controller.url));
         assert_eq!(desk.run(&format!("-r r {family} {stop}")).exit, Some(0), "{family}");
         desk.fails(&format!("-r r {family} {other} --yes"), 7, "is read-only");
     }
@@ -171,7 +172,7 @@ fn stop_is_always_allowed() {
 
 #[test]
 fn dry_run_shows_the_frame_of_the_command() {
-    let desk = Desk::new("[[robot]]\nname = \"r\"\ntarget = \"udp://127.0.0.1:1\"\nread_only = true\n");
+    let desk = Workspace::new("[[robot]]\nname = \"r\"\ntarget = \"udp://127.0.0.1:1\"\nread_only = true\n");
     let plan = desk.data("-r r yerc servo on --dry-run");
     // Command 0x83, instance 2, attribute 1, service 0x10, the value 1: the end of the frame.
     let frames = plan["frames"].as_array().unwrap();

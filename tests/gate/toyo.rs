@@ -1,15 +1,15 @@
 //! Toyo: an overwrite needs a confirmation, dry runs go to their end, a stop is always allowed.
 
-use super::desk::Desk;
+use super::desk::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-fn desk(controller: &Simulator, more: &str) -> Desk {
-    Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
+fn desk(controller: &Simulator, more: &str) -> Workspace {
+    Workspace::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
 }
 
 /// Blocks of a dry run.
-fn blocks(desk: &Desk, line: &str) -> Vec<String> {
+fn blocks(desk: &Workspace, line: &str) -> Vec<String> {
     let data = desk.data(&format!("-r cell toyo {line} --dry-run"));
     let frames = data["frames"].as_array().expect("frames").iter();
     frames.map(|frame| frame["text"].as_str().expect("a line").to_owned()).collect()
@@ -56,9 +56,9 @@ fn the_confirmation_of_a_move_shows_positions_and_speed() {
         for text in
             ["REAL CONTROLLER: cell", "X: 0.00 -> 90.00 mm", "Z: 0.00 -> 5.00 mm", "The speed override is 100 %."]
         {
-            terminal.says(text);
+            terminal.wait_for_text(text);
         }
-        terminal.says("Continue?");
+        terminal.wait_for_text("Continue?");
         terminal.press(key);
         // Without the origin, the controller refuses.
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
@@ -92,10 +92,10 @@ fn the_confirmation_of_a_start_shows_program_step_position_and_speed() {
         ("run easy", "It is easy program 2, at step"),
     ] {
         let mut terminal = Terminal::start(desk.command(&format!("-r cell toyo {line}")), 100, 24).unwrap();
-        terminal.says(which);
-        terminal.says("The axes are at X 0.00, Y 0.00, Z 0.00, R 0.00 (mm).");
-        terminal.says("The speed override is 100 %.");
-        terminal.says("Continue?");
+        terminal.wait_for_text(which);
+        terminal.wait_for_text("The axes are at X 0.00, Y 0.00, Z 0.00, R 0.00 (mm).");
+        terminal.wait_for_text("The speed override is 100 %.");
+        terminal.wait_for_text("Continue?");
         terminal.press("n\n");
         assert_eq!(terminal.end().code(), Some(7), "{line}");
     }
@@ -151,6 +151,6 @@ fn stop_is_allowed_on_a_read_only_robot() {
 
 #[test]
 fn without_a_terminal_a_jog_is_rejected_before_any_block_is_sent() {
-    let desk = Desk::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
+    let desk = Workspace::new("[[robot]]\nname = \"cell\"\ntarget = \"tcp://127.0.0.1:1\"\n");
     desk.fails("-r cell toyo jog 2 + inch", 7, "move axis 2 by an inching step in plus direction");
 }

@@ -2,21 +2,21 @@
 
 use serde_json::Value;
 
-use super::desk::Desk;
+use super::desk::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
 const JOB: &str = "/JOB\r\n//NAME NEW\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n";
 
-fn desk(controller: &Simulator) -> Desk {
-    let desk = Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n", controller.url));
+fn desk(controller: &Simulator) -> Workspace {
+    let desk = Workspace::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n", controller.url));
     std::fs::write(desk.folder.path().join("NEW.JBI"), JOB).expect("it is written");
     std::fs::write(desk.folder.path().join("HOME.JBI"), JOB.replace("NEW", "HOME")).expect("it is written");
     desk
 }
 
 /// Names of the jobs on the controller.
-fn jobs(desk: &Desk) -> Vec<String> {
+fn jobs(desk: &Workspace) -> Vec<String> {
     let data = desk.data("-r cell yerc file list");
     data["files"]
         .as_array()
@@ -27,7 +27,7 @@ fn jobs(desk: &Desk) -> Vec<String> {
 }
 
 /// Frames of a dry run: command, instance and service of each, and whether it depends on an answer.
-fn frames(desk: &Desk, line: &str) -> Vec<(String, bool)> {
+fn frames(desk: &Workspace, line: &str) -> Vec<(String, bool)> {
     let data = desk.data(&format!("-r cell yerc {line} --dry-run"));
     assert_eq!(data["complete"], true, "{line}");
     let head = |frame: &Value| {
@@ -115,22 +115,22 @@ fn every_verb_asks_before_overwriting_a_taught_position() {
     let sets = "-r cell yerc var set";
     let setup = desk.run(&format!("{sets} P9=pulse:s=1,l=2,u=3,r=4,b=5,t=6 BP6=pulse:1=1 EX3=pulse:1=9"));
     assert_eq!(setup.exit, Some(0), "nobody taught what is there: {setup:?}");
-    let held = || desk.data("-r cell yerc var get P9 BP6 EX3")["items"].to_string();
-    let before = held();
-    let seven = "07000000";
+    let stored = || desk.data("-r cell yerc var get P9 BP6 EX3")["items"].to_string();
+    let before = stored();
+    let variable = "07000000";
     for (line, old_and_new) in [
         ("var set P9=pulse:s=7,l=2,u=3,r=4,b=5,t=6".to_owned(), "(P9: pulse:s=1,l=2,u=3,r=4,b=5,t=6"),
         ("var set B1=1 P9.tool=3".to_owned(), "tool=0,user=0 -> pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=3"),
         ("var set BP6.axis1=7".to_owned(), "(BP6: pulse:1=1 -> pulse:1=7)"),
         ("var set EX3=pulse:1=7".to_owned(), "(EX3: pulse:1=9 -> pulse:1=7)"),
         ("teach P9".to_owned(), "overwrite P9"),
-        (format!("raw --command 0x7F --instance 9 --attribute 6 --service 0x10 --data {seven}"), "-> pulse:s=7"),
+        (format!("raw --command 0x7F --instance 9 --attribute 6 --service 0x10 --data {variable}"), "-> pulse:s=7"),
         (
-            format!("raw --command 0x81 --instance 3 --service 0x02 --data 00000000{}", seven.repeat(8)),
+            format!("raw --command 0x81 --instance 3 --service 0x02 --data 00000000{}", variable.repeat(8)),
             "(EX3: pulse:1=9",
         ),
         (
-            format!("raw --command 0x309 --instance 3 --service 0x34 --data 0100000000000000{}", seven.repeat(8)),
+            format!("raw --command 0x309 --instance 3 --service 0x34 --data 0100000000000000{}", variable.repeat(8)),
             "(EX3: ",
         ),
         // A request that cannot be decoded is confirmed as a whole.
@@ -138,7 +138,7 @@ fn every_verb_asks_before_overwriting_a_taught_position() {
     ] {
         desk.fails(&format!("-r cell yerc {line}"), 7, old_and_new);
     }
-    assert_eq!(held(), before);
+    assert_eq!(stored(), before);
     assert_eq!(desk.data("-r cell yerc var get B1")["items"][0]["value"], 0, "nothing of the line was written");
     // Equal and new data needs no confirmation.
     for line in ["P9=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "P9.tool=0 BP6.axis1=1", "EX4=pulse:1=9"] {
@@ -148,7 +148,7 @@ fn every_verb_asks_before_overwriting_a_taught_position() {
     assert_eq!((&data["parts"][0]["old"], &data["parts"][0]["new"]), (&1.into(), &7.into()));
     assert_eq!(
         desk.run(&format!(
-            "-r cell yerc raw --command 0x7F --instance 9 --attribute 6 --service 0x10 --data {seven} --yes"
+            "-r cell yerc raw --command 0x7F --instance 9 --attribute 6 --service 0x10 --data {variable} --yes"
         ))
         .exit,
         Some(0)
@@ -176,8 +176,8 @@ fn does_not_start_a_job_that_changed_during_the_question() {
     for (meanwhile, exit) in [("MAIN", 7), ("COUNT", 0)] {
         assert_eq!(desk.run("-r cell yerc job select COUNT").exit, Some(0));
         let mut terminal = Terminal::start(desk.command("-r cell yerc job start"), 100, 30).unwrap();
-        terminal.says("This will start job COUNT.");
-        terminal.says("Continue?");
+        terminal.wait_for_text("This will start job COUNT.");
+        terminal.wait_for_text("Continue?");
         assert_eq!(desk.run(&format!("-r cell yerc job select {meanwhile}")).exit, Some(0));
         terminal.press("y\n");
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
@@ -198,13 +198,13 @@ fn question_of_a_motion_has_numbers() {
         ("y\n", Some("-r cell yerc move relative --z -10 --speed 200mm/s --yes --no-wait --dry-run"), 0),
     ] {
         let mut terminal = Terminal::start(desk.command(line), 80, 30).unwrap();
-        terminal.says("REAL CONTROLLER: cell (yerc, udp://127.0.0.1:");
-        terminal.says("This will move R1 in a straight line at 200.0 mm/s:");
-        terminal.says("X: 1000.000 -> 1030.000 mm");
-        terminal.says("Y: 0.000 -> 40.000 mm");
-        terminal.says("s at least.");
-        terminal.says("In base coordinates, tool 0, form ");
-        terminal.says("Continue?");
+        terminal.wait_for_text("REAL CONTROLLER: cell (yerc, udp://127.0.0.1:");
+        terminal.wait_for_text("This will move R1 in a straight line at 200.0 mm/s:");
+        terminal.wait_for_text("X: 1000.000 -> 1030.000 mm");
+        terminal.wait_for_text("Y: 0.000 -> 40.000 mm");
+        terminal.wait_for_text("s at least.");
+        terminal.wait_for_text("In base coordinates, tool 0, form ");
+        terminal.wait_for_text("Continue?");
         if let Some(meanwhile) = meanwhile {
             assert_eq!(desk.run(meanwhile).exit, Some(0));
         }
@@ -223,8 +223,8 @@ fn dry_run_plans_to_the_end() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
     let shown = |line: &str| {
-        let told = |(head, depends): (String, bool)| if depends { format!("{head}?") } else { head };
-        frames(&desk, line).into_iter().map(told).collect::<Vec<_>>().join(", ")
+        let purposes = |(head, depends): (String, bool)| if depends { format!("{head}?") } else { head };
+        frames(&desk, line).into_iter().map(purposes).collect::<Vec<_>>().join(", ")
     };
     let heads = [
         ("status", "7200 0100 01, 0a03 0100 01?"),

@@ -1,6 +1,6 @@
 //! Rules for YRCX controllers.
 
-use super::desk::Desk;
+use super::desk::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
@@ -9,8 +9,8 @@ fn entry(url: &str, more: &str) -> String {
 }
 
 /// An environment with a controller and an open session.
-fn held(controller: &Simulator) -> Desk {
-    let desk = Desk::new(&entry(&controller.url, ""));
+fn stored_point(controller: &Simulator) -> Workspace {
+    let desk = Workspace::new(&entry(&controller.url, ""));
     assert_eq!(desk.run("-r cell session open --background").exit, Some(0));
     desk
 }
@@ -18,7 +18,7 @@ fn held(controller: &Simulator) -> Desk {
 #[test]
 fn question_of_a_motion_through_a_session_has_numbers() {
     let controller = Simulator::start("yrcx");
-    let desk = held(&controller);
+    let desk = stored_point(&controller);
     assert_eq!(desk.run("-r cell yrcx point set 19 mm=30,40,0,90 --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell yrcx origin --yes").exit, Some(0));
     for (line, said) in [
@@ -29,18 +29,18 @@ fn question_of_a_motion_through_a_session_has_numbers() {
     ] {
         desk.fails(&format!("-r cell yrcx {line}"), 7, "would move ");
         let mut terminal = Terminal::start(desk.command(&format!("-r cell yrcx {line}")), 100, 24).unwrap();
-        terminal.says("REAL CONTROLLER: cell (yrcx, ");
+        terminal.wait_for_text("REAL CONTROLLER: cell (yrcx, ");
         for said in said {
-            terminal.says(said);
+            terminal.wait_for_text(said);
         }
-        terminal.says("Continue?");
+        terminal.wait_for_text("Continue?");
         terminal.press("n\n");
         assert_eq!(terminal.end().code(), Some(7), "{line}");
     }
     // The point was taught again during the question.
     for (x, exit) in [("30", 0), ("31", 7)] {
         let mut terminal = Terminal::start(desk.command("-r cell yrcx move --point 19"), 100, 24).unwrap();
-        terminal.says("Continue?");
+        terminal.wait_for_text("Continue?");
         assert_eq!(desk.run(&format!("-r cell yrcx point set 19 mm={x},40,0,90 --yes")).exit, Some(0));
         terminal.press("y\n");
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
@@ -51,7 +51,7 @@ fn question_of_a_motion_through_a_session_has_numbers() {
 #[test]
 fn asks_before_overwriting_taught_points() {
     let controller = Simulator::start("yrcx");
-    let desk = held(&controller);
+    let desk = stored_point(&controller);
     let point = || desk.data("-r cell yrcx point get 1")["items"][0]["value"]["text"].to_string();
     let before = point();
     for (order, old_and_new) in [
@@ -82,7 +82,7 @@ fn asks_before_overwriting_taught_points() {
 
 #[test]
 fn typed_word_also_confirms_the_connection() {
-    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
+    let desk = Workspace::new(&entry("eip://127.0.0.1:1", ""));
     let refused = desk.run("-r cell yrcx abs-reset --axis 2");
     assert_eq!(refused.exit, Some(7));
     for part in
@@ -95,7 +95,7 @@ fn typed_word_also_confirms_the_connection() {
 #[test]
 fn restore_asks_once_with_old_and_new() {
     let controller = Simulator::start("yrcx");
-    let desk = held(&controller);
+    let desk = stored_point(&controller);
     desk.data("-r cell yrcx backup saved --only shifts,pallets");
     assert_eq!(desk.run("-r cell yrcx restore saved").exit, Some(0), "nothing differs");
     desk.data("-r cell yrcx shift-data set 4 1 2 3 4 --yes");
@@ -114,7 +114,7 @@ fn restore_asks_once_with_old_and_new() {
 #[test]
 fn reset_does_not_repeat() {
     let controller = Simulator::start("yrcx");
-    let desk = Desk::new(&entry(&controller.url, ""));
+    let desk = Workspace::new(&entry(&controller.url, ""));
     // Refused before the connection is opened.
     desk.fails("-r cell yrcx alarm reset", 7, "alarm 12.551 (`armctl session open` keeps a connection open)");
     assert_eq!(desk.run("-r cell yrcx alarm reset --yes").exit, Some(0));
@@ -132,7 +132,7 @@ fn reset_does_not_repeat() {
 #[test]
 fn read_only_controller_accepts_stops_and_reads() {
     let controller = Simulator::start("yrcx");
-    let desk = Desk::new(&entry(&controller.url, "read_only = true"));
+    let desk = Workspace::new(&entry(&controller.url, "read_only = true"));
     for order in ["info version", "alarm reset", "var set SGI1 1", "teach --point 1 --in mm", "run", "status --full"] {
         desk.fails(&format!("-r cell yrcx {order} --yes"), 7, "is read-only");
     }
@@ -146,13 +146,13 @@ fn read_only_controller_accepts_stops_and_reads() {
 
 #[test]
 fn refuses_effects_that_end_with_the_connection_before_the_question() {
-    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
+    let desk = Workspace::new(&entry("eip://127.0.0.1:1", ""));
     desk.fails("-r cell yrcx move --point 1 --no-wait", 2, "the connection would end now");
 }
 
 #[test]
 fn dry_runs_plan_to_the_end() {
-    let desk = Desk::new(&entry("eip://127.0.0.1:1", ""));
+    let desk = Workspace::new(&entry("eip://127.0.0.1:1", ""));
     let set = desk.data("-r cell yrcx point set 7 --mm 1,2,3,4 --dry-run");
     let codes: Vec<&str> =
         set["frames"].as_array().unwrap().iter().map(|frame| frame["wi"][0].as_str().unwrap()).collect();

@@ -9,7 +9,7 @@ use std::thread;
 use tempfile::TempDir;
 
 /// Message of a test without a broker.
-pub const ABSENT: &str = "skipped: mosquitto and mosquitto-clients are not installed";
+pub const NOT_INSTALLED: &str = "skipped: mosquitto and mosquitto-clients are not installed";
 
 /// Debian installs daemons outside of the user's PATH.
 fn path() -> String {
@@ -17,7 +17,7 @@ fn path() -> String {
 }
 
 /// Whether the program is installed.
-pub fn is_there() -> bool {
+pub fn is_installed() -> bool {
     let is_there = |name: &str| {
         let ran =
             Command::new(name).env("PATH", path()).arg("--help").stdout(Stdio::null()).stderr(Stdio::null()).status();
@@ -97,7 +97,7 @@ impl Mosquitto {
     }
 
     /// Publishes a message as another client.
-    pub fn tell(&self, topic: &str, payload: &[u8], is_kept: bool) {
+    pub fn send(&self, topic: &str, payload: &[u8], is_kept: bool) {
         let mut command = Command::new("mosquitto_pub");
         command.env("PATH", path()).args([
             "-h",
@@ -134,7 +134,7 @@ pub struct Listener {
 
 /// A received message.
 #[derive(Debug, Clone)]
-pub struct Heard {
+pub struct ReceivedMessage {
     pub is_kept: bool,
     pub topic: String,
     pub payload: String,
@@ -170,7 +170,7 @@ impl Listener {
     }
 
     /// The next message.
-    pub fn next(&mut self) -> Heard {
+    pub fn next(&mut self) -> ReceivedMessage {
         loop {
             let mut line = String::new();
             assert!(self.lines.read_line(&mut line).unwrap() > 0, "the broker is gone");
@@ -178,13 +178,13 @@ impl Listener {
             let mut fields = line.trim_end().splitn(3, ' ');
             if let (Some(kept @ ("0" | "1")), Some(topic)) = (fields.next(), fields.next()) {
                 let payload = fields.next().unwrap_or_default().to_owned();
-                return Heard { is_kept: kept == "1", topic: topic.to_owned(), payload };
+                return ReceivedMessage { is_kept: kept == "1", topic: topic.to_owned(), payload };
             }
         }
     }
 
     /// Messages up to the first matching one of this topic.
-    pub fn until(&mut self, topic: &str, fits: impl Fn(&str) -> bool) -> Heard {
+    pub fn wait_for(&mut self, topic: &str, fits: impl Fn(&str) -> bool) -> ReceivedMessage {
         loop {
             let heard = self.next();
             if heard.topic == topic && fits(&heard.payload) {

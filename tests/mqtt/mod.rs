@@ -15,7 +15,7 @@ use std::process::{Child, ChildStderr, Command, Output, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use self::broker::{ABSENT, Mosquitto, flooding, hostile};
+use self::broker::{Mosquitto, NOT_INSTALLED, flooding, hostile};
 use crate::support::schemas;
 
 /// A user with an inventory.
@@ -67,7 +67,7 @@ impl Publisher {
     }
 
     /// Waits for this text on stderr. Returns the number of lines up to it.
-    pub fn says(&mut self, part: &str) -> usize {
+    pub fn wait_for_message(&mut self, part: &str) -> usize {
         let (mut line, mut lines) = (String::new(), 0);
         while !line.contains(part) {
             line.clear();
@@ -104,15 +104,15 @@ pub fn stderr(output: &Output) -> String {
 
 #[test]
 fn publishes_an_envelope_per_robot_and_kind() {
-    if !broker::is_there() {
-        return eprintln!("{ABSENT}");
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
     for protocol in ["5", "3.1.1"] {
         let prefix = format!("plant/{}", protocol.replace('.', "-"));
-        let also = ["--also", "parts=yerc var get B0..B2", "--also", "toyo counter get 1"];
+        let extra_argument = ["--also", "parts=yerc var get B0..B2", "--also", "toyo counter get 1"];
         let words = ["publish", &broker.url(), "--count", "1", "--json", "--node", "cell7", "--prefix", &prefix];
-        let output = fleet().run(&[&words[..], &also, &["--protocol", protocol]].concat());
+        let output = fleet().run(&[&words[..], &extra_argument, &["--protocol", protocol]].concat());
         assert!(output.status.success(), "{}", stderr(&output));
         let report: Value = serde_json::from_slice(&output.stdout).unwrap();
         schemas::check(&report).unwrap();
@@ -122,14 +122,14 @@ fn publishes_an_envelope_per_robot_and_kind() {
         let mut listener = broker.listen(&format!("{prefix}/#"));
         let mut topics = Vec::new();
         for _ in 0..12 {
-            let heard = listener.next();
-            assert!(heard.is_kept, "{heard:?}");
-            topics.push(heard.topic.strip_prefix(&format!("{prefix}/")).unwrap().to_owned());
-            if heard.topic.ends_with("/state") {
-                assert_eq!(heard.payload, "offline");
+            let received = listener.next();
+            assert!(received.is_kept, "{received:?}");
+            topics.push(received.topic.strip_prefix(&format!("{prefix}/")).unwrap().to_owned());
+            if received.topic.ends_with("/state") {
+                assert_eq!(received.payload, "offline");
                 continue;
             }
-            let envelope: Value = serde_json::from_str(&heard.payload).unwrap();
+            let envelope: Value = serde_json::from_str(&received.payload).unwrap();
             schemas::check(&envelope).unwrap_or_else(|why| panic!("{why}: {envelope}"));
             assert!(envelope["ok"] == true && envelope["time"].is_string() && envelope["simulated"] == true);
         }
@@ -154,25 +154,25 @@ fn publishes_an_envelope_per_robot_and_kind() {
 
 #[test]
 fn every_exit_publishes_the_last_will() {
-    if !broker::is_there() {
-        return eprintln!("{ABSENT}");
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
     let (desk, url) = (fleet(), broker.url());
     let mut listener = broker.listen("armctl/cell7/state");
     for (signal, code) in [("-TERM", Some(0)), ("-INT", Some(0)), ("-KILL", None)] {
         let publisher = Publisher::start(desk.command(&["publish", &url, "--node", "cell7", "--json"]));
-        listener.until("armctl/cell7/state", |state| state == "online");
+        listener.wait_for("armctl/cell7/state", |state| state == "online");
         publisher.signal(signal);
-        listener.until("armctl/cell7/state", |state| state == "offline");
+        listener.wait_for("armctl/cell7/state", |state| state == "offline");
         assert_eq!(publisher.end().0, code, "{signal}");
     }
 }
 
 #[test]
 fn returning_broker_gets_missed_records_in_order() {
-    if !broker::is_there() {
-        return eprintln!("{ABSENT}");
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
     }
     let mut broker = Mosquitto::start();
     let (desk, url) = (fleet(), broker.url());
@@ -180,26 +180,26 @@ fn returning_broker_gets_missed_records_in_order() {
     let words =
         ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
     let mut publisher = Publisher::start(desk.command(&words));
-    publisher.says("connected to");
+    publisher.wait_for_message("connected to");
     broker.listen("armctl/press/status").next();
-    let time = |payload: &str| {
+    let time_of = |payload: &str| {
         let envelope: Value = serde_json::from_str(payload).unwrap();
         envelope["time"].as_str().unwrap().parse::<jiff::Timestamp>().unwrap()
     };
     loop {
         broker.kill();
-        publisher.says("next try in");
+        publisher.wait_for_message("next try in");
         broker.start_again();
         let mut listener = broker.listen("armctl/press/status");
-        let back = jiff::Timestamp::now();
-        publisher.says("again after");
-        let mut times = vec![time(&listener.next().payload)];
-        while times.last().is_none_or(|last| *last < back) {
-            times.push(time(&listener.next().payload));
+        let restarted = jiff::Timestamp::now();
+        publisher.wait_for_message("again after");
+        let mut times = vec![time_of(&listener.next().payload)];
+        while times.last().is_none_or(|last| *last < restarted) {
+            times.push(time_of(&listener.next().payload));
         }
         assert!(times.is_sorted(), "{times:?}");
         // If the publisher was faster than the subscriber, the queue is already sent.
-        if times.iter().filter(|time| **time < back).count() > 1 {
+        if times.iter().filter(|time| **time < restarted).count() > 1 {
             break;
         }
     }
@@ -212,8 +212,8 @@ fn returning_broker_gets_missed_records_in_order() {
 
 #[test]
 fn queued_records_outlive_the_process() {
-    if !broker::is_there() {
-        return eprintln!("{ABSENT}");
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
     }
     let mut broker = Mosquitto::start();
     let (desk, url) = (fleet(), broker.url());
@@ -221,11 +221,11 @@ fn queued_records_outlive_the_process() {
     let words =
         ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
     let mut publisher = Publisher::start(desk.command(&[&words[..], &["-v"]].concat()));
-    publisher.says("next try in");
+    publisher.wait_for_message("next try in");
     // A second later there were polls.
-    publisher.says("next try in");
+    publisher.wait_for_message("next try in");
     publisher.signal("-TERM");
-    publisher.says("stored on disk");
+    publisher.wait_for_message("stored on disk");
     let (code, report) = publisher.end();
     assert_eq!((code, &report["data"]["published"]), (Some(0), &0.into()));
     let ended = jiff::Timestamp::now();
@@ -239,23 +239,23 @@ fn queued_records_outlive_the_process() {
 
 #[test]
 fn removed_robot_is_cleared_at_the_broker() {
-    if !broker::is_there() {
-        return eprintln!("{ABSENT}");
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
     let desk = fleet();
     let mut listener = broker.listen("armctl/+/status");
     let publisher = Publisher::start(desk.command(&["publish", &broker.url(), "--watch", "50ms"]));
-    listener.until("armctl/press/status", |payload| !payload.is_empty());
+    listener.wait_for("armctl/press/status", |payload| !payload.is_empty());
     desk.write(&[("loader", "toyo", "sim:")]);
-    listener.until("armctl/press/status", str::is_empty);
+    listener.wait_for("armctl/press/status", str::is_empty);
     drop(publisher);
 }
 
 #[test]
 fn escapes_unusual_names_in_topics() {
-    if !broker::is_there() {
-        return eprintln!("{ABSENT}");
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
     let desk = Desk::new(&[]);
@@ -282,8 +282,8 @@ fn escapes_unusual_names_in_topics() {
 
 #[test]
 fn needs_the_right_password_and_never_prints_it() {
-    if !broker::is_there() {
-        return eprintln!("{ABSENT}");
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::with("allow_anonymous false\npassword_file FOLDER/passwords\n", |folder| {
         let file = folder.join("passwords");
@@ -313,28 +313,28 @@ fn needs_the_right_password_and_never_prints_it() {
     // A password in the URL would be visible to everyone.
     let output = desk.run(&["publish", "mqtt://plant:hunter2@127.0.0.1"]);
     assert_eq!(output.status.code(), Some(2));
-    let said = stderr(&output);
-    assert!(said.contains("--password-file") && said.matches("hunter2").count() <= 1, "{said}");
+    let messages = stderr(&output);
+    assert!(messages.contains("--password-file") && messages.matches("hunter2").count() <= 1, "{messages}");
 }
 
 /// Messages about a password in this file, sent to this URL, in an empty network.
-fn said_of_password(url: &str, rights: u32, more: &[&str]) -> String {
+fn password_messages(url: &str, rights: u32, more: &[&str]) -> String {
     let desk = fleet();
     let file = desk.folder.path().join("password");
     std::fs::write(&file, "hunter2\n").unwrap();
     std::fs::set_permissions(&file, Permissions::from_mode(rights)).unwrap();
     let words = ["publish", url, "--count", "1", "--user", "plant", "--password-file", file.to_str().unwrap()];
-    let own = desk.command(&[&words[..], more].concat());
+    let own_file = desk.command(&[&words[..], more].concat());
     let mut command = Command::new("unshare");
-    command.arg("-Urn").arg(own.get_program()).args(own.get_args()).stdin(Stdio::null());
-    command.envs(own.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    command.arg("-Urn").arg(own_file.get_program()).args(own_file.get_args()).stdin(Stdio::null());
+    command.envs(own_file.get_envs().filter_map(|(name, value)| Some((name, value?))));
     stderr(&command.output().unwrap())
 }
 
 #[test]
 fn warns_once_about_a_readable_password() {
-    let alone = Command::new("unshare").args(["-Urn", "true"]).output();
-    if !alone.is_ok_and(|output| output.status.success()) {
+    let private_file = Command::new("unshare").args(["-Urn", "true"]).output();
+    if !private_file.is_ok_and(|output| output.status.success()) {
         return eprintln!("skipped: there are no user namespaces here");
     }
     let (file, network) =
@@ -346,7 +346,7 @@ fn warns_once_about_a_readable_password() {
         ("mqtt://192.0.2.1", 0o600, &[], [0, 1]),
         ("mqtt://192.0.2.1", 0o600, &["--insecure"], [0, 0]),
     ] {
-        let said = said_of_password(url, rights, more);
+        let said = password_messages(url, rights, more);
         let counts = [file, network].map(|warning| said.matches(warning).count());
         assert_eq!(counts, warnings, "{url} {rights:o} {more:?}: {said}");
         assert!(said.contains(&format!("{url}:")) && !said.contains("hunter2"), "{said}");
@@ -389,9 +389,9 @@ fn leaves_and_retries_flooding_brokers_without_blocking_the_exit() {
         let desk = fleet();
         let words = ["publish", &flooding(packet), "--protocol", "3.1.1", "--buffer-memory", "64K", "--json"];
         let mut publisher = Publisher::start(desk.command(&words));
-        let mut lines = publisher.says("connected to");
-        lines += publisher.says(why);
-        lines += publisher.says("again after");
+        let mut lines = publisher.wait_for_message("connected to");
+        lines += publisher.wait_for_message(why);
+        lines += publisher.wait_for_message("again after");
         publisher.signal("-TERM");
         let (code, report) = publisher.end();
         assert_eq!((code, &report["data"]["reconnects"]), (Some(0), &1.into()), "{report}");
@@ -419,23 +419,23 @@ fn reports_a_full_disk_and_continues() {
     command.arg(publish.get_program()).args(publish.get_args()).stdin(Stdio::null());
     command.envs(publish.get_envs().filter_map(|(name, value)| Some((name, value?))));
     let mut publisher = Publisher::start(command);
-    publisher.says("cannot write messages to disk (no space left");
+    publisher.wait_for_message("cannot write messages to disk (no space left");
     publisher.signal("-TERM");
     let (code, report) = publisher.end();
     assert_eq!(code, Some(0));
-    let lost = ["dropped", "undelivered"].map(|name| report["data"][name].as_u64().unwrap());
-    assert!(lost.iter().sum::<u64>() > 0, "{report}");
+    let dropped = ["dropped", "undelivered"].map(|name| report["data"][name].as_u64().unwrap());
+    assert!(dropped.iter().sum::<u64>() > 0, "{report}");
 }
 
 #[test]
 fn reports_two_publishers_with_the_same_name() {
-    if !broker::is_there() {
-        return eprintln!("{ABSENT}");
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
     let (desk, url) = (fleet(), broker.url());
     let mut first = Publisher::start(desk.command(&["publish", &url, "--node", "cell7"]));
-    first.says("connected to");
+    first.wait_for_message("connected to");
     let output = desk.run(&["publish", &url, "--node", "cell7", "--count", "1"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("another armctl publishes as 'cell7'"), "{}", stderr(&output));

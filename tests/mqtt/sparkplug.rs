@@ -6,17 +6,17 @@ use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
-use super::broker::{self, ABSENT, Heard, Listener, Mosquitto};
+use super::broker::{self, Listener, Mosquitto, NOT_INSTALLED, ReceivedMessage};
 use super::{Publisher, fleet};
 
-fn peers() -> Option<PathBuf> {
+fn peers_folder() -> Option<PathBuf> {
     std::env::var_os("ARMCTL_SPARKPLUG_PEERS").map(PathBuf::from)
 }
 
 const NO_FOLDER: &str = "skipped: ARMCTL_SPARKPLUG_PEERS does not name a folder of tests/mqtt/peers/install";
 
 /// Payloads as decoded by sparkplug-payload.
-fn decoded(folder: &Path, heard: &[Heard]) -> Vec<Value> {
+fn decoded(folder: &Path, heard: &[ReceivedMessage]) -> Vec<Value> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mqtt/peers/decode.js");
     let mut command = Command::new("node");
     command.arg(script).env("NODE_PATH", folder.join("node_modules")).stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -29,7 +29,7 @@ fn decoded(folder: &Path, heard: &[Heard]) -> Vec<Value> {
 }
 
 /// The next message of this type and device.
-fn next(listener: &mut Listener, what: &str) -> Heard {
+fn next(listener: &mut Listener, what: &str) -> ReceivedMessage {
     loop {
         let heard = listener.next();
         if heard.topic == what {
@@ -44,7 +44,9 @@ fn metric<'a>(payload: &'a Value, name: &str) -> &'a Value {
 
 #[test]
 fn another_decoder_reads_births_data_and_deaths() {
-    let (true, Some(folder)) = (broker::is_there(), peers()) else { return eprintln!("{ABSENT}, or {NO_FOLDER}") };
+    let (true, Some(folder)) = (broker::is_installed(), peers_folder()) else {
+        return eprintln!("{NOT_INSTALLED}, or {NO_FOLDER}");
+    };
     let broker = Mosquitto::start();
     let desk = fleet();
     let mut listener = broker.listen_hex("spBv1.0/Plant/#");
@@ -68,21 +70,21 @@ fn another_decoder_reads_births_data_and_deaths() {
     assert!(part["type"] == "Int64" && part["value"].is_number(), "{birth}");
     let by_alias = data["metrics"].as_array().unwrap();
     assert!(by_alias.iter().all(|metric| metric["name"].is_null() && metric["alias"].is_number()), "{data}");
-    let told = by_alias.iter().find(|metric| metric["alias"] == x["alias"]).unwrap();
-    assert_eq!((&told["value"], &told["type"]), (&x["value"], &json!("Double")));
+    let sent = by_alias.iter().find(|metric| metric["alias"] == x["alias"]).unwrap();
+    assert_eq!((&sent["value"], &sent["type"]), (&x["value"], &json!("Double")));
 
     // A host requests the births again; all its other commands are ignored.
     let rebirth = b"\x12\x1a\x0a\x14Node Control/Rebirth\x20\x0b\x70\x01";
-    broker.tell("spBv1.0/Plant/NCMD/Cell7", b"\x12\x08\x0a\x02xx\x20\x0b\x70\x01", false);
-    publisher.says("armctl only publishes");
+    broker.send("spBv1.0/Plant/NCMD/Cell7", b"\x12\x08\x0a\x02xx\x20\x0b\x70\x01", false);
+    publisher.wait_for_message("armctl only publishes");
     // A request directly after a birth is ignored, because the birth would be the same.
-    let born_again = loop {
-        broker.tell("spBv1.0/Plant/NCMD/Cell7", rebirth, false);
+    let second_birth = loop {
+        broker.send("spBv1.0/Plant/NCMD/Cell7", rebirth, false);
         if let Some(heard) = (0..20).map(|_| listener.next()).find(|heard| heard.topic.contains("/NBIRTH/")) {
             break decoded(&folder, &[heard]).remove(0);
         }
     };
-    assert_eq!((&born_again["seq"], &metric(&born_again, "bdSeq")["value"]), (&json!(0), &json!(0)));
+    assert_eq!((&second_birth["seq"], &metric(&second_birth, "bdSeq")["value"]), (&json!(0), &json!(0)));
     publisher.signal("-TERM");
     let death = next(&mut listener, "spBv1.0/Plant/NDEATH/Cell7");
     let death = &decoded(&folder, &[death])[0];
@@ -103,25 +105,27 @@ fn another_decoder_reads_births_data_and_deaths() {
 
 #[test]
 fn waits_for_the_primary_host() {
-    let (true, Some(folder)) = (broker::is_there(), peers()) else { return eprintln!("{ABSENT}, or {NO_FOLDER}") };
+    let (true, Some(folder)) = (broker::is_installed(), peers_folder()) else {
+        return eprintln!("{NOT_INSTALLED}, or {NO_FOLDER}");
+    };
     let broker = Mosquitto::start();
     let desk = fleet();
     let mut listener = broker.listen_hex("spBv1.0/Plant/#");
     let words = ["-r", "press", "publish", &broker.url(), "--sparkplug", "--group", "Plant", "--node", "Cell7"];
     let host = ["--host", "SCADA", "--watch", "50ms", "--every", "50ms"];
-    broker.tell("spBv1.0/STATE/SCADA", b"{\"online\":false,\"timestamp\":1}", true);
+    broker.send("spBv1.0/STATE/SCADA", b"{\"online\":false,\"timestamp\":1}", true);
     let mut publisher = Publisher::start(desk.command(&[&words[..], &host].concat()));
-    publisher.says("waiting for the primary host SCADA");
-    broker.tell("spBv1.0/STATE/SCADA", b"{\"online\":true,\"timestamp\":2}", true);
+    publisher.wait_for_message("waiting for the primary host SCADA");
+    broker.send("spBv1.0/STATE/SCADA", b"{\"online\":true,\"timestamp\":2}", true);
     let first = listener.next();
     assert_eq!(first.topic, "spBv1.0/Plant/NBIRTH/Cell7");
-    publisher.says("is online");
-    broker.tell("spBv1.0/STATE/SCADA", b"{\"online\":false,\"timestamp\":3}", true);
-    publisher.says("is offline");
+    publisher.wait_for_message("is online");
+    broker.send("spBv1.0/STATE/SCADA", b"{\"online\":false,\"timestamp\":3}", true);
+    publisher.wait_for_message("is offline");
     let death = next(&mut listener, "spBv1.0/Plant/NDEATH/Cell7");
     assert_eq!(metric(&decoded(&folder, &[death])[0], "bdSeq")["value"], 0);
-    publisher.says("waiting for the primary host SCADA");
-    broker.tell("spBv1.0/STATE/SCADA", b"{\"online\":true,\"timestamp\":4}", true);
+    publisher.wait_for_message("waiting for the primary host SCADA");
+    broker.send("spBv1.0/STATE/SCADA", b"{\"online\":true,\"timestamp\":4}", true);
     // Deaths that arrive with it belong to the previous connection.
     let birth = next(&mut listener, "spBv1.0/Plant/NBIRTH/Cell7");
     let data = next(&mut listener, "spBv1.0/Plant/DDATA/Cell7/press");

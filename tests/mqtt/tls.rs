@@ -6,7 +6,7 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::broker::{self, ABSENT, Mosquitto};
+use super::broker::{self, Mosquitto, NOT_INSTALLED};
 use super::{Desk, Publisher, fleet, stderr};
 
 fn has_openssl() -> bool {
@@ -52,8 +52,8 @@ fn publish(desk: &Desk, broker: &Mosquitto, more: &[&str]) -> (Option<i32>, Stri
 
 #[test]
 fn trusts_a_broker_only_by_its_certificate() {
-    if !broker::is_there() || !has_openssl() {
-        return eprintln!("{ABSENT}, or there is no openssl");
+    if !broker::is_installed() || !has_openssl() {
+        return eprintln!("{NOT_INSTALLED}, or there is no openssl");
     }
     let settings = |name: &str, more: &str| {
         format!(
@@ -74,8 +74,8 @@ fn trusts_a_broker_only_by_its_certificate() {
         assert!(code == Some(2) && said.contains(why) && said.contains("hint:"), "{words:?}: {code:?} {said}");
     }
 
-    let elsewhere = Mosquitto::with(&settings("elsewhere", ""), certificates);
-    let (code, said) = publish(&desk, &elsewhere, &["--ca", "ca.pem"]);
+    let other_host = Mosquitto::with(&settings("elsewhere", ""), certificates);
+    let (code, said) = publish(&desk, &other_host, &["--ca", "ca.pem"]);
     assert!(code == Some(2) && said.contains("for another name"), "{said}");
 
     let strict = Mosquitto::with(&settings("broker", "require_certificate true\n"), certificates);
@@ -98,28 +98,29 @@ fn trusts_a_broker_only_by_its_certificate() {
 
 #[test]
 fn service_waits_for_the_right_certificate() {
-    if !broker::is_there() || !has_openssl() {
-        return eprintln!("{ABSENT}, or there is no openssl");
+    if !broker::is_installed() || !has_openssl() {
+        return eprintln!("{NOT_INSTALLED}, or there is no openssl");
     }
     let settings = "allow_anonymous true\ncertfile FOLDER/now.pem\nkeyfile FOLDER/now.key\n";
-    let put = |folder: &Path, name: &str| {
+    let install_certificate = |folder: &Path, name: &str| {
         for end in ["pem", "key"] {
             std::fs::copy(folder.join(format!("{name}.{end}")), folder.join(format!("now.{end}"))).unwrap();
         }
     };
     let mut broker = Mosquitto::with(settings, |folder| {
         certificates(folder);
-        put(folder, "elsewhere");
+        install_certificate(folder, "elsewhere");
     });
     let (desk, ca) = (fleet(), broker.folder().join("ca.pem").display().to_string());
     let url = broker.url().replace("mqtt:", "mqtts:");
     let mut publisher = Publisher::start(desk.command(&["publish", &url, "--ca", &ca, "--json"]));
-    publisher
-        .says("its certificate is for another name (use the name in the certificate as the host of the URL); next try");
+    publisher.wait_for_message(
+        "its certificate is for another name (use the name in the certificate as the host of the URL); next try",
+    );
     broker.kill();
-    put(broker.folder(), "broker");
+    install_certificate(broker.folder(), "broker");
     broker.start_again();
-    publisher.says("connected to mqtts://");
+    publisher.wait_for_message("connected to mqtts://");
     publisher.signal("-TERM");
     assert_eq!(publisher.end().0, Some(0));
 }

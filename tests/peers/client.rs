@@ -23,7 +23,7 @@ use moto_hses_proto::commands::JobSelectType;
 use moto_hses_proto::{AlarmAttribute, CycleMode, Position as TheirPosition, Status};
 
 /// Timeout that only a broken test reaches.
-const PATIENCE: Duration = Duration::from_secs(20);
+const TIMEOUT: Duration = Duration::from_secs(20);
 
 /// The simulator on two ports, and three clients: `moto-hses-client` on each port, and ours.
 struct Peer {
@@ -45,7 +45,11 @@ impl Peer {
                 server.turn(&mut service).await.unwrap();
             }
         });
-        Self { robot: theirs(robot).await, files: theirs(file).await, link: super::connect(model, robot, file).await }
+        Self {
+            robot: other_client(robot).await,
+            files: other_client(file).await,
+            link: super::connect(model, robot, file).await,
+        }
     }
 
     async fn ask<Q: Query>(&mut self, query: Q) -> Q::Answer {
@@ -69,19 +73,19 @@ impl Peer {
         let status = self.robot.read_status().await.unwrap();
         assert_eq!(self.robot.read_status_data1().await.unwrap(), status.data1);
         assert_eq!(self.robot.read_status_data2().await.unwrap(), status.data2);
-        let ours = self.ask(ReadStatus).await;
-        for (bit, theirs) in bits(&status) {
-            assert_eq!(ours.has(bit), theirs, "{bit:?}");
+        let own_status = self.ask(ReadStatus).await;
+        for (bit, theirs) in status_bits(&status) {
+            assert_eq!(own_status.has(bit), theirs, "{bit:?}");
         }
-        ours
+        own_status
     }
 }
 
-async fn theirs(at: SocketAddr) -> HsesClient {
+async fn other_client(at: SocketAddr) -> HsesClient {
     let config = ClientConfig {
         host: at.ip().to_string(),
         port: at.port(),
-        timeout: PATIENCE,
+        timeout: TIMEOUT,
         retry_count: 0,
         text_encoding: TextEncoding::ShiftJis,
         ..ClientConfig::default()
@@ -89,7 +93,7 @@ async fn theirs(at: SocketAddr) -> HsesClient {
     HsesClient::new_with_config(config).await.unwrap()
 }
 
-fn bits(status: &Status) -> [(StatusBit, bool); 14] {
+fn status_bits(status: &Status) -> [(StatusBit, bool); 14] {
     let (one, two) = (&status.data1, &status.data2);
     [
         (StatusBit::Step, one.step),
@@ -157,9 +161,9 @@ async fn alarms_and_resets_agree() {
     assert_eq!(field(AlarmAttribute::Name).await.name, "ワークなし");
     assert_eq!(peer.robot.read_alarm_data(2, AlarmAttribute::All).await.unwrap().code, 0);
 
-    let past = peer.robot.read_alarm_history(3001, AlarmAttribute::All).await.unwrap();
+    let history = peer.robot.read_alarm_history(3001, AlarmAttribute::All).await.unwrap();
     assert_eq!(
-        (past.code, past.data, past.time.as_str(), past.name.as_str()),
+        (history.code, history.data, history.time.as_str(), history.name.as_str()),
         (9001, 5, "2026/02/28 17:30", "PART MISSING")
     );
     peer.robot.reset_alarm().await.unwrap();
@@ -287,11 +291,11 @@ async fn signals_and_registers_agree() {
     assert_eq!(peer.ask(ReadRegister::new(Dx200, 5).unwrap()).await, 0x8000);
     peer.ask(WriteRegister::new(Dx200, 6, 0xFFFF).unwrap()).await;
     assert_eq!(peer.robot.read_register(6).await.unwrap(), -1);
-    let most: Vec<i16> = (0..237).map(|number| number * 138 - 16_000).collect();
-    peer.robot.write_multiple_registers(100, most.clone()).await.unwrap();
-    assert_eq!(peer.robot.read_multiple_registers(100, 237).await.unwrap(), most);
+    let max_values: Vec<i16> = (0..237).map(|number| number * 138 - 16_000).collect();
+    peer.robot.write_multiple_registers(100, max_values.clone()).await.unwrap();
+    assert_eq!(peer.robot.read_multiple_registers(100, 237).await.unwrap(), max_values);
     let ours = peer.ask(ReadRegisters::new(Dx200, 100, 237).unwrap()).await;
-    assert_eq!(ours, most.iter().map(|value| u16::from_le_bytes(value.to_le_bytes())).collect::<Vec<_>>());
+    assert_eq!(ours, max_values.iter().map(|value| u16::from_le_bytes(value.to_le_bytes())).collect::<Vec<_>>());
 }
 
 #[tokio::test]

@@ -75,7 +75,7 @@ impl Peer {
         }
     }
 
-    async fn stored(&self, kind: VariableType, number: u16) -> Vec<u8> {
+    async fn stored_value(&self, kind: VariableType, number: u16) -> Vec<u8> {
         self.mock.state().read().await.get_variable(kind, number).unwrap().clone()
     }
 }
@@ -131,8 +131,8 @@ async fn alarms_and_resets_agree() {
         assert_eq!(peer.ask(field(5)).await, Text::<32>::new(name.as_bytes()).unwrap().emit());
     }
     for (class, number, code) in [(AlarmClass::Major, 3, 3001), (AlarmClass::Monitor, 2, 1001)] {
-        let past = peer.ask(ReadAlarmHistory::new(class, number, false).unwrap()).await;
-        assert_eq!(past.code, code);
+        let history = peer.ask(ReadAlarmHistory::new(class, number, false).unwrap()).await;
+        assert_eq!(history.code, code);
     }
     peer.mock.add_test_alarm(proto::payload::alarm::test_alarms::servo_error()).await;
     assert!(peer.status().await.contains(&StatusBit::Alarm));
@@ -196,10 +196,10 @@ async fn single_and_multiple_numbers_agree() {
     peer.variables(VariableKind::I, [0, -1, i16::MIN, i16::MAX, 0x1234].map(Value::Integer).to_vec()).await;
     peer.variables(VariableKind::D, [0, -1, i32::MIN, i32::MAX, 0x1234_5678].map(Value::Double).to_vec()).await;
     peer.variables(VariableKind::R, [0.0, -1.5, f32::MAX, f32::MIN_POSITIVE, 1e-3].map(Value::Real).to_vec()).await;
-    assert_eq!(peer.stored(VariableType::Byte, 13).await, [0x80]);
-    assert_eq!(peer.stored(VariableType::Integer, 42).await, i16::MIN.to_le_bytes());
-    assert_eq!(peer.stored(VariableType::Double, 14).await, 0x1234_5678_i32.to_le_bytes());
-    assert_eq!(peer.stored(VariableType::Real, 41).await, (-1.5_f32).to_le_bytes());
+    assert_eq!(peer.stored_value(VariableType::Byte, 13).await, [0x80]);
+    assert_eq!(peer.stored_value(VariableType::Integer, 42).await, i16::MIN.to_le_bytes());
+    assert_eq!(peer.stored_value(VariableType::Double, 14).await, 0x1234_5678_i32.to_le_bytes());
+    assert_eq!(peer.stored_value(VariableType::Real, 41).await, (-1.5_f32).to_le_bytes());
 }
 
 #[tokio::test]
@@ -208,8 +208,8 @@ async fn strings_agree_in_any_encoding() {
     let texts = [&b""[..], b"HELLO", b"\x83e\x83X\x83g", b"SIXTEEN BYTES OK"];
     let values = texts.map(|text| Value::Short(Text::new(text).unwrap())).to_vec();
     peer.variables(VariableKind::S16, values).await;
-    assert_eq!(peer.stored(VariableType::String, 12).await, b"\x83e\x83X\x83g");
-    assert_eq!(peer.stored(VariableType::String, 43).await, b"SIXTEEN BYTES OK");
+    assert_eq!(peer.stored_value(VariableType::String, 12).await, b"\x83e\x83X\x83g");
+    assert_eq!(peer.stored_value(VariableType::String, 43).await, b"SIXTEEN BYTES OK");
 }
 
 /// The mock stores one position type for all variables, and drops other fields: form, tool and user frame of a pulse
@@ -256,9 +256,9 @@ async fn signals_and_registers_agree() {
     assert_eq!(peer.ask(ReadRegisters::new(Dx200, 0, 5).unwrap()).await, [0, 100, 200, 300, 400]);
     peer.ask(WriteRegister::new(Dx200, 5, 0xFEDC).unwrap()).await;
     assert_eq!(peer.ask(ReadRegister::new(Dx200, 5).unwrap()).await, 0xFEDC);
-    let most: Vec<u16> = (0..237).map(|number| number * 277).collect();
-    peer.ask(WriteRegisters::new(Dx200, 100, most.clone()).unwrap()).await;
-    assert_eq!(peer.ask(ReadRegisters::new(Dx200, 100, 237).unwrap()).await, most);
+    let max_values: Vec<u16> = (0..237).map(|number| number * 277).collect();
+    peer.ask(WriteRegisters::new(Dx200, 100, max_values.clone()).unwrap()).await;
+    assert_eq!(peer.ask(ReadRegisters::new(Dx200, 100, 237).unwrap()).await, max_values);
     assert_eq!(peer.mock.state().read().await.get_register(5), i16::from_le_bytes([0xDC, 0xFE]));
 }
 
@@ -343,15 +343,15 @@ async fn lists_fetches_and_deletes_files() {
 }
 
 async fn fetch(link: &mut Link, request: &armctl::controller::yerc::request::Request) -> (Vec<u8>, DownloadEnd) {
-    let mut got = Vec::new();
+    let mut fetched = Vec::new();
     let end = link
         .download(request, 1 << 20, None, |piece| {
-            got.extend_from_slice(piece);
+            fetched.extend_from_slice(piece);
             Ok(())
         })
         .await
         .unwrap();
-    (got, end)
+    (fetched, end)
 }
 
 /// The mock expects an upload in one frame with name, NUL and content. It accepts other uploads without storing them;

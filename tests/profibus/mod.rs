@@ -68,20 +68,20 @@ fn independent_strict_slave_accepts_our_master() {
     let url = format!("profibus://{port}?station=5&slot=500ms&watchdog=20s");
     // The slave returns its outputs as inputs, unlike a controller: the command fails, and the link is opened and
     // closed.
-    let asked =
+    let requests =
         armctl().args(["-t", &url, "--timeout", "1s", "--yes", "yrcx", "info", "servo"]).output().expect("it runs");
-    let mut said = Vec::new();
+    let mut output = Vec::new();
     loop {
         let line = slave.line();
         let is_last = line.starts_with("images:") || line.is_empty();
-        said.push(line);
+        output.push(line);
         if is_last {
             break;
         }
     }
     let ended = slave.child.wait().expect("it ends");
-    assert!(ended.success(), "{said:?}\n{}", text(&asked));
-    assert!(said.contains(&"state: exchanges data".to_owned()), "{said:?}");
+    assert!(ended.success(), "{output:?}\n{}", text(&requests));
+    assert!(output.contains(&"state: exchanges data".to_owned()), "{output:?}");
 }
 
 #[test]
@@ -94,21 +94,21 @@ fn pyprofibus_exchanges_images_with_our_simulator() {
     let said = simulator.line();
     let port = said.split("profibus://").nth(1).and_then(|rest| rest.split('?').next()).expect("a port");
     let python = folder.join("profibus/bin/python");
-    let driven = Command::new(python).arg(script("master.py")).arg(port).output().expect("it runs");
-    assert!(driven.status.success(), "{}", text(&driven));
+    let driver_output = Command::new(python).arg(script("master.py")).arg(port).output().expect("it runs");
+    assert!(driver_output.status.success(), "{}", text(&driver_output));
 }
 
 /// A line with three ends: slave, master, listener. A pseudo-terminal has only two.
-struct Line {
+struct RelayedLine {
     is_over: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
     /// Number of bytes from the listener.
     said: Arc<AtomicUsize>,
 }
 
-impl Line {
+impl RelayedLine {
     /// Connects to the slave at this port. Returns the ports of the master and of the listener.
-    fn to(slave: &str) -> (Self, String, String) {
+    fn connect(slave: &str) -> (Self, String, String) {
         let slave = serialport::new(slave, 115_200).open_native().expect("the simulator's port opens");
         let [(master, of_master), (other, of_other)] = [(), ()].map(|()| {
             let (near, far) = TTYPort::pair().expect("a pseudo-terminal");
@@ -117,16 +117,16 @@ impl Line {
             drop(far);
             (near, name)
         });
-        let shared = |port: &TTYPort| Arc::new(Mutex::new(port.try_clone_native().expect("it can be cloned")));
-        let (to_slave, to_master, to_other) = (shared(&slave), shared(&master), shared(&other));
+        let shared_state = |port: &TTYPort| Arc::new(Mutex::new(port.try_clone_native().expect("it can be cloned")));
+        let (to_slave, to_master, to_other) = (shared_state(&slave), shared_state(&master), shared_state(&other));
         let (is_over, said) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
         let counted = Arc::clone(&said);
         let copy = |mut from: TTYPort, to: Vec<Arc<Mutex<TTYPort>>>, count: Option<Arc<AtomicUsize>>| {
-            let over = Arc::clone(&is_over);
+            let is_over = Arc::clone(&is_over);
             from.set_timeout(Duration::from_millis(10)).expect("a time-out");
             std::thread::spawn(move || {
                 let mut buffer = [0; 512];
-                while !over.load(Ordering::SeqCst) {
+                while !is_over.load(Ordering::SeqCst) {
                     // Reads fail while the other end is closed.
                     let len = from.read(&mut buffer).unwrap_or(0);
                     if len == 0 {
@@ -150,7 +150,7 @@ impl Line {
     }
 }
 
-impl Drop for Line {
+impl Drop for RelayedLine {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::SeqCst);
         for thread in self.threads.drain(..) {
@@ -165,7 +165,7 @@ fn listener_reads_images_and_sends_nothing() {
     let mut simulator = Running::start(armctl().args(["sim", "yrcx", "--bus", "profibus"]));
     let said = simulator.line();
     let port = said.split("profibus://").nth(1).and_then(|rest| rest.split('?').next()).expect("a port");
-    let (line, master, listener) = Line::to(port);
+    let (line, master, listener) = RelayedLine::connect(port);
     let folder = tempfile::tempdir().expect("a folder");
     let run = |url: &str, arguments: &[&str]| {
         let mut command = armctl();

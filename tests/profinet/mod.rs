@@ -8,7 +8,7 @@ mod namespaces;
 use std::process::Command;
 
 /// Typed commands; each is followed by its exit code.
-const TYPED: &str = r#"
+const COMMANDS: &str = r#"
 export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"
 unset XDG_CONFIG_HOME ARMCTL_TARGET
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
@@ -48,7 +48,7 @@ fn commands_a_simulated_device_on_another_network_card() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().to_str().expect("its path is UTF-8");
     let variables = [("ARMCTL", env!("CARGO_BIN_EXE_armctl")), ("FOLDER", place)];
-    let Some(text) = namespaces::run(TYPED, &variables) else {
+    let Some(text) = namespaces::run(COMMANDS, &variables) else {
         println!("{}", namespaces::SKIPPED);
         return;
     };
@@ -96,11 +96,11 @@ fn commands_a_simulated_device_on_another_network_card() {
             assert!(said.contains(part), "{typed}: no '{part}' in: {said}");
         }
     }
-    well_recorded(&format!("{place}/trace.pcapng"));
+    check_recording(&format!("{place}/trace.pcapng"));
 }
 
 /// A controller and a DCP client of other authors, and a simulator on the other network card.
-const DRIVEN: &str = r#"
+const DRIVER_COMMANDS: &str = r#"
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
 until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
 for words in yrcx 'yrcx class2'; do "$PEERS/bin/python" "$SCRIPTS/controller.py" pc0 yrcx-sim $words 2>&1; done
@@ -121,7 +121,7 @@ fn other_controllers_command_the_simulated_device() {
     let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/profinet");
     let variables =
         [("ARMCTL", env!("CARGO_BIN_EXE_armctl")), ("FOLDER", place), ("PEERS", peers), ("SCRIPTS", scripts)];
-    let Some(text) = namespaces::run(DRIVEN, &variables) else {
+    let Some(text) = namespaces::run(DRIVER_COMMANDS, &variables) else {
         println!("{}", namespaces::SKIPPED);
         return;
     };
@@ -130,7 +130,7 @@ fn other_controllers_command_the_simulated_device() {
 }
 
 /// Checks that tshark can read the complete recording, with cyclic data decoded as in Connect; skipped without tshark.
-fn well_recorded(path: &str) {
+fn check_recording(path: &str) {
     let tshark = |arguments: &[&str]| {
         let output = Command::new("tshark").args(["-r", path]).args(arguments).output().ok()?;
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

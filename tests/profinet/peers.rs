@@ -50,13 +50,13 @@ exit $R
 #[test]
 fn our_controller_runs_another_device() {
     match run("others") {
-        Some(text) => assert!(text.contains(TRIPPED), "{text}"),
+        Some(text) => assert!(text.contains(WATCHDOG_MARK), "{text}"),
         None => println!("{}", namespaces::SKIPPED),
     }
 }
 
 /// Message of the other device when its controller is silent.
-const TRIPPED: &str = "the device's watchdog has expired";
+const WATCHDOG_MARK: &str = "the device's watchdog has expired";
 
 #[test]
 fn our_controller_finds_reads_and_runs_our_device() {
@@ -123,7 +123,7 @@ fn is_an_end() -> bool {
 #[test]
 #[ignore = "one end of a test above"]
 fn others_device() {
-    const RAISE: u16 = 0x4141;
+    const ALARM_MARK: u16 = 0x4141;
     if !is_an_end() {
         return;
     }
@@ -144,16 +144,16 @@ fn others_device() {
         std::thread::park_timeout(Duration::from_millis(2));
         if !is_told && device.rt_stats().snapshot().watchdog_expirations > 0 {
             is_told = true;
-            println!("{TRIPPED}");
+            println!("{WATCHDOG_MARK}");
         }
         if !device.ready() {
             continue;
         }
         let Ok(outputs) = device.outputs(Slot(2)) else { continue };
-        let wanted = outputs.word(0).is_ok_and(|word| word == RAISE);
-        if wanted != is_raised {
-            is_raised = wanted;
-            if wanted {
+        let requested = outputs.word(0).is_ok_and(|word| word == ALARM_MARK);
+        if requested != is_raised {
+            is_raised = requested;
+            if requested {
                 device.raise_diagnosis(Slot(1), 0, ChannelError::LineBreak, Severity::Fault).unwrap();
             } else {
                 device.clear_diagnosis(Slot(1), 0, ChannelError::LineBreak).unwrap();
@@ -236,8 +236,8 @@ fn others_controller() {
         println!("another module: {refused}");
         assert!(matches!(refused, ProfinetError::Refused { .. } | ProfinetError::Modules(_)));
 
-        let nobody = Settings { station: Station::Name("nobody".to_owned()), ..settings() };
-        let refused = network.open(nobody, Tap::default()).await.unwrap_err();
+        let absent_station = Settings { station: Station::Name("nobody".to_owned()), ..settings() };
+        let refused = network.open(absent_station, Tap::default()).await.unwrap_err();
         assert!(matches!(refused, ProfinetError::NotFound { .. }));
     });
     println!("the controller has seen all");
@@ -332,14 +332,14 @@ fn our_controller() {
 
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {
-        let soon = || tokio::time::Instant::now() + Duration::from_secs(30);
+        let deadline = || tokio::time::Instant::now() + Duration::from_secs(30);
         let mut link = ImageLink::over(Link::open("pc0", settings(), Tap::default()).await.unwrap());
         let mut image = settings().resting;
         image[0] = 0x55;
         link.set_output(&image).unwrap();
         let mut events = Vec::new();
         while !events.iter().any(|event| matches!(event, LinkEvent::Reopened)) {
-            let event = link.next(soon()).await;
+            let event = link.next(deadline()).await;
             assert_ne!(event, LinkEvent::Timeout, "{events:?}");
             events.push(event);
         }
@@ -352,7 +352,7 @@ fn our_controller() {
         // The old inputs are not shown again.
         let rest = settings().resting;
         loop {
-            match link.next(soon()).await {
+            match link.next(deadline()).await {
                 LinkEvent::Image(image) if *image == *rest => break,
                 LinkEvent::Image(image) => assert_ne!(image[0], 0x55),
                 event => assert_ne!(event, LinkEvent::Timeout),
@@ -381,7 +381,7 @@ fn dcp_device() {
 #[ignore = "one end of a test above"]
 fn python_controller() {
     if is_an_end() {
-        theirs(include_str!("controller.py"), &["pc0", "yrcx-sim"], "profinet-py has seen its data come back");
+        run_python(include_str!("controller.py"), &["pc0", "yrcx-sim"], "profinet-py has seen its data come back");
     }
 }
 
@@ -389,12 +389,12 @@ fn python_controller() {
 #[ignore = "one end of a test above"]
 fn dcp_controller() {
     if is_an_end() {
-        theirs(include_str!("dcp.py"), &["192.168.79.1", "yrcx-sim"], "pnio-dcp has seen all");
+        run_python(include_str!("dcp.py"), &["192.168.79.1", "yrcx-sim"], "pnio-dcp has seen all");
     }
 }
 
 /// Runs another program, once our device has started.
-fn theirs(program: &str, arguments: &[&str], end: &str) {
+fn run_python(program: &str, arguments: &[&str], end: &str) {
     let interface = Interface::find("pc0").expect("the namespace has it");
     let station = Station::Name("yrcx-sim".to_owned());
     let begin = Instant::now();
@@ -403,8 +403,8 @@ fn theirs(program: &str, arguments: &[&str], end: &str) {
     }
     let python = std::path::Path::new(&std::env::var_os(PEERS).expect("it is set")).join("bin/python");
     let output = Command::new(python).arg("-c").arg(program).args(arguments).output().expect("python can be started");
-    let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    println!("{said}");
-    assert!(said.contains(end), "{said}");
+    let output = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    println!("{output}");
+    assert!(output.contains(end), "{output}");
     println!("the controller has seen all");
 }

@@ -4,7 +4,7 @@
 use std::io::Write as _;
 use std::process::Command;
 
-use super::{Desk, Running, serving, stderr};
+use super::{Desk, Running, serve_simulator, stderr};
 #[cfg(target_os = "linux")]
 use crate::support::namespaces;
 use crate::support::terminal::Terminal;
@@ -20,10 +20,10 @@ struct Motion {
     with: &'static str,
     words: &'static str,
     /// Text of `-vv` when it moves.
-    moves: &'static str,
+    motion_state: &'static str,
     /// Command that reads the state, and whether its report shows a stopped robot.
-    look: &'static str,
-    stands: fn(&serde_json::Value) -> bool,
+    state_command: &'static str,
+    is_standing: fn(&serde_json::Value) -> bool,
 }
 
 const JOG: Motion = Motion {
@@ -31,13 +31,13 @@ const JOG: Motion = Motion {
     serve: "toyo --bind 127.0.0.1:0",
     with: "",
     words: "toyo jog X + low --for 60s",
-    moves: "",
-    look: "toyo status",
-    stands: |status| status["running"] == false,
+    motion_state: "",
+    state_command: "toyo status",
+    is_standing: |status| status["running"] == false,
 };
 
 /// A return to origin on a slow line: a jog prints its frames only at its end, and other reads need a session.
-const HOME: Motion = Motion { words: "toyo home", moves: "-> @HOME", ..JOG };
+const HOME: Motion = Motion { words: "toyo home", motion_state: "-> @HOME", ..JOG };
 
 const SERIAL: Motion = Motion { serve: "toyo --pty", ..HOME };
 
@@ -46,9 +46,9 @@ const MOVE: Motion = Motion {
     serve: "yerc --bind 127.0.0.1:0",
     with: "",
     words: "yerc move relative --x 200 --speed 4mm/s",
-    moves: "answer to 0x8a cartesian move: ok",
-    look: "yerc status",
-    stands: |status| status["held"] == true,
+    motion_state: "answer to 0x8a cartesian move: ok",
+    state_command: "yerc status",
+    is_standing: |status| status["held"] == true,
 };
 
 /// Long timeouts for a busy machine. The state is read from the simulator itself.
@@ -57,9 +57,9 @@ const ETHERNET: Motion = Motion {
     serve: "yrcx --bind 127.0.0.1:0",
     with: "?rpi=5ms&multiplier=512",
     words: "yrcx move --to 900,0,0,0 --speed-of-max 0.1",
-    moves: "<- WO 0100",
-    look: "",
-    stands: |_| false,
+    motion_state: "<- WO 0100",
+    state_command: "",
+    is_standing: |_| false,
 };
 
 const DEVICENET: Motion = Motion { serve: "yrcx --bus devicenet", with: "", ..ETHERNET };
@@ -68,7 +68,7 @@ const PROFIBUS: Motion = Motion { serve: "yrcx --bus profibus", with: "", ..ETHE
 
 /// How a motion is started.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum StartKind {
     Direct,
     /// With a second robot.
     Several,
@@ -77,27 +77,27 @@ enum Way {
 }
 
 /// All ways, and whether a session of another process holds the links.
-const WAYS: [(Way, bool); 7] = [
-    (Way::Direct, false),
-    (Way::Direct, true),
-    (Way::Several, false),
-    (Way::Batch, false),
-    (Way::Batch, true),
-    (Way::Prompt, false),
-    (Way::Prompt, true),
+const START_KINDS: [(StartKind, bool); 7] = [
+    (StartKind::Direct, false),
+    (StartKind::Direct, true),
+    (StartKind::Several, false),
+    (StartKind::Batch, false),
+    (StartKind::Batch, true),
+    (StartKind::Prompt, false),
+    (StartKind::Prompt, true),
 ];
 
 /// The robots `a` and `b`, each with its own simulator.
-fn two(motion: &Motion) -> (Vec<Running>, Desk) {
-    let nobody = Desk::new(&[]);
-    let simulators: Vec<_> = (0..2).map(|_| serving(&nobody, motion.serve)).collect();
+fn two_robots(motion: &Motion) -> (Vec<Running>, Desk) {
+    let no_robots = Desk::new(&[]);
+    let simulators: Vec<_> = (0..2).map(|_| serve_simulator(&no_robots, motion.serve)).collect();
     let targets: Vec<_> = simulators.iter().map(|simulator| format!("{}{}", simulator.first, motion.with)).collect();
     let desk = Desk::new(&[("a", motion.family, &targets[0]), ("b", motion.family, &targets[1])]);
     (simulators, desk)
 }
 
 /// Waits until the simulator itself reports a stopped robot without a master.
-fn stands_alone(simulator: &mut Running) {
+fn has_no_processes(simulator: &mut Running) {
     loop {
         writeln!(simulator.process.stdin.as_ref().unwrap(), "robot").unwrap();
         let now = simulator.line("now ");
@@ -115,29 +115,29 @@ enum Moving {
 }
 
 impl Moving {
-    fn starts(desk: &Desk, motion: &Motion, way: Way) -> Self {
+    fn start_motion(desk: &Desk, motion: &Motion, way: StartKind) -> Self {
         let file = desk.folder.path().join("lines");
         std::fs::write(&file, format!("{}\n", motion.words)).unwrap();
         let words = match way {
-            Way::Direct => format!("-r a {} --yes -vv", motion.words),
-            Way::Several => format!("-r a -r b {} --yes -vv", motion.words),
-            Way::Batch => format!("-r a batch {} --yes -vv", file.display()),
-            Way::Prompt => {
+            StartKind::Direct => format!("-r a {} --yes -vv", motion.words),
+            StartKind::Several => format!("-r a -r b {} --yes -vv", motion.words),
+            StartKind::Batch => format!("-r a batch {} --yes -vv", file.display()),
+            StartKind::Prompt => {
                 let mut command = desk.command("-r a --yes -vv repl");
                 command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
                 let mut prompt = Terminal::start(command, 200, 50).unwrap();
-                prompt.says("ends the prompt.");
+                prompt.wait_for_text("ends the prompt.");
                 prompt.press(&format!("{}\r", motion.words));
-                prompt.says(motion.moves);
+                prompt.wait_for_text(motion.motion_state);
                 return Self::Prompt(Box::new(prompt));
             }
         };
         let mut moving = Running::start(desk.command(&words), false);
-        if motion.moves.is_empty() {
-            while (motion.stands)(&desk.data(&format!("-r a {}", motion.look))) {}
+        if motion.motion_state.is_empty() {
+            while (motion.is_standing)(&desk.data(&format!("-r a {}", motion.state_command))) {}
         } else {
-            for _ in 0..if way == Way::Several { 2 } else { 1 } {
-                moving.says(motion.moves);
+            for _ in 0..if way == StartKind::Several { 2 } else { 1 } {
+                moving.wait_for_message(motion.motion_state);
             }
         }
         Self::Process(moving)
@@ -159,7 +159,7 @@ impl Moving {
 
     /// Waits until the process has ended, and until no guardian remains that would stop the robot, except for that of a
     /// session. Returns the output.
-    fn ends(self, desk: &Desk, session: Option<&Running>) -> String {
+    fn has_ended(self, desk: &Desk, session: Option<&Running>) -> String {
         let (code, said) = match self {
             // Its guardian has the same stderr, so both have ended.
             Self::Process(process) => process.end(),
@@ -184,32 +184,32 @@ fn no_guardian(desk: &Desk, session: Option<&Running>) {
     while std::fs::read_dir("/proc").unwrap().any(|process| is_guardian(&process.unwrap().path())) {}
 }
 
-fn stops(motion: &Motion, signals: &[&str], ways: &[(Way, bool)]) {
+fn wait_for_stop(motion: &Motion, signals: &[&str], ways: &[(StartKind, bool)]) {
     for signal in signals {
         for &(way, in_session) in ways {
-            let (mut simulators, desk) = two(motion);
+            let (mut simulators, desk) = two_robots(motion);
             let session = in_session.then(|| Running::session(&desk, "a"));
-            let moving = Moving::starts(&desk, motion, way);
+            let moving = Moving::start_motion(&desk, motion, way);
             moving.signal(signal);
-            let said = moving.ends(&desk, session.as_ref());
-            assert_eq!(*signal == "STOP", said.contains("did not respond for 2 s"), "{way:?}: {said}");
+            let messages = moving.has_ended(&desk, session.as_ref());
+            assert_eq!(*signal == "STOP", messages.contains("did not respond for 2 s"), "{way:?}: {messages}");
             if let Some(mut session) = session {
-                session.says("it moved the robot");
-                session.says("the robot was stopped");
+                session.wait_for_message("it moved the robot");
+                session.wait_for_message("the robot was stopped");
                 if motion.family == "yrcx" {
                     desk.until(|session| session["under_way"] == false);
                     continue;
                 }
                 // The session and its link end together.
             }
-            let robots: &[_] = if way == Way::Several { &["a", "b"] } else { &["a"] };
+            let robots: &[_] = if way == StartKind::Several { &["a", "b"] } else { &["a"] };
             for (robot, simulator) in robots.iter().zip(&mut simulators) {
                 if motion.family == "yrcx" {
-                    stands_alone(simulator);
+                    has_no_processes(simulator);
                     continue;
                 }
-                let state = desk.data(&format!("-r {robot} {}", motion.look));
-                assert!((motion.stands)(&state), "{signal} {way:?} {in_session}: {robot}: {state}");
+                let state = desk.data(&format!("-r {robot} {}", motion.state_command));
+                assert!((motion.is_standing)(&state), "{signal} {way:?} {in_session}: {robot}: {state}");
             }
         }
     }
@@ -217,44 +217,44 @@ fn stops(motion: &Motion, signals: &[&str], ways: &[(Way, bool)]) {
 
 #[test]
 fn stops_the_jog_of_a_killed_or_frozen_process() {
-    stops(&JOG, &SIGNALS, &[(Way::Direct, true)]);
+    wait_for_stop(&JOG, &SIGNALS, &[(StartKind::Direct, true)]);
 }
 
 #[test]
 fn stops_the_origin_return_of_a_killed_process() {
-    stops(&HOME, &SIGNALS, &WAYS[..2]);
-    stops(&HOME, &SIGNALS[..1], &WAYS[2..]);
+    wait_for_stop(&HOME, &SIGNALS, &START_KINDS[..2]);
+    wait_for_stop(&HOME, &SIGNALS[..1], &START_KINDS[2..]);
 }
 
 #[test]
 fn stops_a_serial_motion_of_a_killed_or_frozen_process() {
-    stops(&SERIAL, &SIGNALS, &WAYS[..2]);
-    stops(&SERIAL, &SIGNALS[..1], &WAYS[2..]);
+    wait_for_stop(&SERIAL, &SIGNALS, &START_KINDS[..2]);
+    wait_for_stop(&SERIAL, &SIGNALS[..1], &START_KINDS[2..]);
 }
 
 #[test]
 fn stops_the_move_of_a_killed_or_frozen_process() {
-    stops(&MOVE, &SIGNALS, &WAYS[..2]);
-    stops(&MOVE, &SIGNALS[..1], &WAYS[2..]);
+    wait_for_stop(&MOVE, &SIGNALS, &START_KINDS[..2]);
+    wait_for_stop(&MOVE, &SIGNALS[..1], &START_KINDS[2..]);
 }
 
 /// Outside a session, the adapter stops a yrcx when it misses its master, not the guardian.
 #[test]
 fn yrcx_stops_if_its_master_or_client_is_killed_or_frozen() {
-    stops(&ETHERNET, &SIGNALS, &WAYS[..2]);
-    stops(&ETHERNET, &SIGNALS[..1], &WAYS[2..]);
+    wait_for_stop(&ETHERNET, &SIGNALS, &START_KINDS[..2]);
+    wait_for_stop(&ETHERNET, &SIGNALS[..1], &START_KINDS[2..]);
 }
 
 #[test]
 fn yrcx_on_devicenet_stops_if_its_master_or_client_is_killed_or_frozen() {
-    stops(&DEVICENET, &SIGNALS, &WAYS[..2]);
-    stops(&DEVICENET, &SIGNALS[..1], &WAYS[2..]);
+    wait_for_stop(&DEVICENET, &SIGNALS, &START_KINDS[..2]);
+    wait_for_stop(&DEVICENET, &SIGNALS[..1], &START_KINDS[2..]);
 }
 
 #[test]
 fn yrcx_on_profibus_stops_if_its_master_or_client_is_killed_or_frozen() {
-    stops(&PROFIBUS, &SIGNALS, &WAYS[..2]);
-    stops(&PROFIBUS, &SIGNALS[..1], &WAYS[2..]);
+    wait_for_stop(&PROFIBUS, &SIGNALS, &START_KINDS[..2]);
+    wait_for_stop(&PROFIBUS, &SIGNALS[..1], &START_KINDS[2..]);
 }
 
 /// The session process ends, alone or together with the process that moves the robot.
@@ -262,9 +262,9 @@ fn yrcx_on_profibus_stops_if_its_master_or_client_is_killed_or_frozen() {
 fn stops_a_motion_when_its_session_process_ends() {
     for motion in [&MOVE, &HOME, &SERIAL] {
         for (holder, client) in [("KILL", "KILL"), ("KILL", ""), ("STOP", ""), ("TERM", ""), ("STOP", "KILL")] {
-            let (_simulators, desk) = two(motion);
+            let (_simulators, desk) = two_robots(motion);
             let session = Running::session(&desk, "a");
-            let moving = Moving::starts(&desk, motion, Way::Direct);
+            let moving = Moving::start_motion(&desk, motion, StartKind::Direct);
             let (session_id, moving_id) = (session.process.id(), moving.pid());
             // Both at the same time: the remaining process ends by itself.
             let kill = |signal: &str, pids: &[u32]| {
@@ -285,17 +285,17 @@ fn stops_a_motion_when_its_session_process_ends() {
             let (code, said) = process.end();
             assert_ne!(code, Some(0), "{holder} {client}: {said}");
             no_guardian(&desk, None);
-            let state = desk.data(&format!("-r a --no-session {}", motion.look));
-            assert!((motion.stands)(&state), "{holder} {client}: {}: {state}", motion.words);
+            let state = desk.data(&format!("-r a --no-session {}", motion.state_command));
+            assert!((motion.is_standing)(&state), "{holder} {client}: {}: {state}", motion.words);
         }
     }
 }
 
 #[test]
 fn background_session_logs_the_result_of_a_stop() {
-    let (_simulators, desk) = two(&MOVE);
+    let (_simulators, desk) = two_robots(&MOVE);
     desk.data("-r a session open --background");
-    let moving = Moving::starts(&desk, &MOVE, Way::Direct);
+    let moving = Moving::start_motion(&desk, &MOVE, StartKind::Direct);
     moving.signal("KILL");
     let log = desk.files("log").remove(0);
     while !std::fs::read_to_string(&log).unwrap().contains(": the robot was stopped\n") {}
@@ -305,19 +305,19 @@ fn background_session_logs_the_result_of_a_stop() {
 #[test]
 fn removed_program_file_does_not_prevent_the_stop() {
     for in_session in [false, true] {
-        let (_simulators, mut desk) = two(&MOVE);
+        let (_simulators, mut desk) = two_robots(&MOVE);
         let copy = desk.folder.path().join("armctl");
         std::fs::copy(&desk.program, &copy).unwrap();
         let installed = std::mem::replace(&mut desk.program, copy.clone());
         let session = in_session.then(|| Running::session(&desk, "a"));
-        let moving = Moving::starts(&desk, &MOVE, Way::Direct);
+        let moving = Moving::start_motion(&desk, &MOVE, StartKind::Direct);
         desk.program = installed;
         std::fs::remove_file(copy).unwrap();
         moving.signal("KILL");
-        let said = moving.ends(&desk, session.as_ref());
+        let said = moving.has_ended(&desk, session.as_ref());
         assert!(!said.contains("may still move"), "{said}");
         if let Some(mut session) = session {
-            session.says("the robot was stopped");
+            session.wait_for_message("the robot was stopped");
         }
         assert_eq!(desk.data("-r a yerc status")["held"], true, "in a session: {in_session}");
     }
@@ -326,7 +326,7 @@ fn removed_program_file_does_not_prevent_the_stop() {
 /// After a normal end there is no additional stop: HOLD stays off.
 #[test]
 fn does_not_stop_a_finished_motion() {
-    let (_simulators, desk) = two(&MOVE);
+    let (_simulators, desk) = two_robots(&MOVE);
     let moved = desk.run("-r a yerc move relative --x 1 --speed 100mm/s --yes");
     assert!(moved.status.success(), "{}", stderr(&moved));
     // The guardian keeps stderr open, so it has ended at the end of stderr.
@@ -336,15 +336,15 @@ fn does_not_stop_a_finished_motion() {
 #[test]
 fn move_with_on_interrupt_leave_continues_after_a_kill() {
     for in_session in [false, true] {
-        let (_simulators, desk) = two(&MOVE);
+        let (_simulators, desk) = two_robots(&MOVE);
         let mut session = in_session.then(|| Running::session(&desk, "a"));
         let words = format!("-r a {} --on-interrupt leave --yes -vv", MOVE.words);
         let mut moving = Running::start(desk.command(&words), false);
-        moving.says(MOVE.moves);
+        moving.wait_for_message(MOVE.motion_state);
         moving.signal("KILL");
         assert_eq!(moving.end().0, None);
         if let Some(session) = &mut session {
-            session.says("it moved the robot");
+            session.wait_for_message("it moved the robot");
         }
         let status = desk.data("-r a yerc status");
         assert_eq!((&status["held"], &status["running"]), (&false.into(), &true.into()), "{status}");
@@ -356,19 +356,21 @@ fn move_with_on_interrupt_leave_continues_after_a_kill() {
 fn terminal_signals_stop_the_motion() {
     for signal in ["QUIT", "TSTP"] {
         for motion in [&MOVE, &JOG] {
-            let (_simulators, desk) = two(motion);
+            let (_simulators, desk) = two_robots(motion);
             let _session = Running::session(&desk, "a");
-            let Moving::Process(moving) = Moving::starts(&desk, motion, Way::Direct) else { unreachable!() };
+            let Moving::Process(moving) = Moving::start_motion(&desk, motion, StartKind::Direct) else {
+                unreachable!()
+            };
             moving.signal(signal);
             let (code, said) = moving.end();
             assert_eq!(code, Some(130), "{signal} {}: {said}", motion.words);
             assert!(said.contains("the robot was stopped"), "{signal} {}: {said}", motion.words);
-            let state = desk.data(&format!("-r a {}", motion.look));
-            assert!((motion.stands)(&state), "{signal} {}: {state}", motion.words);
+            let state = desk.data(&format!("-r a {}", motion.state_command));
+            assert!((motion.is_standing)(&state), "{signal} {}: {state}", motion.words);
         }
-        let (_simulator, desk) = super::cell();
+        let (_simulator, desk) = super::cell_arguments();
         let _session = Running::session(&desk, "cell");
-        let moving = super::moving(&desk);
+        let moving = super::start_motion(&desk);
         moving.signal(signal);
         let (code, said) = moving.end();
         assert!(code == Some(130) && said.contains("the robot was stopped"), "{signal}: {code:?}: {said}");
@@ -379,14 +381,14 @@ fn terminal_signals_stop_the_motion() {
 #[test]
 fn stop_bypasses_an_unresponsive_session() {
     for (motion, stop) in [(&MOVE, "yerc hold on"), (&JOG, "toyo stop")] {
-        let (_simulators, desk) = two(motion);
+        let (_simulators, desk) = two_robots(motion);
         let session = Running::session(&desk, "a");
         let pid = session.process.id();
         session.signal("STOP");
-        let blocked = desk.run(&format!("-r a {}", motion.look));
-        assert_eq!(blocked.status.code(), Some(4), "{}", stderr(&blocked));
+        let blocked_session = desk.run(&format!("-r a {}", motion.state_command));
+        assert_eq!(blocked_session.status.code(), Some(4), "{}", stderr(&blocked_session));
         for part in [format!("its session (process {pid}) does not respond"), format!("`kill -CONT {pid}`")] {
-            assert!(stderr(&blocked).contains(&part), "{part}: {}", stderr(&blocked));
+            assert!(stderr(&blocked_session).contains(&part), "{part}: {}", stderr(&blocked_session));
         }
         let stopped = desk.run(&format!("-r a {stop}"));
         if motion.family == "yerc" {

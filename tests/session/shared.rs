@@ -24,7 +24,7 @@ struct DeviceServer {
 impl DeviceServer {
     /// Starts it for a simulator. At a second client, it closes the first connection if it `evicts`, otherwise the
     /// second.
-    fn before(target: &str, evicts: bool) -> Self {
+    fn proxy(target: &str, evicts: bool) -> Self {
         let controller: SocketAddr = target.strip_prefix("tcp://").unwrap().parse().unwrap();
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let url = format!("tcp://{}", listener.local_addr().unwrap());
@@ -51,8 +51,8 @@ impl DeviceServer {
                     before.shutdown(Shutdown::Both).unwrap_or_default();
                 }
                 let line = connected(controller);
-                pass(client.try_clone().unwrap(), line.try_clone().unwrap());
-                pass(line, client);
+                forward(client.try_clone().unwrap(), line.try_clone().unwrap());
+                forward(line, client);
             }
         });
         server
@@ -64,15 +64,15 @@ fn connected(controller: SocketAddr) -> TcpStream {
     loop {
         let line = TcpStream::connect(controller).unwrap();
         line.set_read_timeout(Some(std::time::Duration::from_millis(20))).unwrap();
-        let is_let_go = matches!(line.peek(&mut [0]), Ok(0));
+        let is_released = matches!(line.peek(&mut [0]), Ok(0));
         line.set_read_timeout(None).unwrap();
-        if !is_let_go {
+        if !is_released {
             return line;
         }
     }
 }
 
-fn pass(mut from: TcpStream, mut to: TcpStream) {
+fn forward(mut from: TcpStream, mut to: TcpStream) {
     thread::spawn(move || {
         let mut buffer = [0; 1024];
         while let Ok(length) = from.read(&mut buffer) {
@@ -107,7 +107,7 @@ impl Watch {
 fn monitors_share_a_link_for_one_client() {
     for evicts in [false, true] {
         let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
-        let server = DeviceServer::before(&simulator.first, evicts);
+        let server = DeviceServer::proxy(&simulator.first, evicts);
         let desk = Desk::new(&[("cell", "toyo", &server.url)]);
         let mut top = Terminal::start(desk.command("top --all --watch 50ms"), 100, 30).unwrap();
         let watch = Watch::start(desk.command("-r cell toyo position --watch 50ms -o jsonl"));
@@ -119,17 +119,17 @@ fn monitors_share_a_link_for_one_client() {
             let output = desk.run("-r cell toyo position --json");
             assert!(output.status.success(), "{}", stderr(&output));
         }
-        top.shows("cell  toyo  answer");
+        top.wait_for_picture("cell  toyo  answer");
         for line in &*watch.lines.lock().unwrap() {
             assert_eq!(serde_json::from_str::<Value>(line).unwrap()["ok"], true, "{line}");
         }
         assert_eq!(server.conflicts.load(Ordering::Relaxed), 0, "evicts: {evicts}");
-        assert!(desk.listed()["clients"].as_array().unwrap().len() >= 4, "{}", desk.listed());
+        assert!(desk.listed_sessions()["clients"].as_array().unwrap().len() >= 4, "{}", desk.listed_sessions());
         for mut watch in [watch, metrics, publish] {
             watch.running.signal("TERM");
-            let mut said = String::new();
-            watch.running.stderr.read_to_string(&mut said).unwrap();
-            assert!(!said.contains("cell ("), "it says that something was wrong: {said}");
+            let mut messages = String::new();
+            watch.running.stderr.read_to_string(&mut messages).unwrap();
+            assert!(!messages.contains("cell ("), "it says that something was wrong: {messages}");
         }
         top.press("q");
         assert!(top.end().success());
@@ -142,7 +142,7 @@ fn monitors_share_a_link_for_one_client() {
 #[test]
 fn commands_wait_for_a_link_for_one_client() {
     let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
-    let server = DeviceServer::before(&simulator.first, true);
+    let server = DeviceServer::proxy(&simulator.first, true);
     let desk = Desk::new(&[("cell", "toyo", &server.url)]);
     let asked: Vec<_> = (0..8).map(|_| Running::start(desk.command("-r cell toyo position"), false)).collect();
     for asked in asked {
@@ -157,13 +157,13 @@ fn commands_wait_for_a_link_for_one_client() {
 #[test]
 fn names_the_process_that_holds_a_link() {
     let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
-    let server = DeviceServer::before(&simulator.first, true);
+    let server = DeviceServer::proxy(&simulator.first, true);
     let desk = Desk::new(&[("cell", "toyo", &server.url)]);
     let jog = Running::start(desk.command("-r cell toyo jog X + low --for 60s --yes"), false);
     while server.accepted.load(Ordering::Relaxed) == 0 {}
-    let blocked = desk.run("-r cell toyo position");
+    let blocked_command = desk.run("-r cell toyo position");
     super::fails(
-        &blocked,
+        &blocked_command,
         4,
         &format!("process {} (`armctl -r cell toyo jog X + low --for 60s --yes`) is connected", jog.process.id()),
     );

@@ -10,7 +10,7 @@ use serde_json::Value;
 /// Checks an envelope: its schema, the order of its keys, the exit code of its kind, and data that matches the schema
 /// of its command or of a dry run.
 pub fn check(envelope: &Value) -> Result<(), String> {
-    follows(envelope, "envelope")?;
+    matches_schema(envelope, "envelope")?;
     let schema = schema("envelope")?;
     let known = schema["properties"].as_object().into_iter().flatten().map(|(key, _)| key);
     let in_order: Vec<&String> = known.filter(|key| envelope.get(key.as_str()).is_some()).collect();
@@ -26,11 +26,11 @@ pub fn check(envelope: &Value) -> Result<(), String> {
     }
     let (Some(data), Some(command)) = (envelope.get("data"), envelope["command"].as_str()) else { return Ok(()) };
     let is_rehearsal = data.get("frames").is_some() && !command.starts_with("decode.");
-    follows(data, if is_rehearsal { "dry-run" } else { command })
+    matches_schema(data, if is_rehearsal { "dry-run" } else { command })
 }
 
 /// Checks a value against the schema of this name, without additional fields.
-fn follows(value: &Value, id: &str) -> Result<(), String> {
+fn matches_schema(value: &Value, id: &str) -> Result<(), String> {
     let wrong: Vec<String> =
         validator(id)?.iter_errors(value).map(|error| format!("{}: {error}", error.instance_path())).collect();
     if wrong.is_empty() { Ok(()) } else { Err(format!("not as the schema of {id} says: {}", wrong.join("; "))) }
@@ -38,14 +38,14 @@ fn follows(value: &Value, id: &str) -> Result<(), String> {
 
 /// Cached validator of a schema, because a transcript needs only a few of many schemas.
 fn validator(id: &str) -> Result<Arc<Validator>, String> {
-    static MADE: Mutex<Option<HashMap<String, Arc<Validator>>>> = Mutex::new(None);
-    let mut made = MADE.lock().expect("nobody panics with it");
-    let made = made.get_or_insert_default();
+    static VALIDATORS: Mutex<Option<HashMap<String, Arc<Validator>>>> = Mutex::new(None);
+    let mut validators = VALIDATORS.lock().expect("nobody panics with it");
+    let made = validators.get_or_insert_default();
     if let Some(validator) = made.get(id) {
         return Ok(Arc::clone(validator));
     }
     let mut schema = schema(id)?;
-    close(&mut schema);
+    forbid_extra_keys(&mut schema);
     let validator = jsonschema::draft202012::new(&schema).map_err(|error| format!("the schema of {id}: {error}"))?;
     Ok(Arc::clone(made.entry(id.to_owned()).or_insert(Arc::new(validator))))
 }
@@ -56,7 +56,7 @@ fn schema(id: &str) -> Result<Value, String> {
 }
 
 /// Schemas allow additional fields for the future; current data must not have any.
-fn close(schema: &mut Value) {
+fn forbid_extra_keys(schema: &mut Value) {
     match schema {
         Value::Object(keys) => {
             let is_object = keys.get("properties").is_some_and(Value::is_object);
@@ -66,13 +66,13 @@ fn close(schema: &mut Value) {
             for (key, inner) in keys {
                 // Conditions and variants of a flattened enum contain some of the fields; the others are next to them.
                 let is_part = matches!(key.as_str(), "if" | "then" | "else" | "not" | "allOf");
-                let is_way = is_object && matches!(key.as_str(), "anyOf" | "oneOf");
-                if !(is_part || is_way) {
-                    close(inner);
+                let is_variant = is_object && matches!(key.as_str(), "anyOf" | "oneOf");
+                if !(is_part || is_variant) {
+                    forbid_extra_keys(inner);
                 }
             }
         }
-        Value::Array(items) => items.iter_mut().for_each(close),
+        Value::Array(items) => items.iter_mut().for_each(forbid_extra_keys),
         _ => {}
     }
 }

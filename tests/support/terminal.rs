@@ -11,8 +11,8 @@ use rustix::termios::{InputModes, LocalModes, OptionalActions, Termios, Winsize,
 use serialport::{SerialPort as _, TTYPort};
 
 /// Wait of one read, and the maximum number of reads.
-const LOOK: Duration = Duration::from_secs(1);
-const LOOKS: usize = 60;
+const POLL_INTERVAL: Duration = Duration::from_secs(1);
+const MAX_POLLS: usize = 60;
 /// Time limit: a program that has not ended then hangs, and the test fails.
 const END: Duration = Duration::from_secs(600);
 
@@ -24,21 +24,21 @@ pub struct Terminal {
     slave: File,
     /// Keeps the terminal open.
     _port: TTYPort,
-    before: Termios,
+    modes_before: Termios,
     start: Instant,
     pub child: Child,
     pub picture: Picture,
     /// All output.
     pub written: Vec<u8>,
     /// Length of the output, without escape sequences, that [`Terminal::says`] has consumed.
-    heard: usize,
+    received: usize,
 }
 
 impl Terminal {
     /// Starts it in its own process group.
     pub fn start(mut command: Command, columns: u16, lines: u16) -> std::io::Result<Self> {
         let (mut master, port) = TTYPort::pair()?;
-        master.set_timeout(LOOK)?;
+        master.set_timeout(POLL_INTERVAL)?;
         let name = port.name().expect("a pseudo-terminal has a name");
         let slave = File::options().read(true).write(true).open(name)?;
         // As in a shell: lines, echo, signals from keys.
@@ -56,17 +56,17 @@ impl Terminal {
             master,
             slave,
             _port: port,
-            before,
+            modes_before: before,
             start: Instant::now(),
             child,
             picture,
             written: Vec::new(),
-            heard: 0,
+            received: 0,
         })
     }
 
     /// Reads until the picture is as expected.
-    pub fn until(&mut self, what: &str, is_so: impl Fn(&Picture) -> bool) {
+    pub fn wait_until(&mut self, what: &str, is_so: impl Fn(&Picture) -> bool) {
         while !is_so(&self.picture) {
             let read = self.read();
             assert!(read, "it never came to this: {what}\n{}", self.picture.text());
@@ -74,23 +74,25 @@ impl Terminal {
     }
 
     /// Reads until the picture contains this text.
-    pub fn shows(&mut self, text: &str) {
-        self.until(text, |picture| picture.text().contains(text));
+    pub fn wait_for_picture(&mut self, text: &str) {
+        self.wait_until(text, |picture| picture.text().contains(text));
     }
 
     /// Reads until this text follows the earlier ones: for programs that print lines.
-    pub fn says(&mut self, text: &str) {
-        self.says_one_of(&[text]);
+    pub fn wait_for_text(&mut self, text: &str) {
+        self.wait_for_one_of(&[text]);
     }
 
     /// Reads until the first of these texts follows, and returns it.
-    pub fn says_one_of(&mut self, texts: &[&str]) -> usize {
+    pub fn wait_for_one_of(&mut self, texts: &[&str]) -> usize {
         loop {
             let written = plain(&self.written);
-            let places =
-                texts.iter().enumerate().filter_map(|(index, text)| Some((written[self.heard..].find(text)?, index)));
+            let places = texts
+                .iter()
+                .enumerate()
+                .filter_map(|(index, text)| Some((written[self.received..].find(text)?, index)));
             if let Some((at, index)) = places.min() {
-                self.heard += at + texts[index].len();
+                self.received += at + texts[index].len();
                 return index;
             }
             let read = self.read();
@@ -100,13 +102,13 @@ impl Terminal {
 
     /// Reads output; `false` at the end.
     pub fn read(&mut self) -> bool {
-        for _ in 0..LOOKS {
+        for _ in 0..MAX_POLLS {
             self.fails_when_it_hangs();
-            if self.take() {
+            if self.read_available() {
                 return true;
             }
             if self.child.try_wait().is_ok_and(|ended| ended.is_some()) {
-                return self.take();
+                return self.read_available();
             }
         }
         false
@@ -117,7 +119,7 @@ impl Terminal {
     }
 
     /// Reads available output; `false` without any.
-    fn take(&mut self) -> bool {
+    fn read_available(&mut self) -> bool {
         let mut buffer = [0; 4096];
         match self.master.read(&mut buffer) {
             Ok(0) | Err(_) => false,
@@ -164,10 +166,10 @@ impl Terminal {
     }
 
     /// Whether modes, screen and cursor of the terminal are restored.
-    pub fn is_as_before(&self) -> bool {
+    pub fn is_restored(&self) -> bool {
         let now = tcgetattr(&self.slave).expect("a terminal has modes");
         let modes = |modes: &Termios| (modes.local_modes, modes.input_modes, modes.output_modes, modes.control_modes);
-        modes(&now) == modes(&self.before) && !self.picture.is_alternate && self.picture.has_cursor
+        modes(&now) == modes(&self.modes_before) && !self.picture.is_alternate && self.picture.has_cursor
     }
 
     /// Waits for its end, and reads the remaining output.
@@ -176,14 +178,14 @@ impl Terminal {
         self.master.set_timeout(Duration::from_millis(20)).expect("a terminal takes a timeout");
         let status = loop {
             self.fails_when_it_hangs();
-            while self.take() {}
+            while self.read_available() {}
             if let Some(status) = self.child.try_wait().expect("it is our child") {
                 break status;
             }
         };
         // All output is available now.
         self.master.set_timeout(Duration::ZERO).expect("a terminal takes a timeout");
-        while self.take() {}
+        while self.read_available() {}
         status
     }
 }
@@ -202,7 +204,7 @@ pub struct Picture {
     cells: Vec<char>,
     at: (usize, usize),
     /// Received part of an incomplete sequence or character.
-    begun: Vec<u8>,
+    escape_start: Vec<u8>,
     /// Whether this is the alternate screen.
     pub is_alternate: bool,
     pub has_cursor: bool,
@@ -228,7 +230,7 @@ impl Picture {
             columns,
             cells: vec![' '; columns * lines],
             at: (0, 0),
-            begun: Vec::new(),
+            escape_start: Vec::new(),
             is_alternate: false,
             has_cursor: true,
             has_color: false,
@@ -243,8 +245,8 @@ impl Picture {
 
     fn take(&mut self, bytes: &[u8]) {
         for byte in bytes {
-            self.begun.push(*byte);
-            let begun = &self.begun;
+            self.escape_start.push(*byte);
+            let begun = &self.escape_start;
             let is_whole = match begun[..] {
                 [0x1b] | [0x1b, b'['] => false,
                 [0x1b, b'[', .., last] => (0x40..=0x7e).contains(&last),
@@ -252,13 +254,13 @@ impl Picture {
                 _ => std::str::from_utf8(begun).is_ok() || begun.len() > 3,
             };
             if is_whole {
-                let whole = std::mem::take(&mut self.begun);
-                self.act(&String::from_utf8_lossy(&whole));
+                let whole = std::mem::take(&mut self.escape_start);
+                self.handle_sequence(&String::from_utf8_lossy(&whole));
             }
         }
     }
 
-    fn act(&mut self, what: &str) {
+    fn handle_sequence(&mut self, what: &str) {
         let Some(sequence) = what.strip_prefix("\x1b[") else {
             return match what {
                 "\r" => self.at.0 = 0,

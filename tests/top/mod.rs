@@ -46,48 +46,50 @@ impl Desk {
 }
 
 /// A simulator of each family in the process itself.
-fn simulated() -> Desk {
+fn simulated_robot() -> Desk {
     Desk::new(&["yerc sim:", "toyo sim:", "yrcx sim:"].map(str::to_owned))
 }
 
 #[test]
 fn lists_and_opens_robots_and_q_quits() {
-    let desk = simulated();
+    let desk = simulated_robot();
     let mut top = desk.top(&["--watch", "100ms"]);
-    top.shows("3 robots · 3 answer");
-    top.shows("robot2  toyo");
+    top.wait_for_picture("3 robots · 3 answer");
+    top.wait_for_picture("robot2  toyo");
     assert!(top.picture.is_alternate && !top.picture.has_cursor && top.picture.has_color);
     top.press("\x1b[B");
     top.press("\r");
-    top.until("the screen of robot2", |picture| picture.text().contains("robot2  toyo  answer"));
-    top.shows("SOFT LIMITS");
+    top.wait_until("the screen of robot2", |picture| picture.text().contains("robot2  toyo  answer"));
+    top.wait_for_picture("SOFT LIMITS");
     top.press("n");
-    top.shows("robot3  yrcx");
-    top.shows("TORQUE");
+    top.wait_for_picture("robot3  yrcx");
+    top.wait_for_picture("TORQUE");
     top.press("\x7f");
-    top.shows("3 robots · 3 answer");
+    top.wait_for_picture("3 robots · 3 answer");
     top.press("?");
-    top.shows("No key can move a robot");
+    top.wait_for_picture("No key can move a robot");
     top.press("?");
     top.press("/yer\r");
-    top.until("only one robot", |picture| !picture.text().contains("robot2") && picture.text().contains("only 'yer'"));
+    top.wait_until("only one robot", |picture| {
+        !picture.text().contains("robot2") && picture.text().contains("only 'yer'")
+    });
     top.press("q");
     assert_eq!(top.end().code(), Some(0));
-    assert!(top.is_as_before());
+    assert!(top.is_restored());
 }
 
 #[test]
 fn single_robot_uses_the_full_screen() {
-    let desk = simulated();
+    let desk = simulated_robot();
     let mut top = desk.top(&["-r", "robot1"]);
-    top.shows("SIGNALS");
+    top.wait_for_picture("SIGNALS");
     top.press("q");
     assert_eq!(top.end().code(), Some(0));
 }
 
 #[test]
 fn every_exit_restores_the_terminal() {
-    let desk = simulated();
+    let desk = simulated_robot();
     // A key, or a signal.
     let ends = [
         ("Ctrl-C", None),
@@ -98,13 +100,13 @@ fn every_exit_restores_the_terminal() {
     ];
     for (said, signal) in ends {
         let mut top = desk.top(&[]);
-        top.shows("3 answer");
+        top.wait_for_picture("3 answer");
         match signal {
             Some(signal) => top.signal(signal),
             None => top.press("\x03"),
         }
         assert_eq!(top.end().code(), Some(130), "{said}");
-        assert!(top.is_as_before(), "{said}");
+        assert!(top.is_restored(), "{said}");
         assert!(String::from_utf8_lossy(&top.written).contains(said), "it says why it ended: {said}");
     }
 }
@@ -112,45 +114,45 @@ fn every_exit_restores_the_terminal() {
 #[cfg(target_os = "linux")]
 #[test]
 fn ctrl_z_suspends_and_continues() {
-    let desk = simulated();
+    let desk = simulated_robot();
     let mut top = desk.top(&[]);
-    top.shows("3 answer");
+    top.wait_for_picture("3 answer");
     top.press("\x1a");
     top.is_suspended();
-    top.until("the usual screen", |picture| !picture.is_alternate);
-    assert!(top.is_as_before());
+    top.wait_until("the usual screen", |picture| !picture.is_alternate);
+    assert!(top.is_restored());
     top.signal("CONT");
-    top.until("the picture again", |picture| picture.is_alternate);
-    top.shows("3 answer");
+    top.wait_until("the picture again", |picture| picture.is_alternate);
+    top.wait_for_picture("3 answer");
     top.press("q");
     assert_eq!(top.end().code(), Some(0));
-    assert!(top.is_as_before());
+    assert!(top.is_restored());
 }
 
 /// As in a container: the session leader is outside, and its process id is unknown.
 #[cfg(target_os = "linux")]
 #[test]
 fn ctrl_z_suspends_in_a_pid_namespace() {
-    let apart = |words: &[&str]| Command::new("unshare").args(["-Urpf", "--mount-proc"]).args(words).output();
-    if !apart(&["true"]).is_ok_and(|output| output.status.success()) {
+    let in_namespace = |words: &[&str]| Command::new("unshare").args(["-Urpf", "--mount-proc"]).args(words).output();
+    if !in_namespace(&["true"]).is_ok_and(|output| output.status.success()) {
         eprintln!("skipped: no PID namespaces here");
         return;
     }
     let own = std::env::current_exe().expect("a test has a path");
     let own = own.to_str().expect("in UTF-8");
-    let test = apart(&[own, "--exact", "top::ctrl_z_suspends_and_continues"]).expect("unshare runs");
-    let said = String::from_utf8_lossy(&test.stdout);
-    assert!(test.status.success() && said.contains("1 passed"), "{said}");
+    let test = in_namespace(&[own, "--exact", "top::ctrl_z_suspends_and_continues"]).expect("unshare runs");
+    let messages = String::from_utf8_lossy(&test.stdout);
+    assert!(test.status.success() && messages.contains("1 passed"), "{messages}");
 }
 
 #[test]
 fn limits_output_to_terminal_capabilities() {
-    let desk = simulated();
+    let desk = simulated_robot();
     for (variable, value, words) in [("NO_COLOR", "1", &[][..]), ("LANG", "C", &["--color", "never"])] {
         let mut command = desk.command(&[&["top"], words].concat());
         command.env(variable, value);
         let mut top = Terminal::start(command, 80, 24).expect("a terminal");
-        top.shows("3 answer");
+        top.wait_for_picture("3 answer");
         top.press("q");
         assert_eq!(top.end().code(), Some(0));
         assert!(!top.picture.has_color, "{variable}");
@@ -163,25 +165,25 @@ fn sends_only_reads_for_every_key() {
     let controllers = Recorded::start();
     let desk = Desk::new(&controllers.targets);
     let mut top = desk.top(&["--watch", "50ms"]);
-    top.shows("3 robots · 3 answer");
+    top.wait_for_picture("3 robots · 3 answer");
     for robot in ["robot1", "robot2", "robot3"] {
         top.press("\r");
-        top.until(robot, |picture| {
+        top.wait_until(robot, |picture| {
             picture.text().contains("SIGNALS") && picture.text().starts_with(&format!(" {robot}"))
         });
         // All characters, except for the keys that end the program or select another robot.
         top.press("\x1b[A\x1b[B\x1b[5~\x1b[6~\x1b[H\x1b[F");
         top.press(&(' '..='~').filter(|key| !"qQ/np?h".contains(*key)).collect::<String>());
         top.press(" \x7f");
-        top.shows("3 robots · 3 answer");
+        top.wait_for_picture("3 robots · 3 answer");
         top.press("\x1b[B");
-        top.until("the cursor is there", |picture| {
+        top.wait_until("the cursor is there", |picture| {
             robot == "robot3" || !picture.text().contains(&format!("▌ {robot}"))
         });
     }
     top.press("q");
     assert_eq!(top.end().code(), Some(0));
-    controllers.have_only_reads();
+    controllers.assert_only_reads();
 }
 
 #[test]
@@ -191,19 +193,19 @@ fn services_send_only_reads() {
         let desk = Desk::new(&controllers.targets);
         let mut command = desk.command(&[&words[..], &["--all", "--watch", "50ms"]].concat());
         let mut service = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
-        while controllers.fewest() < 60 {
+        while controllers.fewest_requests() < 60 {
             assert!(service.try_wait().expect("it is our child").is_none(), "{words:?} goes on");
             std::thread::park_timeout(Duration::from_millis(20));
         }
         service.kill().expect("it runs");
         service.wait().expect("it ends");
-        controllers.have_only_reads();
+        controllers.assert_only_reads();
     }
 }
 
 #[test]
 fn lost_terminal_ends_the_monitor_if_hangups_are_ignored() {
-    let desk = simulated();
+    let desk = simulated_robot();
     // Closed in every child, because it would keep the terminal open.
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).expect("a pseudo-terminal");
     grantpt(&master).and_then(|()| unlockpt(&master)).expect("it can be opened");

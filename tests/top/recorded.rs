@@ -27,11 +27,11 @@ impl Recorded {
     }
 
     /// Number of pieces of the controller with the fewest.
-    pub fn fewest(&self) -> usize {
+    pub fn fewest_requests(&self) -> usize {
         self.sent.iter().map(|sent| sent.pieces().len()).min().unwrap_or_default()
     }
 
-    pub fn have_only_reads(&self) {
+    pub fn assert_only_reads(&self) {
         let [to_yerc, to_toyo, to_yrcx] = &self.sent;
         reads_of_yerc(to_yerc);
         reads_of_toyo(to_toyo);

@@ -73,17 +73,17 @@ fn robot(family: Family, sources: &Sources, patience: Duration, connects: bool) 
 struct Asker {
     robot: Robot,
     found: Sender<Candidate>,
-    began: Instant,
+    start: Instant,
 }
 
 impl Asker {
     fn new(robot: Robot, found: Sender<Candidate>) -> Self {
-        Self { robot, found, began: Instant::now() }
+        Self { robot, found, start: Instant::now() }
     }
 
     async fn report(&self, words: &[&str]) -> Option<Value> {
         // No request that would probably be interrupted.
-        if self.began.elapsed() > self.robot.timeout.value / 2 {
+        if self.start.elapsed() > self.robot.timeout.value / 2 {
             return None;
         }
         let args: Vec<_> = ["armctl"].iter().chain(words).map(Into::into).collect();

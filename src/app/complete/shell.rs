@@ -79,7 +79,7 @@ fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
     let width = width.filter(|_| found.len() > 1);
     lines(&found, |found| {
         let value = found.value.get(before..).unwrap_or(&found.value);
-        let value = if quote.is_some() { value.to_owned() } else { escaped(value) };
+        let value = if quote.is_some() { value.to_owned() } else { escape(value) };
         let sign = separator(found);
         match (&found.help, width) {
             (Some(help), Some(width)) => {
@@ -93,7 +93,7 @@ fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
 }
 
 /// Escapes a value for bash.
-fn escaped(value: &str) -> String {
+fn escape(value: &str) -> String {
     let mut escaped = String::new();
     for (index, c) in value.char_indices() {
         let is_special = " \t'\"\\$`&|;<>()*?[]{}!".contains(c) || (index == 0 && "~#".contains(c));
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_split_wherever_it_ends() {
+    fn splits_incomplete_lines() {
         let split = |line: &str| {
             let Split { words, quote } = Split::of(line);
             let words: Vec<String> = words.into_iter().map(|word| word.into_string().unwrap()).collect();
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn bash_gets_what_it_puts_in_the_place_of_its_piece() {
+    fn bash_replaces_the_current_piece() {
         assert_eq!(bash("armctl yerc job se", "se", None), "+select\n");
         assert_eq!(bash("yerc job se", "se", None), "+select\n");
         assert_eq!(bash("armctl --output=js", "js", None), "+json\n+jsonl\n");
@@ -167,6 +167,6 @@ mod tests {
         assert_eq!(bash("armctl -t sim: yerc sta", "sta", None), "+status\n");
         assert_eq!(bash("armctl explain y", "y", Some(80)).lines().count(), 2);
         assert!(bash("armctl explain toyo 2", "2", Some(40)).lines().all(|line| line.chars().count() <= 40));
-        assert_eq!(escaped("A B(1)"), r"A\ B\(1\)");
+        assert_eq!(escape("A B(1)"), r"A\ B\(1\)");
     }
 }

@@ -1,13 +1,13 @@
 use super::*;
 
 /// Candidates for the word after the last blank.
-fn found(line: &str) -> Vec<String> {
+fn values_of(line: &str) -> Vec<String> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
     complete(&words, words.len() - 1, false).into_iter().map(|candidate| candidate.value).collect()
 }
 
 #[test]
-fn words_and_flags_are_those_of_the_command() {
+fn completes_words_and_flags_of_the_command() {
     for (line, expected) in [
         ("armctl ye", &["yerc"][..]),
         ("armctl yerc st", &["status", "stop"]),
@@ -24,7 +24,7 @@ fn words_and_flags_are_those_of_the_command() {
         ("armctl yerc --help job ", &[]),
     ] {
         let mut expected = expected.to_vec();
-        let mut found = found(line);
+        let mut found = values_of(line);
         expected.sort_unstable();
         found.sort_unstable();
         assert_eq!(found, expected, "{line}");
@@ -32,7 +32,7 @@ fn words_and_flags_are_those_of_the_command() {
 }
 
 #[test]
-fn values_are_those_of_their_kind() {
+fn completes_values_of_each_kind() {
     for (line, expected) in [
         ("armctl help exi", &["exit-codes"][..]),
         ("armctl schema yerc.job.", &["yerc.job.show", "yerc.job.select", "yerc.job.start"]),
@@ -57,14 +57,14 @@ fn values_are_those_of_their_kind() {
         ("armctl --sim yerc register get L", &["LINE_SPEED"]),
         ("armctl session open --family t", &["toyo"]),
     ] {
-        let found = found(line);
+        let found = values_of(line);
         let missing: Vec<_> = expected.iter().filter(|value| !found.iter().any(|found| found == *value)).collect();
         assert!(missing.is_empty() && (!expected.is_empty() || found.is_empty()), "{line}: {found:?}");
     }
 }
 
 #[test]
-fn robots_and_tags_are_those_of_the_inventory() {
+fn completes_robots_and_tags_of_the_inventory() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("robots.toml");
     std::fs::write(
@@ -89,7 +89,7 @@ fn robots_and_tags_are_those_of_the_inventory() {
 }
 
 #[test]
-fn every_line_has_an_answer() {
+fn answers_every_line() {
     // Words that the engine takes for impossible.
     for line in [
         "",
@@ -104,23 +104,23 @@ fn every_line_has_an_answer() {
         "armctl -",
         "armctl --",
     ] {
-        found(line);
+        values_of(line);
     }
     assert_eq!(complete(&[], 0, false), []);
     assert_eq!(complete(&["armctl".into()], 7, false), complete(&["armctl".into(), "".into()], 1, false));
 }
 
 /// Candidates with help; with enough time for a busy computer.
-fn asked(line: &str) -> Vec<(String, String)> {
+fn values_of_robot(line: &str) -> Vec<(String, String)> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
     let found = complete_within(&words, words.len() - 1, false, Duration::from_secs(60), false);
     found.into_iter().map(|found| (found.value, found.help.unwrap_or_default())).collect()
 }
 
 #[test]
-fn simulators_tell_what_they_have() {
+fn completes_values_of_simulators() {
     let has = |line: &str, value: &str, help: &str| {
-        let found = asked(line);
+        let found = values_of_robot(line);
         assert!(found.contains(&(value.to_owned(), help.to_owned())), "{line}: {found:?}");
     };
     has("armctl --sim yerc job select TE", "TESTJOB", "");
@@ -132,13 +132,13 @@ fn simulators_tell_what_they_have() {
 }
 
 #[test]
-fn no_link_is_opened_for_a_candidate() {
+fn never_opens_a_link_for_a_candidate() {
     // This socket must receive nothing.
     let socket = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     socket.set_nonblocking(true).unwrap();
     let target = format!("udp://{}", socket.local_addr().unwrap());
     for line in ["armctl -t TARGET yerc job select W", "armctl -t TARGET --no-session yerc file get W"] {
-        assert_eq!(asked(&line.replace("TARGET", &target)), []);
+        assert_eq!(values_of_robot(&line.replace("TARGET", &target)), []);
     }
     assert_eq!(socket.recv(&mut [0; 64]).unwrap_err().kind(), std::io::ErrorKind::WouldBlock);
 }

@@ -10,14 +10,14 @@ use rustyline::hint::{Hinter, HistoryHinter};
 use rustyline::validate::Validator;
 use rustyline::{Context, Helper};
 
-use super::meaning::Meaning;
+use super::line_parser::LineParser;
 use crate::app::complete::complete;
 use crate::app::{line_words, screen};
 use crate::cli::Globals;
 
 /// Helper of the line editor.
 pub struct Assistant {
-    meaning: RefCell<Meaning>,
+    meaning: RefCell<LineParser>,
     /// Flags that select the robots of all lines.
     flags: Vec<OsString>,
     hinter: HistoryHinter,
@@ -26,10 +26,10 @@ pub struct Assistant {
 
 impl Assistant {
     /// Creates a helper for lines with this meaning and these flags.
-    pub fn new(meaning: &Meaning, globals: &Globals) -> Self {
+    pub fn new(meaning: &LineParser, globals: &Globals) -> Self {
         Self {
-            meaning: RefCell::new(Meaning::new(meaning.prefix().to_vec())),
-            flags: globals.whom().into_iter().map(OsString::from).collect(),
+            meaning: RefCell::new(LineParser::new(meaning.prefix().to_vec())),
+            flags: globals.robot_words().into_iter().map(OsString::from).collect(),
             hinter: HistoryHinter::new(),
             colour: screen(globals).stdout_color(),
         }
@@ -47,7 +47,7 @@ impl Assistant {
             words.splice(1..1, self.flags.iter().cloned());
             words.push(OsString::from(&typed));
             for candidate in complete(&words, words.len() - 1, true) {
-                let Some(replacement) = quoted(&candidate.value) else { continue };
+                let Some(replacement) = quote(&candidate.value) else { continue };
                 if found.iter().all(|other| other.replacement != replacement) {
                     is_whole = !candidate.is_incomplete;
                     found.push(Pair { display: candidate.value, replacement });
@@ -64,7 +64,7 @@ impl Assistant {
 }
 
 /// Quotes a word if necessary; `None` if it cannot be typed.
-fn quoted(word: &str) -> Option<String> {
+fn quote(word: &str) -> Option<String> {
     let is_plain = |c: char| c.is_alphanumeric() || "-_=.,:/+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         return Some(word.to_owned());
@@ -124,12 +124,12 @@ mod tests {
     fn completed(prefix: &[&str], line: &str) -> Vec<String> {
         let globals = Cli::parse_from(["armctl", "--sim", "repl"]).globals;
         let prefix = prefix.iter().map(ToString::to_string).collect();
-        let (start, found) = Assistant::new(&Meaning::new(prefix), &globals).candidates(line);
+        let (start, found) = Assistant::new(&LineParser::new(prefix), &globals).candidates(line);
         found.iter().map(|pair| format!("{}{}", &line[..start], pair.replacement)).collect()
     }
 
     #[test]
-    fn words_are_completed_where_they_stand() {
+    fn completes_words_at_the_cursor() {
         assert_eq!(completed(&["yerc"], "hlo"), ["hlock "]);
         assert_eq!(completed(&["yerc"], "rob"), ["robots "]);
         assert_eq!(completed(&["yerc"], "servo o"), ["servo on", "servo off"]);
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_begins_after_the_space_that_no_quote_holds() {
+    fn word_starts_after_an_unquoted_space() {
         for (line, start) in [("", 0), ("a b", 2), ("a ", 2), ("say 'x y", 4), ("say \"x' y", 4), ("say x\\ y", 4)] {
             assert_eq!(word_start(line), start, "{line}");
         }

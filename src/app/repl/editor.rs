@@ -18,11 +18,11 @@ use crate::failure::Failure;
 use crate::output::{Screen, escape};
 
 /// Limit of the history.
-const REMEMBERED: usize = 2000;
+const HISTORY_SIZE: usize = 2000;
 
 /// Result of reading a line.
 #[derive(Debug)]
-pub enum Typed {
+pub enum Input {
     /// A line; pasted text can contain several.
     Line(String),
     /// Ctrl-C: the line is discarded.
@@ -37,7 +37,7 @@ pub enum Typed {
 #[derive(Debug)]
 pub struct Editor {
     prompts: blocking::Sender<Prompt>,
-    typed: mpsc::UnboundedReceiver<Typed>,
+    typed: mpsc::UnboundedReceiver<Input>,
 }
 
 type LineEditor = rustyline::Editor<Assistant, FileHistory>;
@@ -56,9 +56,9 @@ impl Editor {
         let screen = *screen;
         let say = move |text: &str| {
             let mut printer = printer.lock().unwrap_or_else(PoisonError::into_inner);
-            let told =
+            let print =
                 printer.as_mut().filter(|_| !screen.quiet).map(|to| to.print(format!("{}\n", escape::lines(text))));
-            if !matches!(told, Some(Ok(()))) {
+            if !matches!(print, Some(Ok(()))) {
                 screen.note(text);
             }
         };
@@ -76,15 +76,15 @@ impl Editor {
     }
 
     /// Reads a line.
-    pub async fn read(&mut self, prompt: Prompt) -> Typed {
+    pub async fn read(&mut self, prompt: Prompt) -> Input {
         if self.prompts.send(prompt).is_err() {
-            return Typed::End;
+            return Input::End;
         }
-        self.typed.recv().await.unwrap_or(Typed::End)
+        self.typed.recv().await.unwrap_or(Input::End)
     }
 }
 
-fn read(editor: &mut LineEditor, prompt: &Prompt, history: Option<&History>) -> Typed {
+fn read(editor: &mut LineEditor, prompt: &Prompt, history: Option<&History>) -> Input {
     match editor.readline(&(&prompt.plain, &prompt.styled)) {
         Ok(line) => {
             // A history error is not reported, because it would come at every line.
@@ -92,11 +92,11 @@ fn read(editor: &mut LineEditor, prompt: &Prompt, history: Option<&History>) -> 
             if let Some(history) = history.filter(|_| is_new) {
                 let _ = editor.append_history(&history.0);
             }
-            Typed::Line(line)
+            Input::Line(line)
         }
-        Err(ReadlineError::Interrupted) => Typed::Interrupted,
-        Err(ReadlineError::Eof) => Typed::End,
-        Err(error) => Typed::Failed(unusable(&error)),
+        Err(ReadlineError::Interrupted) => Input::Interrupted,
+        Err(ReadlineError::Eof) => Input::End,
+        Err(error) => Input::Failed(unusable(&error)),
     }
 }
 
@@ -106,7 +106,7 @@ fn unusable(error: &ReadlineError) -> Failure {
 
 fn editor(screen: &Screen, assistant: Assistant) -> rustyline::Result<LineEditor> {
     let config = Config::builder()
-        .max_history_size(REMEMBERED)?
+        .max_history_size(HISTORY_SIZE)?
         .history_ignore_space(true)
         .completion_type(CompletionType::List)
         .bell_style(BellStyle::None)

@@ -7,26 +7,26 @@ use tokio::time::timeout;
 use crate::command::face::overview::{LeftOver, OverviewReport};
 use crate::command::fleet::status;
 use crate::command::frame::script_line::Line;
-use crate::output::render::painted;
+use crate::output::render::with_color;
 use crate::output::view::{Cell, Tone};
 use crate::output::{Screen, escape};
 use crate::settings::Robot;
 
 /// Time limit for the state of the robot.
-const PATIENCE: Duration = Duration::from_millis(500);
+const STATE_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Reads the state of the robot over the open link.
-pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Seen {
+pub async fn read_state(robot: &Robot, line: &Line, screen: &Screen) -> RobotState {
     let screen = screen.silenced();
-    match timeout(PATIENCE, status::look(robot, line, &screen)).await {
-        Ok(Ok(state)) => Seen::State(Box::new(state)),
-        _ => Seen::Silent,
+    match timeout(STATE_TIMEOUT, status::look(robot, line, &screen)).await {
+        Ok(Ok(state)) => RobotState::State(Box::new(state)),
+        _ => RobotState::Silent,
     }
 }
 
 /// State of the robot.
 #[derive(Debug)]
-pub enum Seen {
+pub enum RobotState {
     /// The state.
     State(Box<OverviewReport>),
     /// No answer in time.
@@ -35,9 +35,9 @@ pub enum Seen {
     NotAsked,
 }
 
-impl Seen {
+impl RobotState {
     /// Active commands that former clients left.
-    pub fn left_over(&self) -> &[LeftOver] {
+    pub fn leftovers(&self) -> &[LeftOver] {
         match self {
             Self::State(state) => &state.left_over,
             Self::Silent | Self::NotAsked => &[],
@@ -56,11 +56,11 @@ pub struct Prompt {
 
 impl Prompt {
     /// Format: `cell3 [servo on, ALARM] yerc> `.
-    pub fn new(prefix: &[String], robot: Option<&Robot>, seen: &Seen, colour: bool) -> Self {
+    pub fn new(prefix: &[String], robot: Option<&Robot>, seen: &RobotState, colour: bool) -> Self {
         let shown = |colour: bool| {
             let mut parts = Vec::new();
             if let Some(robot) = robot {
-                let states: Vec<String> = states(robot, seen).iter().map(|state| painted(state, colour)).collect();
+                let states: Vec<String> = states(robot, seen).iter().map(|state| with_color(state, colour)).collect();
                 parts.push(escape::line(&robot.name).into_owned());
                 parts.extend((!states.is_empty()).then(|| format!("[{}]", states.join(", "))));
             }
@@ -72,12 +72,12 @@ impl Prompt {
 }
 
 /// Important states of the robot.
-fn states(robot: &Robot, seen: &Seen) -> Vec<Cell> {
+fn states(robot: &Robot, seen: &RobotState) -> Vec<Cell> {
     let simulated = robot.target.value.is_simulated().then(|| Cell::from("simulated"));
     let seen = match seen {
-        Seen::State(seen) => &seen.state,
-        Seen::Silent => return simulated.into_iter().chain([Cell::from("no answer").tone(Tone::Bad)]).collect(),
-        Seen::NotAsked => return simulated.into_iter().chain(["dry run".into()]).collect(),
+        RobotState::State(seen) => &seen.state,
+        RobotState::Silent => return simulated.into_iter().chain([Cell::from("no answer").tone(Tone::Bad)]).collect(),
+        RobotState::NotAsked => return simulated.into_iter().chain(["dry run".into()]).collect(),
     };
     let servo = seen.servo_on.map(|on| if on { Cell::from("servo on").tone(Tone::Good) } else { "servo off".into() });
     let state = match (seen.held, seen.running) {
@@ -102,17 +102,17 @@ mod tests {
     }
 
     #[test]
-    fn it_tells_whom_a_line_is_for_and_how_that_one_is() {
+    fn prompt_shows_robot_and_state() {
         let yerc = ["yerc".to_owned()];
         let state = State { servo_on: Some(true), fault: Fault::new(true, None), ..State::default() };
         let seen = OverviewReport { state, ..OverviewReport::default() };
-        let prompt = Prompt::new(&yerc, Some(&simulated()), &Seen::State(Box::new(seen)), true);
+        let prompt = Prompt::new(&yerc, Some(&simulated()), &RobotState::State(Box::new(seen)), true);
         assert_eq!(prompt.plain, "sim [simulated, servo on, ALARM] yerc> ");
         assert_eq!(prompt.styled, "sim [simulated, \u{1b}[32mservo on\u{1b}[0m, \u{1b}[31mALARM\u{1b}[0m] yerc> ");
         assert_eq!(
-            Prompt::new(&yerc, Some(&simulated()), &Seen::Silent, false).styled,
+            Prompt::new(&yerc, Some(&simulated()), &RobotState::Silent, false).styled,
             "sim [simulated, no answer] yerc> "
         );
-        assert_eq!(Prompt::new(&[], None, &Seen::NotAsked, true).plain, "armctl> ");
+        assert_eq!(Prompt::new(&[], None, &RobotState::NotAsked, true).plain, "armctl> ");
     }
 }

@@ -9,7 +9,7 @@ use crate::output::prompt;
 
 /// Attempts and interval of the check whether the editor has the terminal.
 const TRIES: u32 = 40;
-const PAUSE: Duration = Duration::from_millis(5);
+const RETRY_PAUSE: Duration = Duration::from_millis(5);
 
 /// The terminal of the prompt.
 #[derive(Debug)]
@@ -23,12 +23,12 @@ impl Terminal {
     }
 
     /// Restores the settings while the editor reads a line. It first waits until the editor has changed them.
-    pub async fn take_back(&self) {
+    pub async fn restore_control(&self) {
         for _ in 0..TRIES {
             if Self::is_taken() {
                 break;
             }
-            sleep(PAUSE).await;
+            sleep(RETRY_PAUSE).await;
         }
         prompt::restore();
     }

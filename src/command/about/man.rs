@@ -7,8 +7,8 @@ use anyhow::Context as _;
 use clap::{Args, Command};
 
 use super::{environment, page};
+use crate::command::example_lines;
 use crate::command::frame::run::Run;
-use crate::command::leaf_commands;
 use crate::failure::{Failure, Kind};
 
 /// Write the man pages into a folder, or print the man page of `armctl`.
@@ -100,7 +100,7 @@ fn render_page(root: &Command, command: &Command, path: &[&str]) -> io::Result<V
         )?;
     }
     let examples: Vec<&str> =
-        if command.has_subcommands() { Vec::new() } else { leaf_commands::examples(path).collect() };
+        if command.has_subcommands() { Vec::new() } else { example_lines::examples(path).collect() };
     if !examples.is_empty() {
         writeln!(text, ".SH EXAMPLES\n.nf")?;
         for example in examples {
@@ -153,7 +153,7 @@ mod tests {
     use crate::cli::Cli;
 
     #[test]
-    fn every_page_says_how_it_is_used_and_every_option_what_it_does() {
+    fn pages_describe_usage_and_every_option() {
         for (name, page) in pages(Cli::command()).unwrap() {
             let page = String::from_utf8(page).unwrap();
             for section in

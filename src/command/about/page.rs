@@ -6,9 +6,9 @@ use std::fmt::Write as _;
 use clap::builder::StyledStr;
 use clap::{Arg, Command};
 
+use crate::command::example_lines;
 use crate::command::face::family_command::Headings;
 use crate::command::frame::setting::Pair;
-use crate::command::leaf_commands;
 
 /// Line that replaces the options of every command.
 const GLOBAL_NOTE: &str = "Options of every command (-r, -t, --sim, --json …): `armctl help options`.";
@@ -75,7 +75,7 @@ fn with_template(mut command: Command, root: &Command, path: &[&str], is_long: b
         let _ = writeln!(after, "You can write a name and its value as one word: NAME=VALUE.\n");
     }
     let examples: Vec<&str> =
-        if command.has_subcommands() { Vec::new() } else { leaf_commands::examples(path).take(3).collect() };
+        if command.has_subcommands() { Vec::new() } else { example_lines::examples(path).take(3).collect() };
     if !examples.is_empty() {
         let _ = writeln!(after, "{style}Examples:{style:#}");
         for example in examples {

@@ -93,10 +93,10 @@ pub fn all() -> Vec<SchemaEntry> {
     all
 }
 
-/// Name of the file that holds each definition that several schemas have.
+/// Name of the file with the common definitions.
 pub const SHARED: &str = "shared.json";
 
-/// The schemas as files: what several of them define stands once, in [`SHARED`], and they refer to it.
+/// The schemas as files. Common definitions are only in [`SHARED`], and the other files refer to it.
 pub fn files() -> BTreeMap<String, Value> {
     let mut files: BTreeMap<String, Value> =
         all().into_iter().map(|entry| (format!("{}.json", entry.id), (entry.schema)().to_value())).collect();
@@ -148,7 +148,7 @@ fn references(schema: &Value) -> Vec<String> {
     }
 }
 
-/// How a schema refers to a definition of its own.
+/// Prefix of a reference to a definition in the same schema.
 const LOCAL: &str = "#/$defs/";
 
 /// Refers to the file of shared definitions, for those that are in it.

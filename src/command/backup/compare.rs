@@ -382,16 +382,16 @@ impl Report for Differences {
                 own => of.of(own, other),
             };
             let (old, new) = (named(&self.old, &self.new), named(&self.new, &self.old));
-            view = view.and(Section::Lines(unified(&old, &new, hunks)));
+            view = view.append(Section::Lines(unified(&old, &new, hunks)));
         }
         let mut table = Table::new(&["name", "result"], "");
         for file in self.files.iter().filter(|file| file.more.state != State::Same) {
             table.row([file.name.as_str().into(), file.result(&self.old, &self.new)]);
         }
         if !table.rows.is_empty() {
-            view = view.and(Section::Table(table));
+            view = view.append(Section::Table(table));
         }
-        if self.equal { view.and(Section::Text(self.summary())) } else { view }
+        if self.equal { view.append(Section::Text(self.summary())) } else { view }
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -147,7 +147,7 @@ impl<R: Report> Report for Explained<R> {
     const ROWS: RowsOf = R::ROWS;
 
     fn view(&self) -> View {
-        self.robots.iter().fold(self.known.view(), |view, told| told.sections().into_iter().fold(view, View::and))
+        self.robots.iter().fold(self.known.view(), |view, told| told.sections().into_iter().fold(view, View::append))
     }
 }
 
@@ -155,7 +155,7 @@ impl Told {
     fn sections(&self) -> Vec<Section> {
         let mut table = Table::new(&["where", "text", "data", "time"], "");
         for Occurrence { place, data, alarm: Alarm { text, time, .. } } in &self.alarms {
-            let [text, data, time] = [text, data, time].map(|text| Cell::maybe(text.as_deref()));
+            let [text, data, time] = [text, data, time].map(|text| Cell::optional(text.as_deref()));
             table.row([place.as_str().into(), text, data, time]);
         }
         let found = if self.alarms.is_empty() && self.errors.is_empty() {

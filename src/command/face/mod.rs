@@ -31,7 +31,7 @@ use crate::settings::{Robot, target::Family};
 use crate::transport::session::host::Guard;
 use crate::transport::session::host::shared_link::SharedLink;
 
-/// A family, as the rest of the program sees it; [`declared`] derives it from the declaration.
+/// A family, as the rest of the program sees it; [`registration`] derives it from the declaration.
 pub trait Face: Sync {
     /// Family.
     fn family(&self) -> Family;

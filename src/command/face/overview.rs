@@ -70,11 +70,11 @@ impl Report for OverviewReport {
         let position = state.position.as_ref().map(|at| format!("{:.1} {:.1} {:.1}", at.x_mm, at.y_mm, at.z_mm));
         table.row([
             self.family.into(),
-            Cell::maybe(state.controller_mode),
-            Cell::maybe(state.servo_on.map(Cell::switch)),
+            Cell::optional(state.controller_mode),
+            Cell::optional(state.servo_on.map(Cell::switch)),
             motion,
             alarm,
-            Cell::maybe(position.or(self.not_asked.map(|_| "not asked".to_owned()))).whole(),
+            Cell::optional(position.or(self.not_asked.map(|_| "not asked".to_owned()))).whole(),
         ]);
         View::table(table)
     }

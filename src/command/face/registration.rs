@@ -1,4 +1,4 @@
-//! Declaration of a family in its own types. [`Declared`] converts it to the [`Face`] for the rest of the program.
+//! Declaration of a family in its own types. [`Registered`] converts it to the [`Face`] for the rest of the program.
 
 use std::marker::PhantomData;
 

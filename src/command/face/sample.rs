@@ -13,7 +13,7 @@ use crate::output::view::Tone;
 pub enum Detail {
     /// Data for a line of a list.
     Summary,
-    /// Also axes and torque: [`Sample::whole`] without signals, limits and position errors that would need additional
+    /// Also axes and torque: [`Sample::full`] without signals, limits and position errors that would need additional
     /// requests.
     Axes,
     /// Data for a full screen.

@@ -67,15 +67,15 @@ impl Service {
         const STATUS: Duration = Duration::from_secs(30);
 
         let every = self.supervisor.pulse().unwrap_or(STATUS);
-        let mut told = true;
+        let mut notification = true;
         loop {
             sleep(every).await;
             self.log.summarize(false);
             let now = self.supervisor.alive(&status());
-            if let (Err(error), true) = (&now, told) {
+            if let (Err(error), true) = (&now, notification) {
                 self.log_line(Level::Error, &format!("cannot reach the service manager: {error}"), &[]);
             }
-            told = now.is_ok();
+            notification = now.is_ok();
         }
     }
 
@@ -114,7 +114,7 @@ impl Log {
     }
 
     fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
-        if self.screen.wants(level) {
+        if self.screen.is_enabled(level) {
             let lines = self.limiter.borrow_mut().lines(Line::new(level, text, fields), Instant::now());
             self.print_all(lines);
         }

@@ -132,22 +132,22 @@ async fn ask_address(run: &Run) -> Result<FoundTarget, Failure> {
 /// Searches for controllers, and lets the user choose one; `None` if it is not listed.
 async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, Failure> {
     let found = interruptible(Discover::default_arguments()?.find(run)).await??;
-    let mut places = found.places();
-    let shown = places.iter().map(|(target, _, device)| format!("{target}  {device}"));
+    let mut targets = found.places();
+    let shown = targets.iter().map(|(target, _, device)| format!("{target}  {device}"));
     let options: Vec<String> = shown.chain(["none of these".to_owned()]).collect();
     let at = choice(run, "Found:", options).await?;
-    if at >= places.len() {
+    if at >= targets.len() {
         return Ok(None);
     }
-    let (target, family, _) = places.swap_remove(at);
+    let (target, family, _) = targets.swap_remove(at);
     Ok(Some((target.parse()?, family.and_then(|family| family.parse().ok()))))
 }
 
 async fn simulator(run: &Run) -> Result<FoundTarget, Failure> {
     let family = family(run).await?;
     let question = format!("Address of a simulator that runs (`armctl sim {family}`), or sim: for the built-in one");
-    let given = line(run, question, Some(families::of(family).simulator())).await?;
-    ask_missing_parts(run, &given.parse()?, Some(family)).await
+    let input = line(run, question, Some(families::of(family).simulator())).await?;
+    ask_missing_parts(run, &input.parse()?, Some(family)).await
 }
 
 /// Asks for what the address does not contain.

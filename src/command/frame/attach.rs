@@ -65,13 +65,13 @@ pub fn info(robot: &Robot, access: &Access) -> Info {
 
 /// Failure for a link that another command uses.
 pub fn in_use(robot: &Robot, location: &SessionPath) -> Failure {
-    let who = location.owner().map_or_else(
+    let process = location.owner().map_or_else(
         || "another process".to_owned(),
         |Info { pid, command, .. }| format!("process {pid} (`{command}`)"),
     );
     Failure::new(
         Kind::NoAnswer,
-        format!("{}: the controller accepts one client, and {who} is connected", robot.label()),
+        format!("{}: the controller accepts one client, and {process} is connected", robot.label()),
     )
     .hint("wait until it ends, or use `armctl session open` first so that commands share the connection")
 }

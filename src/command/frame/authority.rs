@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use super::interrupt::{catch_interrupts, interruptible};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation, Gate, Grant, Intent, unasked};
+use crate::gate::{Change, Confirmation, Gate, Grant, Intent, not_confirmed};
 use crate::output::Screen;
 use crate::settings::Robot;
 
@@ -59,9 +59,9 @@ impl<'a> Authority<'a> {
     pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
         let risk = self.granted;
         if !change.is_empty() && self.asks() {
-            let text = change.in_a_line();
+            let text = change.format_line();
             if !self.screen.can_ask() {
-                return Err(unasked(self.robot, risk, &text));
+                return Err(not_confirmed(self.robot, risk, &text));
             }
             let question = Question::Yes("Continue?".to_owned());
             ask(self.screen, self.robot, change.lines(), question, "nothing was changed").await?;

@@ -53,7 +53,7 @@ impl Condition {
             (None, None) => (text.to_owned(), paths(text)),
         };
         let name = comparison.map(|comparison| comparison.name.to_owned());
-        Self::with(text, &filter, keys, name)
+        Self::with_filter(text, &filter, keys, name)
     }
 
     /// Condition for a report that has only the item of this comparison, which may have another spelling there.
@@ -63,10 +63,10 @@ impl Condition {
     pub fn item_of_noun(text: &str, comparison: &Comparison<'_>) -> Result<Self, Failure> {
         let compared = comparison.comparison_filter();
         let filter = each(&format!("(.data.items | length) > 0 and all(.data.items[]; .ok and (.value | {compared}))"));
-        Self::with(text, &filter, Vec::new(), None)
+        Self::with_filter(text, &filter, Vec::new(), None)
     }
 
-    fn with(text: &str, filter: &str, keys: Vec<Vec<String>>, name: Option<String>) -> Result<Self, Failure> {
+    fn with_filter(text: &str, filter: &str, keys: Vec<Vec<String>>, name: Option<String>) -> Result<Self, Failure> {
         let filter = Filter::new(filter).map_err(|failure| {
             failure.hint(
                 "a condition is one of idle, running, held, faulted, homed, servo-on; NAME=VALUE; or a jq filter such \
@@ -260,8 +260,8 @@ mod tests {
     fn reports_an_unknown_key() {
         let status = json!({ "data": { "running": false, "position": null } });
         let never = |condition: &str| Condition::new(condition).unwrap().check_keys(&status);
-        let told = never(".data.executing == false").unwrap();
-        assert!(told.contains(".data.executing") && told.contains("running"), "{told}");
+        let message = never(".data.executing == false").unwrap();
+        assert!(message.contains(".data.executing") && message.contains("running"), "{message}");
         assert_eq!(never(".data.running == false"), None);
         assert_eq!(never(".data.position.x_mm > 5"), None, "it may come");
         assert_eq!(

@@ -145,7 +145,7 @@ impl DryRun {
                 ("", why) => why.to_owned(),
                 (on, _) => format!("depends on {on}"),
             };
-            table.row([text("item").into(), done.into(), Cell::maybe(size), note.into()]);
+            table.row([text("item").into(), done.into(), Cell::optional(size), note.into()]);
         }
         table
     }

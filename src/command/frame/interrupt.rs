@@ -16,7 +16,7 @@ use tokio::sync::watch;
 use tokio::task::coop::unconstrained;
 
 use crate::failure::{Failure, Kind};
-use crate::output::{busy, leave};
+use crate::output::{busy_work, immediate_exit};
 
 /// Reason of the termination request, once received. It stays set, so that nothing new starts, until [`again`].
 type TerminationRequest = watch::Sender<Option<&'static str>>;
@@ -127,10 +127,10 @@ async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
         let how = tokio::select! {
             how = signals.next() => how,
             () = tokio::time::sleep(BUSY_TIMEOUT), if is_waiting => {
-                let now = busy::under_way();
+                let now = busy_work::current();
                 if now.is_some() && now == seen {
                     let how = *requests.borrow();
-                    leave::at_once(how.unwrap_or(KEYS));
+                    immediate_exit::exit_now(how.unwrap_or(KEYS));
                 }
                 seen = now;
                 continue;
@@ -138,13 +138,13 @@ async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
         };
         #[cfg(unix)]
         if how == SUSPEND && MOTIONS.load(Ordering::SeqCst) == 0 {
-            leave::suspend();
+            immediate_exit::suspend();
             continue;
         }
         if presses.press(how, requests.borrow().is_some(), Instant::now()) {
-            leave::at_once(&format!("{how} again: ended at once; a motion or command may continue"));
+            immediate_exit::exit_now(&format!("{how} again: ended at once; a motion or command may continue"));
         }
-        seen = busy::under_way();
+        seen = busy_work::current();
         // The first request stays set, unless it was cleared for the next line.
         requests.send_if_modified(|asked| {
             let is_first = asked.is_none_or(|asked| asked == KEYS);

@@ -125,9 +125,9 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
         // The first of equal severity.
         (kinds().rev().max_by_key(|kind| severity(*kind))?, format!("all {total} failed"))
     };
-    let message_of_error = errors.iter().find(|error| error.failure.kind == kind).copied().unwrap_or(first);
-    let has_same_code = errors.iter().all(|error| error.failure.code == message_of_error.failure.code);
-    let failure = message_of_error.failure();
+    let representative = errors.iter().find(|error| error.failure.kind == kind).copied().unwrap_or(first);
+    let has_same_code = errors.iter().all(|error| error.failure.code == representative.failure.code);
+    let failure = representative.failure();
     let code = failure.code.filter(|_| has_same_code);
     Some(Failure { kind, code, message: format!("{how_many}: {}", failure.message), hint: failure.hint })
 }

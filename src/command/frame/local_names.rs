@@ -216,7 +216,7 @@ fn escape_piece(pieces: &[Piece<'_>]) -> String {
     local
 }
 
-/// Bytes of a local name, if [`written`] can produce it.
+/// Bytes of a local name, if [`escape_piece`] can produce it.
 fn unescaped(encoding: Encoding, local: &str) -> Option<Vec<u8>> {
     let mut name = Vec::with_capacity(local.len());
     let mut rest = local;

@@ -287,7 +287,7 @@ impl Report for Listing {
         let empty = if self.is_all { "no names" } else { "no matching names" };
         let mut table = Table::new(&["name", "kind", "address", "from", "cannot be typed"], empty);
         for Listed { name, kind, address, source, not_typed } in &self.names {
-            let not_typed = Cell::maybe(not_typed.as_deref());
+            let not_typed = Cell::optional(not_typed.as_deref());
             table.row([
                 name.as_str().into(),
                 (*kind).into(),
@@ -299,7 +299,7 @@ impl Report for Listing {
         let view = View::table(table.without_blank("cannot be typed"));
         let Some((read_at, age)) = self.read_at.zip(self.age_s) else { return view };
         let read_at = read_at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S");
-        view.and(Section::Text(format!("read from the controller on {read_at}, {} ago", describe_age(age))))
+        view.append(Section::Text(format!("read from the controller on {read_at}, {} ago", describe_age(age))))
     }
 }
 

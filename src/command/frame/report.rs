@@ -74,7 +74,7 @@ pub fn schema_of<R: JsonSchema>() -> Schema {
 
 /// Columns of a report.
 pub fn sheet_of<R: Report>() -> Sheet {
-    Sheet::of(&schema_of::<R>().to_value(), R::ROWS)
+    Sheet::from_schema(&schema_of::<R>().to_value(), R::ROWS)
 }
 
 /// Schema of a report, by command.

@@ -35,7 +35,7 @@ use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
 use crate::guardian::Guardian;
 use crate::output::Screen;
 use crate::output::envelope::Envelope;
-use crate::output::jq::{Filter, after_a_change};
+use crate::output::jq::{Filter, failure_after_change};
 use crate::output::redraw::Redraw;
 use crate::settings::{Robot, Sessions, Sources};
 
@@ -149,7 +149,7 @@ impl Run {
         Ok(robots)
     }
 
-    /// Runs a command once on [`ready`](Self::ready) robots, without a report.
+    /// Runs a command once on [authorized](Self::authorize_robots) robots, without a report.
     pub async fn collect(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Vec<Outcome> {
         run_parallel(robots.iter().map(|robot| self.run_once(command, robot))).await
     }
@@ -180,7 +180,7 @@ impl Run {
             .hint("select fewer with -r or --tag"));
         }
         let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
-        Gate::pass_many(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
+        Gate::check_named_robots(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
         Ok(robots)
     }
 
@@ -270,7 +270,7 @@ impl Run {
         if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
             return failure;
         }
-        after_a_change(failure)
+        failure_after_change(failure)
     }
 
     /// Repeats a read command on one connection; `among` is set if other robots are watched as well.
@@ -310,9 +310,9 @@ impl Run {
             let silence = match outcome {
                 Ok(report) => {
                     silences.end();
-                    let place = among.unwrap_or_else(|| self.round(rounds.is_first(), command.is_endless()));
+                    let position = among.unwrap_or_else(|| self.round(rounds.is_first(), command.is_endless()));
                     if !self.repeat.is_quiet {
-                        self.print(robot, command.id(), &*report, place)?;
+                        self.print(robot, command.id(), &*report, position)?;
                     }
                     let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
                     let failure = report.failure().filter(|failure| {
@@ -401,7 +401,7 @@ impl Run {
     /// Access of a command at its start.
     fn access(&self, command: &dyn AnyCommand, robot: &Robot) -> Access {
         Access {
-            grant: Grant::up_to(command.intent(Some(robot)).granted_at_first()),
+            grant: Grant::up_to(command.intent(Some(robot)).initial_risk()),
             dry_run: self.gate.dry_run,
             trace: self.trace.clone(),
             mode: command.connect_mode(robot),

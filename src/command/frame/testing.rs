@@ -44,7 +44,7 @@ pub fn planned<F: Family>(
     prepare: impl FnOnce(&mut F::Link),
 ) -> Result<Value, Failure> {
     let intent = command.intent(Some(robot));
-    let grant = Grant::up_to(intent.granted_at_first());
+    let grant = Grant::up_to(intent.initial_risk());
     let access = Access { grant: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode(robot)) };
     let connected = command.connect(robot, access, &QUIET).now_or_never().expect("a dry run opens nothing");
     let mut connection = connected?;

@@ -83,7 +83,7 @@ impl Trace {
         }
     }
 
-    /// Holds text until [`Trace::release`], because stderr can block.
+    /// Holds text until [`Trace::resume`], because stderr can block.
     pub fn pause(&mut self) {
         self.pending.get_or_insert_default();
     }

@@ -265,7 +265,7 @@ impl Report for Changes {
             let time = change.time.to_zoned(zone.clone()).strftime("%Y-%m-%d %H:%M:%S%.3f").to_string();
             Cell::from(change.line(&time, self.watched.value.is_none()))
         });
-        View::default().and(Section::Lines(lines.collect()))
+        View::default().append(Section::Lines(lines.collect()))
     }
 }
 

@@ -217,10 +217,10 @@ impl<T: ExtraColumns> AlarmEntry<T> {
     /// Row of a table with all columns.
     fn cells(&self, list: Option<&'static str>, index: u16) -> Vec<Cell> {
         let Alarm { code, text, time, .. } = &self.alarm;
-        let code = Cell::maybe(code.as_deref().map(|code| Cell::from(code).tone(Tone::Bad)));
-        let first = [Cell::maybe(list), index.into(), code, Cell::maybe(text.as_deref())];
-        let own = self.own.cells().into_iter().map(|(_, told)| Cell::maybe(told));
-        first.into_iter().chain(own).chain([Cell::maybe(time.as_deref()).whole()]).collect()
+        let code = Cell::optional(code.as_deref().map(|code| Cell::from(code).tone(Tone::Bad)));
+        let first = [Cell::optional(list), index.into(), code, Cell::optional(text.as_deref())];
+        let own = self.own.cells().into_iter().map(|(_, told)| Cell::optional(told));
+        first.into_iter().chain(own).chain([Cell::optional(time.as_deref()).whole()]).collect()
     }
 
     fn fields(&self, list: Option<&'static str>) -> Vec<(&'static str, Cell)> {
@@ -250,9 +250,9 @@ fn shown<T: ExtraColumns>(rows: &[Row<T>], none: &str) -> View {
     let entry_text: Vec<Cell> = known().filter_map(|entry| add_site_text(&entry.alarm)).map(Cell::from).collect();
     match (rows, known().next()) {
         ([], _) => View::text(none),
-        ([row], Some(entry)) => View::default().and(Section::Fields(entry.fields(row.list))),
+        ([row], Some(entry)) => View::default().append(Section::Fields(entry.fields(row.list))),
         _ if entry_text.is_empty() => View::table(table(rows)),
-        _ => View::table(table(rows)).and(Section::Lines(entry_text)),
+        _ => View::table(table(rows)).append(Section::Lines(entry_text)),
     }
 }
 
@@ -278,7 +278,7 @@ fn cells<T: ExtraColumns>(row: &Row<T>, columns: usize) -> Vec<Cell> {
     let mut cells = match (row.outcome.data(), row.outcome.error()) {
         (Some(entry), _) => entry.cells(row.list, row.index),
         (None, error) => {
-            vec![Cell::maybe(row.list), row.index.into(), "-".into(), Cell::maybe(error.map(ItemError::cell))]
+            vec![Cell::optional(row.list), row.index.into(), "-".into(), Cell::optional(error.map(ItemError::cell))]
         }
     };
     cells.resize(columns, "-".into());

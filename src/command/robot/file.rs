@@ -119,10 +119,10 @@ impl FileItem {
     /// Records a failure. Returns whether the next file can be tried: yes after a refusal of this file, no after a lost
     /// connection or a full disk.
     pub fn fail(&mut self, failure: Failure) -> bool {
-        let continues_after = continues_after(&failure);
+        let continues = continues_after(&failure);
         (self.more.state, self.ok) = (State::Failed, false);
         self.error = Some(ItemError::new(self.name.as_str(), failure));
-        continues_after
+        continues
     }
 
     /// Records the content, or the failure. Returns whether the next file can be tried.
@@ -194,7 +194,7 @@ impl FileItem {
         for file in files {
             let bytes = file.bytes.map_or_else(|| Cell::number("-"), Cell::from);
             let result = file.result([done, "kept"]);
-            table.row([file.name.as_str().into(), bytes, Cell::maybe(file.path.as_deref()), result]);
+            table.row([file.name.as_str().into(), bytes, Cell::optional(file.path.as_deref()), result]);
         }
         View::table(table.without_blank("bytes").without_blank("file"))
     }

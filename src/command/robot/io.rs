@@ -141,7 +141,7 @@ impl IoRow {
             (None, None) => "-".into(),
         };
         let IoItem { name, label, meaning, .. } = &self.item;
-        [name.as_str().into(), Cell::maybe(label.as_deref()), value, Cell::maybe(meaning.as_deref())]
+        [name.as_str().into(), Cell::optional(label.as_deref()), value, Cell::optional(meaning.as_deref())]
     }
 }
 
@@ -222,7 +222,7 @@ impl Report for WrittenSignals {
         for WrittenSignal { row, old, new, .. } in &self.items {
             let [name, label, read, meaning] = row.cells();
             let new = if row.ok { new.cell() } else { read.tone(Tone::Bad) };
-            table.row([name, label, Cell::maybe(old.map(IoValue::cell)), new, meaning]);
+            table.row([name, label, Cell::optional(old.map(IoValue::cell)), new, meaning]);
         }
         View::table(table.without_blank("label").without_blank("old").without_blank("meaning"))
     }

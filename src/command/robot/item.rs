@@ -145,7 +145,7 @@ fn table<'i, V: 'i, M: 'i>(
     let columns = [*name, "label"].into_iter().chain(values.iter().copied());
     let columns: Vec<_> = columns.chain(has_errors.then_some("error")).collect();
     let row = |item: &Item<V, M>| {
-        let mut row = vec![numeric(&item.name), Cell::maybe(item.label.as_deref())];
+        let mut row = vec![numeric(&item.name), Cell::optional(item.label.as_deref())];
         row.extend(item.cells.iter().cloned());
         row.resize_with(2 + values.len(), || "-".into());
         row.extend(has_errors.then(|| item.error.as_ref().map_or_else(|| "-".into(), ItemError::cell)));

@@ -143,7 +143,7 @@ impl Joint {
         let Self { decimals, .. } = self;
         match (self.mm, self.pulses) {
             (Some(mm), _) => Cell::number(format!("{mm:.decimals$}")),
-            (None, pulses) => Cell::maybe(pulses),
+            (None, pulses) => Cell::optional(pulses),
         }
     }
 }
@@ -158,7 +158,7 @@ pub fn joint_table(joints: &[Joint]) -> Table {
     let row = |joint: &Joint| {
         let mut row = vec![Cell::from(joint.axis.as_str())];
         row.extend((pulses || mm).then(|| joint.cell()));
-        let degrees = degrees.then(|| Cell::maybe(joint.degrees.map(|value| Cell::number(format!("{value:.4}")))));
+        let degrees = degrees.then(|| Cell::optional(joint.degrees.map(|value| Cell::number(format!("{value:.4}")))));
         row.extend(degrees);
         row
     };
@@ -279,7 +279,7 @@ impl Report for Positions {
         let form = joints.filter_map(|position| Some(("form", position.form.as_deref()?.into())));
         let texts = self.read().filter_map(|position| Some(("text", position.text.as_deref()?.into())));
         let fields: Vec<(&'static str, Cell)> = form.chain(texts).collect();
-        if fields.is_empty() { view } else { view.and(Section::Fields(fields)) }
+        if fields.is_empty() { view } else { view.append(Section::Fields(fields)) }
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -300,7 +300,7 @@ impl Report for AllPositions {
         let mut table = Table::new(&["group", "frame", "position"], "no position");
         for Row { position, error, .. } in &self.positions {
             let described = error.as_ref().map_or_else(|| position.line().into(), ItemError::cell);
-            table.row([Cell::maybe(position.group.as_deref()), position.frame.as_str().into(), described]);
+            table.row([Cell::optional(position.group.as_deref()), position.frame.as_str().into(), described]);
         }
         View::table(table)
     }

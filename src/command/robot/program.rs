@@ -59,7 +59,7 @@ impl<M> Program<M> {
     pub fn fields(&self, more: Vec<(&'static str, Cell)>) -> Vec<(&'static str, Cell)> {
         let known = [("line", self.line.map(Cell::from)), ("step", self.step.map(Cell::from))];
         let known = known.into_iter().filter_map(|(name, cell)| Some((name, cell?)));
-        let mut fields = vec![("program", Cell::maybe(self.program.as_deref()))];
+        let mut fields = vec![("program", Cell::optional(self.program.as_deref()))];
         fields.extend(self.state.map(|state| ("state", state.cell())));
         fields.extend(known.filter(|(name, _)| !more.iter().any(|(other, _)| other == name)));
         fields.extend(more);

@@ -141,7 +141,7 @@ impl Command for History {
         let progress = context.screen.spinner("error history");
         let mut alarms = Vec::new();
         for number in 1..=self.limit {
-            progress.say(&format!("error history {number} of {} at most", self.limit));
+            progress.print_line(&format!("error history {number} of {} at most", self.limit));
             let record = match link.try_ask(&entry_request(number)).await? {
                 Ok(record) => record,
                 // A controller without history refuses the first entry; a controller with a short history refuses an

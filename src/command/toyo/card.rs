@@ -111,7 +111,7 @@ impl Report for TransferReport {
         View::fields([
             ("memory card", Cell::from("done").tone(Tone::Good)),
             ("power cycle", due),
-            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
+            ("elapsed (ms)", Cell::optional(self.elapsed_ms)),
         ])
     }
 }

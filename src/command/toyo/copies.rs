@@ -111,7 +111,7 @@ fn replacing(
         })
         .collect();
     if lost.is_empty() {
-        return Change::nothing();
+        return Change::none();
     }
     let change = Change::new(format!("overwrite {what} {to} by {what} {from}"));
     lost.iter().fold(change, |change, (record, [old, new])| {

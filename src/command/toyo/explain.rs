@@ -59,7 +59,7 @@ pub struct Explanation {
 impl Report for Explanation {
     fn view(&self) -> View {
         let instructions = self.instructions.iter().flat_map(InstructionHelp::sections);
-        instructions.fold(self.codes.view(), View::and)
+        instructions.fold(self.codes.view(), View::append)
     }
 
     fn rows(&self) -> RowsOf {

@@ -107,7 +107,7 @@ impl Report for HomeReport {
         View::fields([
             ("origin", Cell::from("done").tone(Tone::Good)),
             ("at", position.line().into()),
-            ("elapsed (ms)", Cell::maybe(self.motion.elapsed_ms)),
+            ("elapsed (ms)", Cell::optional(self.motion.elapsed_ms)),
         ])
     }
 }

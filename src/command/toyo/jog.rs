@@ -464,7 +464,7 @@ impl LiveDisplay {
         let thread = std::thread::spawn(move || {
             let progress = screen.spinner("jogging");
             for text in updates {
-                progress.say(&text);
+                progress.print_line(&text);
             }
         });
         Self { texts, thread }
@@ -531,12 +531,12 @@ impl JogReport {
 impl Report for JogReport {
     fn view(&self) -> View {
         let steps = self.steps.map_or_else(|| "-".into(), Cell::from);
-        let line = |position: &Option<Position>| Cell::maybe(position.as_ref().map(Position::line));
+        let line = |position: &Option<Position>| Cell::optional(position.as_ref().map(Position::line));
         View::fields([
             ("axis", titled(self.axis_number - 1, self.axis).into()),
             ("moved (mm)", Cell::number(format!("{:.2}", self.moved_mm))),
             ("steps", steps),
-            ("elapsed (ms)", Cell::maybe(self.motion.elapsed_ms)),
+            ("elapsed (ms)", Cell::optional(self.motion.elapsed_ms)),
             ("from", line(&self.motion.from)),
             ("to", line(&self.motion.position)),
         ])

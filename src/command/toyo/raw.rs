@@ -135,7 +135,7 @@ impl Report for Exchange {
     fn view(&self) -> View {
         let problem = problem_lines(&self.problem);
         let view = View::text(format!("{}\n{}{problem}", self.answer, self.title));
-        if self.fields.is_empty() { view } else { view.and(field_table(&self.fields)) }
+        if self.fields.is_empty() { view } else { view.append(field_table(&self.fields)) }
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -28,7 +28,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::RunMode;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation, outdated};
+use crate::gate::{Change, Confirmation, data_changed};
 use crate::output::Screen;
 use crate::output::view::{Section, View};
 use crate::settings::duration;
@@ -193,7 +193,7 @@ impl Command for Point {
             authority.confirm(&change).await?;
             if self.read_point(link).await? != target {
                 let message = format!("point {} changed after the confirmation; the robot did not move", self.point);
-                return Err(outdated(message));
+                return Err(data_changed(message));
             }
             (from, to) = (Some(current.position()), target.map(|target| target.position()));
         } else {

@@ -118,7 +118,7 @@ impl Report for StatusReport {
         let inputs: Vec<&str> = inputs.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
         let fields = vec![
             ("runs", Cell::from(self.program_kind.replace('_', " "))),
-            ("mode", Cell::maybe(state.controller_mode)),
+            ("mode", Cell::optional(state.controller_mode)),
             ("host", Cell::switch(self.host_on)),
             ("teach pendant", Cell::switch(self.pendant_on)),
             ("servo", Cell::switch(is(state.servo_on))),

@@ -257,7 +257,7 @@ impl Bench {
         let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
         let intent = command.intent(Some(&robot));
         Gate::default().must_ask(&QUIET, &robot, &intent)?;
-        let grant = Grant::up_to(intent.granted_at_first());
+        let grant = Grant::up_to(intent.initial_risk());
         self.link.grant(grant.clone());
         let authority = Authority::new(Gate::default(), &QUIET, &robot, intent.risk, grant);
         let context = Context { robot: &robot, link: &mut self.link, screen: &QUIET, several: false, authority };

@@ -272,7 +272,7 @@ impl ProgressReporter {
             _ => None,
         };
         let coordinates = coordinates.map(|coordinates| coordinates.in_a_line()).unwrap_or_default();
-        self.progress.say(&format!("{} {coordinates} {}", halted.unwrap_or(self.doing), self.step));
+        self.progress.print_line(&format!("{} {coordinates} {}", halted.unwrap_or(self.doing), self.step));
         if halted != self.halted {
             self.halted = halted;
             if let Some(halted) = halted {

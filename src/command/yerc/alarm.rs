@@ -278,7 +278,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::command::yerc::testing::{frames, golden, objection, reports};
+    use crate::command::yerc::testing::{error_text, frames, golden, reports};
 
     #[test]
     fn reads_present_alarms_with_texts_in_four_slots() {
@@ -309,7 +309,7 @@ mod tests {
             ]
         );
         assert_eq!(frames("alarm history").unwrap().len(), 51);
-        assert!(objection("alarm history --from 101").contains("1..=100"));
+        assert!(error_text("alarm history --from 101").contains("1..=100"));
     }
 
     #[test]

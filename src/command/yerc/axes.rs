@@ -145,7 +145,7 @@ struct GroupAxes {
 impl Report for Configuration {
     fn view(&self) -> View {
         let mut table = Table::new(&["group", "pulse axes", "cartesian axes"], "no control group");
-        let names = |names: &Option<Vec<String>>| Cell::maybe(names.as_ref().map(|names| names.join(" ")));
+        let names = |names: &Option<Vec<String>>| Cell::optional(names.as_ref().map(|names| names.join(" ")));
         for group in &self.groups {
             table.row([group.group.as_str().into(), names(&group.pulse), names(&group.base)]);
         }

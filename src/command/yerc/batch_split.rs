@@ -73,7 +73,7 @@ fn is_alone<S: PlannedRead>(
     Ok(asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request()))
 }
 
-/// Notes in a dry run the requests of [`read_in_parts`], each run with the requests after a refusal. For a long run
+/// Notes in a dry run the requests of [`read_in_batches`], each run with the requests after a refusal. For a long run
 /// these are its halves, which are divided again, and one request for a single item as an example. `about` is the
 /// purpose of a run.
 pub fn plan_in_batches<S: PlannedRead>(

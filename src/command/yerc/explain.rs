@@ -69,10 +69,10 @@ fn alarm_number(text: &str) -> Option<u32> {
 fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>, Failure> {
     let code = number.to_string();
     let site = alarms.find(origin, &code)?;
-    let find_alarm = "look up the number in the controller's maintenance manual, or read its text with `armctl yerc alarm \
+    let lookup_hint = "look up the number in the controller's maintenance manual, or read its text with `armctl yerc alarm \
                 list`";
     let text = site.is_none().then(|| "an alarm number".to_owned());
-    let remedies: &[&str] = if site.as_ref().is_some_and(|site| site.remedy.is_some()) { &[] } else { &[find_alarm] };
+    let remedies: &[&str] = if site.as_ref().is_some_and(|site| site.remedy.is_some()) { &[] } else { &[lookup_hint] };
     let alarm = Alarm { code: Some(code), text, kind: Some(Kind::Alarm), source: Source::Armctl, ..Alarm::default() };
     Ok(Known::new(false, alarm, [&[], remedies], site, Listed { models: Vec::new() }))
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use clap::CommandFactory as _;
 use serde_json::Value;
 
-use super::testing::{Bench, DX200, dry_run, resolved};
+use super::testing::{Bench, DX200, dry_run, resolve_robot};
 use crate::cli::Cli;
 use crate::command::frame::testing::QUIET;
 use crate::controller::Risk::{self, Destroy, Motion, Read, Write};
@@ -113,12 +113,12 @@ fn risk_of(frame: &Value) -> Risk {
 fn every_command_passes_the_gate_according_to_its_risk() {
     let folder = tempfile::tempdir().unwrap();
     prepare(folder.path());
-    let place = folder.path().to_str().unwrap();
+    let folder = folder.path().to_str().unwrap();
     let mut tested = BTreeSet::new();
     for (line, risk, most) in LINES {
-        let line = line.replace("DIR", place);
+        let line = line.replace("DIR", folder);
         let words: Vec<&str> = line.split(' ').collect();
-        let (mut robot, command) = resolved(DX200, &words).unwrap();
+        let (mut robot, command) = resolve_robot(DX200, &words).unwrap();
         tested.insert(command.id().to_owned());
         let intent = command.intent(Some(&robot));
         assert_eq!(intent.risk, *risk, "{line}");

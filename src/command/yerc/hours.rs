@@ -168,7 +168,7 @@ impl Report for Times {
                 (Some(time), _) => time.elapsed.as_str().into(),
                 (None, error) => error.map_or_else(|| "-".into(), ItemError::cell),
             };
-            table.row([time.counter.replace('_', " ").into(), of, Cell::maybe(since), elapsed]);
+            table.row([time.counter.replace('_', " ").into(), of, Cell::optional(since), elapsed]);
         }
         View::table(table)
     }
@@ -181,7 +181,7 @@ impl Report for Times {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::testing::{frames, frames_on, golden, objection};
+    use crate::command::yerc::testing::{error_text, frames, frames_on, golden};
     use crate::controller::yerc::payload::Text;
     use crate::failure::Kind;
     use crate::output::render;
@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(frames("hours --group all").unwrap().len(), 4 + 3 * (8 + 24) + 8);
         assert_eq!(frames_on("udp://h?model=fs100", "hours --group all").unwrap().len(), 4 + 3 * (2 + 3) + 8);
         assert_eq!(frames("hours --group B1").unwrap_err().kind, Kind::Usage);
-        assert!(objection("hours --application 9").contains("1..=8"));
+        assert!(error_text("hours --application 9").contains("1..=8"));
     }
 
     #[test]

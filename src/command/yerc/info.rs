@@ -132,11 +132,13 @@ fn reported_name<const N: usize>(text: &Text<N>, encoding: Encoding) -> Option<S
 impl Report for Versions {
     fn view(&self) -> View {
         let mut table = Table::new(&["part", "name", "version"], "no part");
-        table.row(["controller".into(), "system software".into(), Cell::maybe(self.software_version.as_deref())]);
+        table.row(["controller".into(), "system software".into(), Cell::optional(self.software_version.as_deref())]);
         for part in &self.parts {
             let what = name_of(part.group.as_deref(), part.application);
             let [name, version] = match (part.outcome.data(), part.outcome.error()) {
-                (Some(part), _) => [Cell::maybe(part.name.as_deref()), Cell::maybe(part.parameter_version.as_deref())],
+                (Some(part), _) => {
+                    [Cell::optional(part.name.as_deref()), Cell::optional(part.parameter_version.as_deref())]
+                }
                 (None, error) => [error.map_or_else(|| "-".into(), ItemError::cell), "-".into()],
             };
             table.row([what.into(), name, version]);

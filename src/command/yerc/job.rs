@@ -209,10 +209,16 @@ impl Report for Jobs {
             let job = match (&task.refusal, &task.error) {
                 (Some(code), _) => format!("(task does not exist: {code})").into(),
                 (None, Some(error)) => error.cell(),
-                (None, None) => Cell::maybe(task.program.as_deref()),
+                (None, None) => Cell::optional(task.program.as_deref()),
             };
             let percent = task.shown_override.as_deref().map(Cell::number);
-            table.row([name.into(), job, Cell::maybe(task.line), Cell::maybe(task.step), Cell::maybe(percent)]);
+            table.row([
+                name.into(),
+                job,
+                Cell::optional(task.line),
+                Cell::optional(task.step),
+                Cell::optional(percent),
+            ]);
         }
         let sources = self.tasks.iter().filter_map(|task| task.source.as_ref());
         let texts: Vec<Cell> = sources
@@ -346,7 +352,7 @@ impl Report for Selected {
 mod tests {
     use super::*;
     use crate::command::yerc::link::{Refusal, RefusedRequest};
-    use crate::command::yerc::testing::{frames, frames_on, golden, intent, objection, reports};
+    use crate::command::yerc::testing::{error_text, frames, frames_on, golden, intent, reports};
     use std::time::Duration;
 
     use super::start::{Look, Watch};
@@ -367,7 +373,7 @@ mod tests {
         assert_eq!(frames_on("udp://h?model=fs100", "job show --task all").unwrap().len(), 6);
         let failure = frames_on("udp://h?model=fs100", "job show --task 6").unwrap_err();
         assert_eq!((failure.kind, failure.message.contains("0 (master) to 5")), (Kind::Usage, true), "{failure}");
-        assert!(objection("job show --task x").contains("or all"));
+        assert!(error_text("job show --task x").contains("or all"));
     }
 
     #[test]
@@ -376,8 +382,8 @@ mod tests {
         assert_eq!(frames("job select TESTJOB --line 10").unwrap(), std::slice::from_ref(&r51));
         assert_eq!(frames("job select TESTJOB.jbi --line 10").unwrap(), [r51]);
         assert!(frames("job select TESTJOB --task 15").unwrap()[0].starts_with("87001900"));
-        assert!(objection("job select A --task 1 --line 2").contains("cannot be used with"));
-        assert!(objection("job select A --line 10000").contains("0..=9999"));
+        assert!(error_text("job select A --task 1 --line 2").contains("cannot be used with"));
+        assert!(error_text("job select A --line 10000").contains("0..=9999"));
     }
 
     #[test]

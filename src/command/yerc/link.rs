@@ -141,8 +141,8 @@ impl Link {
     /// Stores the model that the controller reported, if it is new.
     fn cache_model(&mut self) {
         if let (Some(identity), Some(software)) = (self.client.identity(), self.told_software()) {
-            let is_new = identity.model.map(|model| ReportedModel::now(model, software));
-            self.cached_model.store_model(is_new, &self.screen, &self.label);
+            let reported_model = identity.model.map(|model| ReportedModel::now(model, software));
+            self.cached_model.store_model(reported_model, &self.screen, &self.label);
         }
     }
 

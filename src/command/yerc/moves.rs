@@ -5,8 +5,8 @@ mod execution;
 mod question;
 mod variable_target;
 
-pub(super) use self::execution::stands;
-pub(super) use self::question::{compared, moved_meanwhile};
+pub(super) use self::execution::is_standing;
+pub(super) use self::question::{compared, moved_during_question};
 use clap::Args;
 
 use std::borrow::Cow;
@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use self::arguments::{
     By, Forms, Frame, Mover, Part, Speed, To, Values, base_lengths, base_pulses, robot_pulses, split, station_pulses,
 };
-use self::execution::{Goal, Going, MotionReport};
+use self::execution::{Execution, Goal, MotionReport};
 use self::question::Question;
 use self::variable_target::Motion;
 use super::link::Link;
@@ -89,7 +89,7 @@ impl Target {
             what: format!("move {} {}{name}", mover.group, way(kind)),
             preposition: "to",
             kind: frame.kind(),
-            how: robot.map(|_| format!("in {}, {}", frame.describe(), forms.describe())).unwrap_or_default(),
+            manner: robot.map(|_| format!("in {}, {}", frame.describe(), forms.describe())).unwrap_or_default(),
             robot: robot.map(Vec::from),
             base: (base_axes.as_ref(), units::MILLIMETRE),
             station: station_axes.as_ref().map(Cow::Borrowed),
@@ -123,7 +123,7 @@ impl Target {
         }
     }
 
-    async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
+    async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Execution<MoveCartesian>, Failure> {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let part = split(mover.group, to.coordinates(), "--to", base_axes.as_ref(), station_axes.as_ref())?;
         let coordinate = frame.kind();
@@ -133,7 +133,7 @@ impl Target {
         let (goal, unnamed) = match part {
             Part::Robot(target, base) => {
                 order.target = target;
-                order.base = base.map(Values::padded).unwrap_or_default();
+                order.base = base.map(Values::with_zeros).unwrap_or_default();
                 let goal = match coordinate {
                     PositionKind::Base => Goal::Base(target, frame.tool()),
                     _ => Goal::Unknown(Coordinates::Base),
@@ -141,12 +141,12 @@ impl Target {
                 (goal, unnamed_base_axes(mover.group, base))
             }
             Part::Station(axes) => {
-                order.station_axes = axes.padded();
+                order.station_axes = axes.with_zeros();
                 (Goal::Pulses(axes.0.clone()), vec![(mover.group, axes.0.len(), "--station-axes")])
             }
         };
         let order = link.by_model(|model| MoveCartesian::new(model, kind, order)).await?;
-        Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.end.no_wait() })
+        Ok(Execution { order, group: mover.group, goal, unnamed, no_wait: mover.end.no_wait() })
     }
 }
 
@@ -294,7 +294,7 @@ impl Distance {
             what: format!("move {} {}", mover.group, way(MoveKind::Incremental)),
             preposition: "by",
             kind: frame.kind(),
-            how: robot.map(|_| format!("in {}", frame.describe())).unwrap_or_default(),
+            manner: robot.map(|_| format!("in {}", frame.describe())).unwrap_or_default(),
             robot: robot.map(Vec::from),
             base: (base_axes.as_ref(), units::MILLIMETRE),
             station: station_axes.as_ref().map(Cow::Borrowed),
@@ -302,20 +302,20 @@ impl Distance {
         }
     }
 
-    async fn going(&self, link: &mut Link, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
+    async fn going(&self, link: &mut Link, speed: Speed) -> Result<Execution<MoveCartesian>, Failure> {
         let Self { frame, base_axes, station_axes, mover, .. } = self;
         let mut order = cartesian_move(link, mover, speed, frame);
         let goal = match split(mover.group, self.robot(), "--by", base_axes.as_ref(), station_axes.as_ref())? {
             Part::Robot(by, base) => {
                 order.target = by;
-                order.base = base.map(Values::padded).unwrap_or_default();
+                order.base = base.map(Values::with_zeros).unwrap_or_default();
                 match (frame.kind(), by, base) {
-                    (PositionKind::Base, [x, y, z, 0, 0, 0], None) => Goal::Shift([x, y, z], frame.tool()),
+                    (PositionKind::Base, [x, y, z, 0, 0, 0], None) => Goal::Relative([x, y, z], frame.tool()),
                     _ => Goal::Unknown(Coordinates::Base),
                 }
             }
             Part::Station(axes) => {
-                order.station_axes = axes.padded();
+                order.station_axes = axes.with_zeros();
                 Goal::Unknown(Coordinates::Pulse)
             }
         };
@@ -324,7 +324,7 @@ impl Distance {
                 .hint("give at least one of --x --y --z --rx --ry --rz, or --by"));
         }
         let order = link.by_model(|model| MoveCartesian::new(model, MoveKind::Incremental, order)).await?;
-        Ok(Going { order, group: mover.group, goal, unnamed: Vec::new(), no_wait: mover.end.no_wait() })
+        Ok(Execution { order, group: mover.group, goal, unnamed: Vec::new(), no_wait: mover.end.no_wait() })
     }
 }
 
@@ -355,7 +355,7 @@ impl PulseTarget {
             what: format!("move {} {}", mover.group, way(kind)),
             preposition: "to",
             kind: PositionKind::Pulse,
-            how: format!("in pulses, tool {tool},"),
+            manner: format!("in pulses, tool {tool},"),
             robot: pulses.as_ref().map(|pulses| pulses.0.clone()),
             base: (base_axes.as_ref(), units::PULSE),
             station: station_axes.as_ref().map(Cow::Borrowed),
@@ -367,7 +367,7 @@ impl PulseTarget {
         self.going(context.link, kind, speed).await?.run(context, &self.question(kind, speed)).await
     }
 
-    async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Going<MovePulse>, Failure> {
+    async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Execution<MovePulse>, Failure> {
         let Self { pulses, tool, base_axes, station_axes, mover } = self;
         let part = split(mover.group, pulses.as_ref(), "--pulses", base_axes.as_ref(), station_axes.as_ref())?;
         let (robot, station) = mover.words();
@@ -383,20 +383,20 @@ impl PulseTarget {
         };
         let (target, unnamed) = match part {
             Part::Robot(axes, base) => {
-                order.axes = axes.padded();
-                order.base = base.map(Values::padded).unwrap_or_default();
+                order.axes = axes.with_zeros();
+                order.base = base.map(Values::with_zeros).unwrap_or_default();
                 let mut unnamed_axes = unnamed_base_axes(mover.group, base);
                 unnamed_axes.push((mover.group, axes.0.len(), "--pulses"));
                 (axes, unnamed_axes)
             }
             Part::Station(axes) => {
-                order.station_axes = axes.padded();
+                order.station_axes = axes.with_zeros();
                 (axes, vec![(mover.group, axes.0.len(), "--station-axes")])
             }
         };
         let order = link.by_model(|model| MovePulse::new(model, kind, order)).await?;
         let goal = Goal::Pulses(target.0.clone());
-        Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.end.no_wait() })
+        Ok(Execution { order, group: mover.group, goal, unnamed, no_wait: mover.end.no_wait() })
     }
 }
 
@@ -404,7 +404,7 @@ impl PulseTarget {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yerc::testing::{DX200, frames, frames_on, golden, intent, objection, reports};
+    use crate::command::yerc::testing::{DX200, error_text, frames, frames_on, golden, intent, reports};
     use crate::failure::Kind;
 
     /// Head of a frame, and the words of its data.
@@ -478,7 +478,7 @@ mod tests {
             let failure = frames(&format!("move relative {nothing} --speed 1mm/s")).unwrap_err();
             assert_eq!((failure.kind, &failure.message[..19]), (Kind::Usage, "all distances are 0"));
         }
-        assert!(objection("move relative --speed 1mm/s").contains("--by"));
+        assert!(error_text("move relative --speed 1mm/s").contains("--by"));
     }
 
     #[test]
@@ -501,20 +501,20 @@ mod tests {
 
     #[test]
     fn requires_every_coordinate() {
-        let missing = objection("move linear --x 1 --y 2 --z 3 --rx 4 --ry 5 --speed 1mm/s");
+        let missing = error_text("move linear --x 1 --y 2 --z 3 --rx 4 --ry 5 --speed 1mm/s");
         assert!(missing.contains("provided:\n  --rz <DEG>\n"), "{missing}");
-        assert!(objection("move linear --to 1,2,3 --speed 1mm/s").contains("six numbers"));
-        assert!(objection("move linear --to 1,2,3,4,5,6 --x 1 --speed 1mm/s").contains("cannot be used with"));
-        assert!(objection("move linear --to 1,2,3,4,5,6").contains("--speed"));
-        assert!(objection("move pulse joint --pulses 1,2,3,4,5 --speed 1%").contains("6 to 8"));
-        assert!(objection("move joint --to 1,2,3,4,5,6 --speed 1% --coordinate user").contains("--user"));
+        assert!(error_text("move linear --to 1,2,3 --speed 1mm/s").contains("six numbers"));
+        assert!(error_text("move linear --to 1,2,3,4,5,6 --x 1 --speed 1mm/s").contains("cannot be used with"));
+        assert!(error_text("move linear --to 1,2,3,4,5,6").contains("--speed"));
+        assert!(error_text("move pulse joint --pulses 1,2,3,4,5 --speed 1%").contains("6 to 8"));
+        assert!(error_text("move joint --to 1,2,3,4,5,6 --speed 1% --coordinate user").contains("--user"));
     }
 
     #[test]
     fn checks_speed_and_group_of_a_motion() {
-        assert!(objection("move joint --to 1,2,3,4,5,6 --speed 10mm/s").contains("percent"));
-        assert!(objection("move linear --to 1,2,3,4,5,6 --speed 10%").contains("mm/s or deg/s"));
-        assert!(objection("move joint --to 1,2,3,4,5,6 --speed 1% --group B1").contains("--base-axes"));
+        assert!(error_text("move joint --to 1,2,3,4,5,6 --speed 10mm/s").contains("percent"));
+        assert!(error_text("move linear --to 1,2,3,4,5,6 --speed 10%").contains("mm/s or deg/s"));
+        assert!(error_text("move joint --to 1,2,3,4,5,6 --speed 1% --group B1").contains("--base-axes"));
         let failure =
             frames_on("udp://h?model=fs100", "move joint --to 1,2,3,4,5,6 --speed 1% --group R3").unwrap_err();
         assert!(failure.message.contains("robot number is 3; allowed: 1 to 2"), "{failure}");

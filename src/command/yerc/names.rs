@@ -81,9 +81,9 @@ impl Command for Get {
         if report.failure().is_none()
             && let Some(place) = robot.names.cache_file()
         {
-            let kept = CachedNames::new(place, link.encoding, told_software(link).await, (kept, &names));
-            place.write(&kept)?;
-            (report.kept, report.read_at) = (true, Some(kept.read_at));
+            let stored = CachedNames::new(place, link.encoding, told_software(link).await, (kept, &names));
+            place.write(&stored)?;
+            (report.kept, report.read_at) = (true, Some(stored.read_at));
         }
         if !report.kept && robot.target.value.is_simulated() {
             screen.note("Names of a simulator in this process are not stored: they always come from its start files.");
@@ -152,7 +152,7 @@ impl Report for Fetched {
                 (_, None) if self.kept => "kept".into(),
                 (_, None) => "read".into(),
             };
-            let passed_over = Cell::maybe(Some(file.passed_over).filter(|lines| *lines > 0));
+            let passed_over = Cell::optional(Some(file.passed_over).filter(|lines| *lines > 0));
             table.row([file.file.into(), file.names.into(), passed_over, result]);
         }
         View::table(table.without_blank("passed over"))

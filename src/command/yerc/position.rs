@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 
 use super::link::Link;
 use super::link::Yerc;
-use super::var::{PositionData, as_position, held};
+use super::var::{PositionData, as_position, stored_position};
 use crate::client::yerc::AxisSet;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
@@ -152,7 +152,7 @@ fn reported(
 }
 
 /// Position in a variable of a group; unused axes are left out.
-pub(super) fn taught(group: Group, value: &variables::Value, per_degree: &[f64]) -> robot::Position {
+pub(super) fn has_taught_axes(group: Group, value: &variables::Value, per_degree: &[f64]) -> robot::Position {
     let position = as_position(value);
     let used = &position.axes.as_slice()[..position.shown_axes().min(position.axes.as_slice().len())];
     let axes = Axes::new(used).unwrap_or(position.axes);
@@ -163,13 +163,13 @@ pub(super) fn taught(group: Group, value: &variables::Value, per_degree: &[f64])
 pub(super) fn as_reported(
     group: Group,
     position: payload::Position,
-    fitted: AxisSet,
+    checked_length: AxisSet,
     per_degree: &[f64],
 ) -> robot::Position {
     if position.kind.is_cartesian() {
-        cartesian(group, position, fitted)
+        cartesian(group, position, checked_length)
     } else {
-        pulses(group, position, fitted, per_degree)
+        pulses(group, position, checked_length, per_degree)
     }
 }
 
@@ -223,7 +223,7 @@ fn cartesian(group: Group, position: payload::Position, fitted: AxisSet) -> robo
 
 /// Position of a group in the notation of `var set`.
 fn text(group: Group, position: payload::Position) -> String {
-    PositionData::of(&held(group, position)).map(|data| data.text().to_owned()).unwrap_or_default()
+    PositionData::of(&stored_position(group, position)).map(|data| data.text().to_owned()).unwrap_or_default()
 }
 
 /// Value of a protocol integer. It is the binary number nearest to the decimal number, so it prints with the same
@@ -290,8 +290,8 @@ fn key(name: &str) -> String {
 
 /// The first `always` words of a form in any case, the others only if they are set.
 fn short(words: &[&str], bits: u32, always: usize) -> String {
-    let told = words.iter().enumerate().filter(|(bit, _)| *bit < always || bits >> bit & 1 == 1);
-    told.map(|(_, word)| *word).collect::<Vec<_>>().join("+")
+    let described = words.iter().enumerate().filter(|(bit, _)| *bit < always || bits >> bit & 1 == 1);
+    described.map(|(_, word)| *word).collect::<Vec<_>>().join("+")
 }
 
 /// Short words of a form, as `--form` accepts them.
@@ -341,7 +341,7 @@ pub(super) fn in_a_line(kind: PositionKind, axes: &[i32], is_robot: bool) -> Str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::testing::{frames, frames_on, golden, objection};
+    use crate::command::yerc::testing::{error_text, frames, frames_on, golden};
 
     fn base(axes: &[i32]) -> payload::Position {
         payload::Position {
@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_is_read_in_both_coordinates_and_others_in_pulses() {
+    fn reads_robots_in_both_coordinates_and_others_in_pulses() {
         let axes = ["7400010000010000", "7400650000010000"].map(ToOwned::to_owned);
         assert_eq!(frames("position").unwrap(), [&["7500010000010000".to_owned(), golden("R13")], &axes[..]].concat());
         assert_eq!(frames("position --coordinates base --group r2").unwrap(), ["7500660000010000", "7400660000010000"]);
@@ -369,7 +369,7 @@ mod tests {
         }
         let failure = frames_on("udp://h?model=fs100", "position --group S4").unwrap_err();
         assert!(failure.message.contains("S4 does not exist on a fs100"), "{failure}");
-        assert!(objection("position --group X1").contains("R1 to R8"));
+        assert!(error_text("position --group X1").contains("R1 to R8"));
     }
 
     fn read(group: Group, coordinates: Coordinates, position: payload::Position) -> Value {
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_position_is_exact_in_json() {
+    fn position_is_exact_in_json() {
         let joint = read(Group::R1, Coordinates::Pulse, pulses(&[-90000, 1, 2]));
         let axes: Vec<String> = joint["joints"].as_array().unwrap().iter().map(ToString::to_string).collect();
         assert_eq!(axes[0], r#"{"axis":"S","pulses":-90000,"degrees":-1000.0,"mm":null}"#);
@@ -392,20 +392,20 @@ mod tests {
     }
 
     #[test]
-    fn other_groups_have_numbered_axes() {
+    fn numbers_the_axes_of_other_groups() {
         let station = read(Group::Station(1), Coordinates::Pulse, pulses(&[7, -8]));
         assert_eq!((&station["group"], &station["joints"][1]["axis"]), (&"S1".into(), &"2".into()));
         assert_eq!(station["text"], "pulse:1=7,2=-8");
     }
 
     #[test]
-    fn an_answer_in_other_coordinates_is_malformed() {
+    fn rejects_an_answer_in_other_coordinates() {
         let row = read(Group::R1, Coordinates::Base, pulses(&[1]));
         assert_eq!((&row["ok"], &row["error"]["kind"]), (&false.into(), &"malformed".into()));
     }
 
     #[test]
-    fn lines_for_messages() {
+    fn formats_lines_for_messages() {
         let line = in_a_line(PositionKind::Base, &[100_000, 0, -1, 1_800_000, 0, 0], true);
         assert_eq!(line, "x=100.000 y=0.000 z=-0.001 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg");
         assert_eq!(in_a_line(PositionKind::Pulse, &[1, 2], true), "s=1 l=2");

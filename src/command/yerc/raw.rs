@@ -134,12 +134,12 @@ impl Command for Raw {
                 .hint("use `yerc file put`"));
         }
         // A request that some model supports is not an error as long as the model is unknown.
-        let doubt = match link.known_model() {
+        let uncertainty = match link.known_model() {
             Some(model) => request.check(model).err(),
             None if Model::ALL.iter().any(|model| request.check(*model).is_ok()) => None,
             None => request.check(link.model_for_display()).err(),
         };
-        let doubt = doubt.map(|error| error.to_string());
+        let doubt = uncertainty.map(|error| error.to_string());
         if let Some(doubt) = &doubt {
             if self.strict {
                 return Err(Failure::usage(doubt.clone()).hint("remove --strict to send it anyway"));
@@ -159,7 +159,7 @@ impl Command for Raw {
 }
 
 /// Maximum number of bytes of a transfer that are shown.
-const MOST: u64 = 4 << 20;
+const MAX_TRANSFER: u64 = 4 << 20;
 /// Maximum time for the first answer, if the controller writes its batch backup first.
 const BACKUP: Duration = Duration::from_secs(15 * 60);
 
@@ -170,7 +170,7 @@ async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> 
     // The backup must not be requested twice.
     let first_wait = (request.data == BATCH_BACKUP_PATH).then_some(BACKUP);
     let end = link
-        .download(request, MOST, first_wait, |piece| {
+        .download(request, MAX_TRANSFER, first_wait, |piece| {
             data.extend_from_slice(piece);
             Ok(())
         })
@@ -279,11 +279,11 @@ impl Report for Answer {
         let view = View::fields([
             ("request", about.into()),
             ("status", self.status.as_str().into()),
-            ("added status", Cell::maybe(self.added_status.as_deref())),
+            ("added status", Cell::optional(self.added_status.as_deref())),
             ("meaning", self.meaning.as_str().into()),
             ("data", if self.data_hex.is_empty() { "-".into() } else { self.data_hex.as_str().into() }),
         ]);
-        if self.fields.is_empty() { view } else { view.and(field_table(&self.fields)) }
+        if self.fields.is_empty() { view } else { view.append(field_table(&self.fields)) }
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -308,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_is_data_and_a_failure() {
+    fn refusal_is_data_and_a_failure() {
         let refused = answer(Status::refused(0x2060), &[]);
         assert_eq!((refused.status.as_str(), refused.added_status.as_deref()), ("0x1f", Some("0x2060")));
         let failure = Report::failure(&refused).unwrap();
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn data_is_explained() {
+    fn explains_data() {
         let value = answer(Status::OK, &[200]);
         assert!(Report::failure(&value).is_none());
         let field = &value.fields[0];
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn raw_sends_what_it_is_told() {
+    fn raw_sends_the_given_request() {
         let words = [
             "raw",
             "--command",

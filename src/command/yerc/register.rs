@@ -128,8 +128,8 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenItems<u16, Word>, Failure> {
         let Context { link, robot, screen, .. } = context;
         let names = names::of_robot(robot, screen);
-        let mut seen = HashSet::new();
-        if let Some(twice) = self.assignments.iter().find(|assignment| !seen.insert(assignment.number)) {
+        let mut seen_numbers = HashSet::new();
+        if let Some(twice) = self.assignments.iter().find(|assignment| !seen_numbers.insert(assignment.number)) {
             return Err(Failure::usage(format!("register {} is given twice", twice.number)).hint("give it one value"));
         }
         let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
@@ -187,7 +187,7 @@ mod tests {
     use crate::command::yerc::testing::Bench;
 
     #[test]
-    fn values_in_decimal_and_hexadecimal() {
+    fn parses_values_in_decimal_and_hexadecimal() {
         assert_eq!("10=0x1234".parse(), Ok(Assignment { number: 10, value: 0x1234 }));
         assert_eq!("559=65535".parse(), Ok(Assignment { number: 559, value: 65535 }));
         for wrong in ["5", "5=", "5=0x", "5=-1", "5=65536", "5=0x10000", "5=1_0", "5=+1", "-1=0", "1..2=0", "=1"] {
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn registers_by_the_dozen() {
+    fn reads_many_registers() {
         let mut bench = Bench::new("sim:");
         bench.data(&["register", "set", "5=0xFFFF", "6=1"]);
         let data = bench.data(&["register", "get", "6", "5..6"]);

@@ -6,7 +6,7 @@ use crate::controller::units;
 use crate::controller::yerc::payload::JobInfo;
 use crate::controller::yerc::query::ReadJob;
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, outdated};
+use crate::gate::{Change, data_changed};
 
 /// Job that a start runs, as the controller reports it.
 #[derive(Debug, PartialEq, Eq)]
@@ -96,6 +96,6 @@ impl SelectedJob {
             (old, new) if old == new => format!("line or speed override of {old} changed since the question"),
             (old, new) => format!("{new} is selected now, the question was about {old}"),
         };
-        Err(outdated(format!("{message}; no job was started")))
+        Err(data_changed(format!("{message}; no job was started")))
     }
 }

@@ -100,7 +100,7 @@ pub(super) const fn cycle_name(cycle: CycleMode) -> &'static str {
 impl Report for StatusReport {
     fn view(&self) -> View {
         let state = &self.state;
-        let told = state.fault.describe().unwrap_or_else(|| "yes".to_owned());
+        let error_text = state.fault.describe().unwrap_or_else(|| "yes".to_owned());
         let bad = |on: bool, told: &str| if on { Cell::from(told).tone(Tone::Bad) } else { "no".into() };
         let remote = if self.command_remote { Tone::Good } else { Tone::Warning };
         let hold = if state.held == Some(true) {
@@ -109,13 +109,13 @@ impl Report for StatusReport {
             "no".into()
         };
         View::fields([
-            ("mode", Cell::maybe(state.controller_mode)),
+            ("mode", Cell::optional(state.controller_mode)),
             ("command remote", Cell::switch(self.command_remote).tone(remote)),
-            ("cycle", Cell::maybe(self.cycle.map(|cycle| cycle.replace('_', " ")))),
+            ("cycle", Cell::optional(self.cycle.map(|cycle| cycle.replace('_', " ")))),
             ("running", if state.running == Some(true) { Cell::from("yes").tone(Tone::Good) } else { "no".into() }),
-            ("servo", Cell::maybe(state.servo_on.map(Cell::switch))),
+            ("servo", Cell::optional(state.servo_on.map(Cell::switch))),
             ("hold", hold),
-            ("alarm", bad(self.alarm, &told)),
+            ("alarm", bad(self.alarm, &error_text)),
             ("error", bad(self.error, "yes")),
             ("safe operation", if self.safe_operation { "yes".into() } else { "no".into() }),
         ])

@@ -5,10 +5,10 @@ use clap::{Args, ValueEnum};
 
 use super::complete;
 use super::link::{Link, Yerc};
-use super::moves::{compared, moved_meanwhile, stands};
+use super::moves::{compared, is_standing, moved_during_question};
 use super::position;
 use super::switch_commands::usage;
-use super::var::{PositionData, as_position, called, held, is_undefined, unlike};
+use super::var::{PositionData, as_position, different_words, is_undefined, stored_position, variable_name};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::names;
 use crate::command::frame::teach::{Taught, mismatch, unverified};
@@ -87,21 +87,21 @@ impl Command for Teach {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report, Failure> {
         let Context { link, authority, robot, screen, .. } = context;
-        let called = called(names::of_robot(robot, screen), self.variable);
+        let label = variable_name(names::of_robot(robot, screen), self.variable);
         let (name, group) = (self.variable.to_string(), self.group()?);
         let Some(old) = self.read(link.for_purpose("content of the variable")).await.known()? else {
             return Err(self.plan(link, group).await?);
         };
         let coordinates = self.coordinates(old.as_ref())?;
         let (here, report) = position::ask(link, group, coordinates).await?;
-        let new = held(group, here);
+        let new = stored_position(group, here);
         let is_unchanged = old.as_ref().map(Value::emit) == Some(new.emit());
         let is_asked = authority.asks();
-        authority.confirm(&self.change(link, group, &called, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
+        authority.confirm(&self.change(link, group, &label, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
         if is_asked {
             let (now, _) = position::ask(link, group, coordinates).await?;
-            if !stands(&here, &now) {
-                return Err(moved_meanwhile(group, &now));
+            if !is_standing(&here, &now) {
+                return Err(moved_during_question(group, &now));
             }
         }
         let shown = |value: &Value| PositionData::of(value).map(|data| data.text().to_owned()).unwrap_or_default();
@@ -110,12 +110,12 @@ impl Command for Teach {
             let read_back = self.read(link).await;
             let read_back = read_back.map_err(|failure| unverified(&name, failure, &format!("yerc var get {name}")))?;
             if read_back.as_ref().map(Value::emit) != Some(new.emit()) {
-                let held = read_back.as_ref().map_or_else(|| "nothing".to_owned(), shown);
-                return Err(mismatch(&name, &shown(&new), &held));
+                let held_value = read_back.as_ref().map_or_else(|| "nothing".to_owned(), shown);
+                return Err(mismatch(&name, &shown(&new), &held_value));
             }
         }
         let per_degree = link.pulses_per_degree(group);
-        let held = |value: &Value| position::taught(group, value, per_degree);
+        let held = |value: &Value| position::has_taught_axes(group, value, per_degree);
         Ok(Taught::new(name, old.as_ref().map(held), held(&new), report).unchanged(is_unchanged))
     }
 }
@@ -133,11 +133,11 @@ impl Teach {
             return Ok(group);
         }
         let message =
-            format!("{} cannot store a position of {group}: {} are for {what}", self.variable, self.letters());
+            format!("{} cannot store a position of {group}: {} are for {what}", self.variable, self.axis_letters());
         Err(Failure::usage(message).hint("use P for a robot, BP for its base, EX for a station"))
     }
 
-    fn letters(&self) -> &'static str {
+    fn axis_letters(&self) -> &'static str {
         self.variable.kind.letters()
     }
 
@@ -167,11 +167,12 @@ impl Teach {
 
     /// Text of the confirmation.
     fn change(&self, link: &Link, group: Group, called: &str, old: Option<&Value>, here: &Position) -> Change {
-        let Some(old) = old.map(as_position) else { return Change::nothing() };
+        let Some(old) = old.map(as_position) else { return Change::none() };
         let per_degree = link.pulses_per_degree(group);
         let change = Change::new(format!("overwrite {called} with the position of {group}"));
         if old.kind != here.kind {
-            let shown = |position| PositionData::of(&held(group, position)).map(|data| data.text().to_owned());
+            let shown =
+                |position| PositionData::of(&stored_position(group, position)).map(|data| data.text().to_owned());
             return change.replaces(
                 &self.variable.to_string(),
                 &shown(old).unwrap_or_default(),
@@ -190,23 +191,24 @@ impl Teach {
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         let asked = |coordinates| ReadPosition::new(model, group, coordinates).map_err(usage);
         let coordinates = self.coordinates.map_or(Coordinates::Pulse, Coordinates::from);
-        let one = asked(coordinates)?;
+        let single_group = asked(coordinates)?;
         // Only robot positions can be stored in other types than pulses.
         let is_robot = matches!(group, Group::Robot(_));
         let is_open = self.coordinates.is_none() && is_robot;
-        let other = if is_open { asked(Coordinates::Base)? } else { one };
+        let other = if is_open { asked(Coordinates::Base)? } else { single_group };
         let reason = Reason::about("current position");
         let reason = if is_open { reason.depending_on("the content of the variable") } else { reason };
-        link.plan_depending(&one.request(), &other.request(), reason);
+        link.plan_depending(&single_group.request(), &other.request(), reason);
         link.plan_existing_axes(group, coordinates);
-        let [one, other] = unlike()
+        let [one, other] = different_words()
             .map(|position| Position { kind: if is_robot { position.kind } else { PositionKind::Pulse }, ..position });
-        let write = |position| WriteVariable::new(self.variable.number, held(group, position)).map_err(usage);
+        let write =
+            |position| WriteVariable::new(self.variable.number, stored_position(group, position)).map_err(usage);
         let reason = Reason::about("stores it")
             .depending_on("the current position, and whether the variable already contains it");
         link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
-        let back = ReadVariable::new(self.variable.kind, self.variable.number);
-        link.plan_if(&back.request(), Reason::about("reads it back").depending_on("whether it was written"));
+        let query = ReadVariable::new(self.variable.kind, self.variable.number);
+        link.plan_if(&query.request(), Reason::about("reads it back").depending_on("whether it was written"));
         Ok(unknown())
     }
 }

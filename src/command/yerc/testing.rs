@@ -22,20 +22,20 @@ pub(super) const DX200: &str = "udp://127.0.0.1?model=dx200";
 pub(super) const FS100: &str = "udp://127.0.0.1?model=fs100";
 
 /// Error of the command-line parser.
-pub(super) fn objection(words: &str) -> String {
+pub(super) fn error_text(words: &str) -> String {
     let words: Vec<&str> = words.split_ascii_whitespace().collect();
-    parsed(DX200, &words).expect_err("the parser objects").to_string()
+    parse_line(DX200, &words).expect_err("the parser objects").to_string()
 }
 
 /// Question before the command, without "This will".
 pub(super) fn intent(words: &str) -> String {
-    resolved(DX200, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap().1.intent(None).text
+    resolve_robot(DX200, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap().1.intent(None).text
 }
 
 /// Frames that `armctl yerc -t TARGET WORDS…` would send: `data.frames` of a dry run. A parser error is returned as a
 /// failure.
 pub(super) fn dry_run(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
-    let (robot, command) = resolved(target, words)?;
+    let (robot, command) = resolve_robot(target, words)?;
     Ok(testing::frames(&planned::<Yerc>(&robot, &*command, |_| ())?))
 }
 
@@ -60,8 +60,9 @@ pub(super) fn golden(id: &str) -> String {
 #[track_caller]
 pub(super) fn same(id: &str, target: &str, words: &[&str]) {
     let frames = dry_run(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
-    let certain = frames.iter().filter(|frame| frame["depends_on"].is_null() || frame["depends_on"] == IF_DIFFERENT);
-    let (golden, sent) = (golden_frame(id), certain.map(digits).collect::<Vec<_>>());
+    let certain_frames =
+        frames.iter().filter(|frame| frame["depends_on"].is_null() || frame["depends_on"] == IF_DIFFERENT);
+    let (golden, sent) = (golden_frame(id), certain_frames.map(digits).collect::<Vec<_>>());
     let golden = digits(&golden);
     let sent = sent.iter().map(|frame| format!("{}{}{}", &frame[..22], &golden[22..24], &frame[24..]));
     assert_eq!(sent.collect::<Vec<_>>(), [golden], "{id}: {words:?}");
@@ -75,7 +76,7 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
     let mut link = None;
     let mut reports = Vec::new();
     for words in lines {
-        let (robot, command) = resolved(&target, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap();
+        let (robot, command) = resolve_robot(&target, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap();
         if link.is_none() {
             link = Some(Yerc::connect(&robot, unlimited_access(), &quiet()).await.unwrap());
         }
@@ -101,14 +102,14 @@ impl Bench {
     pub(super) fn new(target: &str) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
-        let (robot, _) = resolved(target, &["status"]).expect("a robot");
+        let (robot, _) = resolve_robot(target, &["status"]).expect("a robot");
         let link = runtime.block_on(Yerc::connect(&robot, unlimited_access(), &quiet())).expect("a link");
         Self { runtime, robot, link }
     }
 
     /// Runs `armctl yerc WORDS…`. Returns the data of the report, and the failure of an unsuccessful report.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
-        let (_, command) = resolved("sim:", words)?;
+        let (_, command) = resolve_robot("sim:", words)?;
         let Self { runtime, robot, link } = self;
         let report = runtime.block_on(testing::run::<Yerc>(&*command, context(robot, link)))?;
         Ok((report.data()?, report.failure()))
@@ -124,13 +125,13 @@ impl Bench {
     }
 }
 
-fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
+fn parse_line(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
     Cli::try_parse_from([&["armctl", "-t", target, "yerc"], words].concat())
 }
 
 /// Robot and command of a line.
-pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
-    let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
+pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
+    let cli = parse_line(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };
     let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
     let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);

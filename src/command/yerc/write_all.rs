@@ -41,7 +41,12 @@ pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: 
     let outcome = interruptible(async {
         for order in orders {
             if let Some(progress) = &progress {
-                progress.say(&format!("writing {} ({} of {})", O::listed(order.items()), done + 1, orders.len()));
+                progress.print_line(&format!(
+                    "writing {} ({} of {})",
+                    O::listed(order.items()),
+                    done + 1,
+                    orders.len()
+                ));
             }
             link.ask(order).await?;
             done += 1;

@@ -122,7 +122,7 @@ impl Report for Reading {
     fn view(&self) -> View {
         let Some(ahead_s) = self.ahead_s else {
             let fields = [("date", self.date.as_deref()), ("time", self.time_of_day.as_deref())];
-            return View::fields(fields.map(|(name, value)| (name, Cell::maybe(value))));
+            return View::fields(fields.map(|(name, value)| (name, Cell::optional(value))));
         };
         let difference = match ahead_s {
             0 => "same as this computer".to_owned(),
@@ -130,7 +130,7 @@ impl Report for Reading {
             behind => format!("{} behind this computer", in_words(behind.unsigned_abs())),
         };
         let clock = self.time.as_ref().map(|time| time.replacen('T', " ", 1));
-        View::fields([("clock", Cell::maybe(clock.as_deref())), ("compared", difference.into())])
+        View::fields([("clock", Cell::optional(clock.as_deref())), ("compared", difference.into())])
     }
 
     fn failure(&self) -> Option<Failure> {

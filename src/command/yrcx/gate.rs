@@ -479,7 +479,7 @@ impl Bench {
         let (_, command) = real(line);
         let intent = command.intent(Some(&self.robot));
         let gate = Gate { yes, ..Gate::default() };
-        let grant = Grant::up_to(intent.granted_at_first());
+        let grant = Grant::up_to(intent.initial_risk());
         let Self { runtime, robot, link, .. } = self;
         link.grant(grant.clone());
         let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);

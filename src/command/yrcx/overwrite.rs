@@ -13,7 +13,7 @@ use super::several::{check_echo, is_about_commands};
 use super::stores::{Kind, Numbered, Row};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::store::{Writable, old_rows, overwriting};
+use crate::command::frame::store::{Writable, describe_change, overwriting};
 use crate::command::robot::item::{Item, Written, WrittenItems, as_requested};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
@@ -129,12 +129,12 @@ trait Overwritten: Writable<Family = Yrcx> {
         let old = values.map(|values| table.row(key, values)).filter(|old| !table.is_blank(old));
         let is_same = old.as_ref().zip(new.as_ref().ok()).is_some_and(|(old, new)| Self::is_equal(old, new));
         let change = match (&old, &new) {
-            (Some(old), Ok(new)) => old_rows(&table, &[(key, Some(old), new)]),
+            (Some(old), Ok(new)) => describe_change(&table, &[(key, Some(old), new)]),
             (Some(old), Err(words)) => {
                 let [old, _] = table.difference(old, old);
                 overwriting(&table, &[[Self::asked(key), old, words.clone()]])
             }
-            (None, _) => Change::nothing(),
+            (None, _) => Change::none(),
         };
         authority.confirm(&change).await?;
         let value = |row: Option<&Self::Wire>| row.and_then(|row| serde_json::to_value(table.value(row)?).ok());

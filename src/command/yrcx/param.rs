@@ -153,7 +153,7 @@ impl Store for Parameters {
     }
 
     fn cells(&self, (parameter, _): Setting, amount: &Amount) -> Vec<Cell> {
-        vec![amount.value.into(), Cell::maybe(amount.unit), parameter.meaning.into()]
+        vec![amount.value.into(), Cell::optional(amount.unit), parameter.meaning.into()]
     }
 
     fn difference(&self, old: &Amount, new: &Amount) -> [String; 2] {

@@ -301,7 +301,7 @@ impl Report for Execution {
             ("number", number.into()),
             ("task", task.into()),
             ("priority", priority.into()),
-            ("line", Cell::maybe(line)),
+            ("line", Cell::optional(line)),
         ];
         View { sections: vec![Section::Fields(program.fields(more))] }
     }

@@ -118,7 +118,7 @@ impl Report for Exchange {
     fn view(&self) -> View {
         let problems = problem_lines(&self.problems);
         let view = View::text(format!("{}\n{}{problems}", self.wo.join(" "), self.title));
-        view.and(field_table(&self.fields))
+        view.append(field_table(&self.fields))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -179,7 +179,7 @@ impl Report for StatusReport {
             ("CPU OK", good(self.cpu_ok)),
             ("MP ready", good(self.mp_ready)),
             ("motor power", Cell::switch(is(state.servo_on))),
-            ("servos", Cell::maybe(servos)),
+            ("servos", Cell::optional(servos)),
             ("AUTO mode", toned(state.mode == Some(Mode::Automatic), Tone::Plain)),
             ("origin", if is(state.homed) { "complete".into() } else { Cell::from("incomplete").tone(Tone::Warning) }),
             ("program", if is(state.running) { Cell::from("running").tone(Tone::Good) } else { "stopped".into() }),
@@ -187,8 +187,8 @@ impl Report for StatusReport {
             ("sequence", if self.sequence_running { "running".into() } else { "stopped".into() }),
         ]);
         match (self.joints.as_deref().map(joint_table), self.not_asked) {
-            (Some(table), _) => view.and(Section::Table(table)),
-            (None, Some(why)) => view.and(Section::Text(why.to_owned())),
+            (Some(table), _) => view.append(Section::Table(table)),
+            (None, Some(why)) => view.append(Section::Text(why.to_owned())),
             (None, None) => view,
         }
     }

@@ -28,18 +28,18 @@ const FILTER: &str = "__filter";
 const INPUT: &str = "$__input";
 const AT: &str = "__at";
 /// Limit of nesting of outputs, because JSON parsers have limits.
-const DEEPEST: usize = 120;
+const MAX_DEPTH: usize = 120;
 /// Length limit of error texts, because some contain the whole input.
-const LONGEST: usize = 400;
+const MAX_ERROR_LENGTH: usize = 400;
 
 thread_local! {
     /// Input of `halt_error`.
-    static TOLD: RefCell<Option<Val>> = const { RefCell::new(None) };
+    static HALT_MESSAGE: RefCell<Option<Val>> = const { RefCell::new(None) };
 }
 
 /// Stores the input of `halt_error`; has no output.
-fn tell(cv: Cv<'_, data::JustLut<Val>>) -> ValXs<'_, Val> {
-    TOLD.set(Some(cv.1));
+fn set_halt_message(cv: Cv<'_, data::JustLut<Val>>) -> ValXs<'_, Val> {
+    HALT_MESSAGE.set(Some(cv.1));
     Box::new(std::iter::empty())
 }
 
@@ -69,13 +69,13 @@ pub struct Program(jaq_core::Filter<data::JustLut<Val>>);
 impl Program {
     /// Compiles a filter. The error is a text.
     pub fn new(text: &str) -> Result<Self, String> {
-        let ours = parse(DEFS, |parser| parser.defs()).ok_or("the definitions cannot be parsed")?;
+        let definitions = parse(DEFS, |parser| parser.defs()).ok_or("the definitions cannot be parsed")?;
         let body = parse(text, |parser| parser.term()).ok_or("it cannot be parsed")?;
-        let filter = Def { name: FILTER, args: Vec::new(), body: as_in_jq(body) };
-        let known = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs()).chain(ours);
-        let defs = known.map(as_short_as).chain([filter]);
+        let filter = Def { name: FILTER, args: Vec::new(), body: format_like_jq(body) };
+        let known = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs()).chain(definitions);
+        let defs = known.map(shorten_to).chain([filter]);
         let funs = jaq_core::funs().chain(jaq_std::funs()).chain(jaq_json::funs());
-        let funs = funs.chain([("__told", v(0), Native::<data::JustLut<Val>>::new(tell))]);
+        let funs = funs.chain([("__told", v(0), Native::<data::JustLut<Val>>::new(set_halt_message))]);
         let arena = Arena::default();
         let modules = Loader::new(defs).load(&arena, File { code: FILTER, path: () });
         let modules = modules.map_err(|_| "it cannot be parsed")?;
@@ -88,14 +88,14 @@ impl Program {
 
     /// Passes every output to `take` until it returns `false`, or until an error.
     pub fn run(&self, input: Val, mut take: impl FnMut(Value) -> bool) -> Result<(), Stop> {
-        TOLD.set(None);
+        HALT_MESSAGE.set(None);
         let context = Ctx::<data::JustLut<Val>>::new(&self.0.lut, Vars::new([]));
         for result in self.0.id.run((context, input)) {
             let value = match result {
                 Ok(value) => value,
                 Err(error) => {
                     return match error.get_err() {
-                        Ok(error) => Err(Stop::Failed(shortened(&said(error)))),
+                        Ok(error) => Err(Stop::Failed(shorten(&error_text(error)))),
                         // Only `halt` produces this.
                         Err(halt) => halted(halt),
                     };
@@ -112,7 +112,7 @@ impl Program {
 /// Result of `halt` and `halt_error`.
 fn halted(halt: Exn<'_, Val>) -> Result<(), Stop> {
     let code = halt.get_halt().unwrap_or(5);
-    let text = match TOLD.take() {
+    let text = match HALT_MESSAGE.take() {
         None if code == 0 => return Ok(()),
         None | Some(Val::Null) => String::new(),
         Some(Val::TStr(text)) => String::from_utf8_lossy(&text).into_owned(),
@@ -123,20 +123,20 @@ fn halted(halt: Exn<'_, Val>) -> Result<(), Stop> {
 }
 
 /// Shortens the lifetime of a definition.
-fn as_short_as<'s>(def: Def<&'static str>) -> Def<&'s str> {
+fn shorten_to<'s>(def: Def<&'static str>) -> Def<&'s str> {
     def
 }
 
 /// Text of an error, in the words of jq. An error raised by the filter can be any value.
-fn said(error: jaq_core::Error<Val>) -> String {
+fn error_text(error: jaq_core::Error<Val>) -> String {
     match error.into_val() {
-        Val::TStr(text) => in_words_of_jq(&String::from_utf8_lossy(&text)),
+        Val::TStr(text) => jq_error_text(&String::from_utf8_lossy(&text)),
         other => format!("(not a string): {other}"),
     }
 }
 
 /// Converts the most common error texts of the library to those of jq.
-fn in_words_of_jq(text: &str) -> String {
+fn jq_error_text(text: &str) -> String {
     let kind = |value: &str| match value.as_bytes().first() {
         Some(b'{') => "object",
         Some(b'[') => "array",
@@ -155,8 +155,8 @@ fn in_words_of_jq(text: &str) -> String {
     text.to_owned()
 }
 
-fn shortened(text: &str) -> String {
-    match text.char_indices().nth(LONGEST) {
+fn shorten(text: &str) -> String {
+    match text.char_indices().nth(MAX_ERROR_LENGTH) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),
     }
@@ -164,8 +164,8 @@ fn shortened(text: &str) -> String {
 
 /// Converts a value to JSON. Numbers that JSON does not support are written as in jq.
 fn json(value: &Val, depth: usize) -> Result<Value, String> {
-    if depth > DEEPEST {
-        return Err(format!("it makes a value with more than {DEEPEST} nested levels"));
+    if depth > MAX_DEPTH {
+        return Err(format!("it makes a value with more than {MAX_DEPTH} nested levels"));
     }
     Ok(match value {
         Val::Null => Value::Null,
@@ -207,54 +207,54 @@ fn long(text: &str) -> Value {
 
 /// Rewrites a filter so that a key that is not text is an error on an object, as in jq. The library supports such keys
 /// and finds nothing.
-fn as_in_jq<'s>(term: Term<&'s str>) -> Term<&'s str> {
-    let one = |term: Box<Term<&'s str>>| Box::new(as_in_jq(*term));
-    let all = |terms: Vec<Term<&'s str>>| terms.into_iter().map(as_in_jq).collect();
+fn format_like_jq<'s>(term: Term<&'s str>) -> Term<&'s str> {
+    let one = |term: Box<Term<&'s str>>| Box::new(format_like_jq(*term));
+    let all = |terms: Vec<Term<&'s str>>| terms.into_iter().map(format_like_jq).collect();
     match term {
         Term::Id | Term::Recurse | Term::Num(_) | Term::Break(_) | Term::Var(_) => term,
         Term::Str(format, parts) => {
             let part = |part| match part {
-                StrPart::Term(term) => StrPart::Term(as_in_jq(term)),
+                StrPart::Term(term) => StrPart::Term(format_like_jq(term)),
                 part => part,
             };
             Term::Str(format, parts.into_iter().map(part).collect())
         }
         Term::Arr(inner) => Term::Arr(inner.map(one)),
         Term::Obj(entries) => {
-            let entry = |(key, value): (_, Option<_>)| (as_in_jq(key), value.map(as_in_jq));
+            let entry = |(key, value): (_, Option<_>)| (format_like_jq(key), value.map(format_like_jq));
             Term::Obj(entries.into_iter().map(entry).collect())
         }
         Term::Neg(inner) => Term::Neg(one(inner)),
-        Term::BinOp(left, operator, right) => Term::BinOp(one(left), bound(operator), one(right)),
+        Term::BinOp(left, operator, right) => Term::BinOp(one(left), bound_variables(operator), one(right)),
         Term::Label(name, inner) => Term::Label(name, one(inner)),
-        Term::Fold(name, source, pattern, rest) => Term::Fold(name, one(source), pattern_in_jq(pattern), all(rest)),
+        Term::Fold(name, source, pattern, rest) => Term::Fold(name, one(source), format_pattern(pattern), all(rest)),
         Term::TryCatch(inner, catch) => Term::TryCatch(one(inner), catch.map(one)),
         Term::IfThenElse(cases, otherwise) => {
-            let cases = cases.into_iter().map(|(when, then)| (as_in_jq(when), as_in_jq(then)));
+            let cases = cases.into_iter().map(|(when, then)| (format_like_jq(when), format_like_jq(then)));
             Term::IfThenElse(cases.collect(), otherwise.map(one))
         }
         Term::Def(defs, inner) => {
-            let def = |def: Def<_, _>| Def { body: as_in_jq(def.body), ..def };
+            let def = |def: Def<_, _>| Def { body: format_like_jq(def.body), ..def };
             Term::Def(defs.into_iter().map(def).collect(), one(inner))
         }
         Term::Call(name, arguments) => Term::Call(name, all(arguments)),
-        Term::Path(from, Path(parts)) => path(as_in_jq(*from), parts),
+        Term::Path(from, Path(parts)) => path(format_like_jq(*from), parts),
     }
 }
 
-fn bound(operator: BinaryOp<&str>) -> BinaryOp<&str> {
+fn bound_variables(operator: BinaryOp<&str>) -> BinaryOp<&str> {
     match operator {
-        BinaryOp::Pipe(Some(pattern)) => BinaryOp::Pipe(Some(pattern_in_jq(pattern))),
+        BinaryOp::Pipe(Some(pattern)) => BinaryOp::Pipe(Some(format_pattern(pattern))),
         operator => operator,
     }
 }
 
-fn pattern_in_jq(pattern: Pattern<&str>) -> Pattern<&str> {
+fn format_pattern(pattern: Pattern<&str>) -> Pattern<&str> {
     match pattern {
         Pattern::Var(name) => Pattern::Var(name),
-        Pattern::Arr(inner) => Pattern::Arr(inner.into_iter().map(pattern_in_jq).collect()),
+        Pattern::Arr(inner) => Pattern::Arr(inner.into_iter().map(format_pattern).collect()),
         Pattern::Obj(entries) => {
-            let entry = |(key, pattern)| (as_in_jq(key), pattern_in_jq(pattern));
+            let entry = |(key, pattern)| (format_like_jq(key), format_pattern(pattern));
             Pattern::Obj(entries.into_iter().map(entry).collect())
         }
     }
@@ -266,13 +266,13 @@ fn path<'s>(from: Term<&'s str>, parts: Vec<(Part<Term<&'s str>>, Opt)>) -> Term
     let is_text = |(part, _): &(Part<Term<_>>, _)| !matches!(part, Part::Index(key) if !matches!(key, Term::Str(..)));
     if parts.iter().all(is_text) {
         let inner = |(part, opt)| match part {
-            Part::Index(key) => (Part::Index(as_in_jq(key)), opt),
-            Part::Range(start, end) => (Part::Range(start.map(as_in_jq), end.map(as_in_jq)), opt),
+            Part::Index(key) => (Part::Index(format_like_jq(key)), opt),
+            Part::Range(start, end) => (Part::Range(start.map(format_like_jq), end.map(format_like_jq)), opt),
         };
         return Term::Path(Box::new(from), Path(parts.into_iter().map(inner).collect()));
     }
     let pipe = |left, pattern, right| Term::BinOp(Box::new(left), BinaryOp::Pipe(pattern), Box::new(right));
-    let of_input = |term| pipe(Term::Var(INPUT), None, as_in_jq(term));
+    let of_input = |term| pipe(Term::Var(INPUT), None, format_like_jq(term));
     let steps = parts.into_iter().fold(from, |steps, (part, opt)| {
         let step = match part {
             Part::Index(key) => {
@@ -295,15 +295,15 @@ mod tests {
 
     use super::*;
 
-    fn made(filter: &str, input: &Value) -> Result<Vec<Value>, String> {
-        match stopped(filter, input)? {
+    fn outputs(filter: &str, input: &Value) -> Result<Vec<Value>, String> {
+        match stop_of(filter, input)? {
             (values, None) => Ok(values),
             (_, Some(Stop::Failed(why))) => Err(why),
             (_, Some(Stop::Halted { text, .. })) => Err(text),
         }
     }
 
-    fn stopped(filter: &str, input: &Value) -> Result<(Vec<Value>, Option<Stop>), String> {
+    fn stop_of(filter: &str, input: &Value) -> Result<(Vec<Value>, Option<Stop>), String> {
         let mut values = Vec::new();
         let input: Val = serde_json::from_value(input.clone()).unwrap();
         let end = Program::new(filter)?.run(input, |value| {
@@ -314,13 +314,13 @@ mod tests {
     }
 
     #[test]
-    fn a_key_that_is_no_text_is_an_error_at_an_object() {
+    fn non_string_key_is_an_error() {
         let input = json!({"a": [1, 2, {"b": 3}], "i": 1, "k": "i"});
         for filter in [".[0]", ".[.i]", ".a[2][0]", "[.[0]]", ".a | map(.[0]?) | .[2] | .x[0], {} | .[0]", ".[0] = 1"] {
-            assert!(made(filter, &input).is_err(), "{filter}: {:?}", made(filter, &input));
+            assert!(outputs(filter, &input).is_err(), "{filter}: {:?}", outputs(filter, &input));
         }
-        assert_eq!(made(".[0]", &input).unwrap_err(), "Cannot index object with number");
-        assert_eq!(made(".[null]", &input).unwrap_err(), "Cannot index object with null");
+        assert_eq!(outputs(".[0]", &input).unwrap_err(), "Cannot index object with number");
+        assert_eq!(outputs(".[null]", &input).unwrap_err(), "Cannot index object with null");
         for (filter, expected) in [
             (".a[0]", json!([1])),
             (".a[.i]", json!([2])),
@@ -340,13 +340,13 @@ mod tests {
             ("def f: .[0]; .a | f", json!([1])),
             ("[.a[:2][]]", json!([[1, 2]])),
         ] {
-            assert_eq!(json!(made(filter, &input).unwrap()), expected, "{filter}");
+            assert_eq!(json!(outputs(filter, &input).unwrap()), expected, "{filter}");
         }
     }
 
     #[test]
-    fn numbers_that_json_has_not_are_written_as_jq_writes_them() {
-        let made = |filter: &str| serde_json::to_string(&made(filter, &Value::Null).unwrap()).unwrap();
+    fn writes_non_json_numbers_like_jq() {
+        let made = |filter: &str| serde_json::to_string(&outputs(filter, &Value::Null).unwrap()).unwrap();
         assert_eq!(made("nan, infinite, -infinite"), "[null,1.7976931348623157e+308,-1.7976931348623157e+308]");
         assert_eq!(
             made("[nan], 18446744073709551615, 1e1000"),
@@ -356,29 +356,29 @@ mod tests {
     }
 
     #[test]
-    fn what_nests_too_deep_is_an_error() {
-        let deep = |levels: usize| made(&format!("reduce range({levels}) as $i (0; [.])"), &Value::Null);
-        assert!(deep(DEEPEST).is_ok());
-        assert!(deep(DEEPEST + 1).unwrap_err().contains("nested levels"));
+    fn too_deep_nesting_is_an_error() {
+        let deep = |levels: usize| outputs(&format!("reduce range({levels}) as $i (0; [.])"), &Value::Null);
+        assert!(deep(MAX_DEPTH).is_ok());
+        assert!(deep(MAX_DEPTH + 1).unwrap_err().contains("nested levels"));
     }
 
     #[test]
-    fn what_follows_enough_is_not_computed() {
+    fn does_not_compute_unneeded_outputs() {
         let mut count = 0;
-        let forever = Program::new("repeat(1)").unwrap();
-        forever
+        let endless = Program::new("repeat(1)").unwrap();
+        endless
             .run(Val::Null, |_| {
                 count += 1;
                 count < 10
             })
             .unwrap();
         assert_eq!(count, 10);
-        assert_eq!(made("1, halt, 2", &Value::Null).unwrap(), [json!(1)]);
+        assert_eq!(outputs("1, halt, 2", &Value::Null).unwrap(), [json!(1)]);
     }
 
     /// Compares with jq, if it is installed: outputs and exit code.
     #[test]
-    fn filters_do_what_jq_does() {
+    fn filters_match_jq() {
         use std::io::Write as _;
         use std::process::{Command, Stdio};
 
@@ -437,24 +437,24 @@ mod tests {
                 return;
             };
             jq.stdin.take().unwrap().write_all(input.to_string().as_bytes()).unwrap();
-            let theirs = jq.wait_with_output().unwrap();
-            let lines = String::from_utf8(theirs.stdout).unwrap();
+            let jq_output = jq.wait_with_output().unwrap();
+            let lines = String::from_utf8(jq_output.stdout).unwrap();
             let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-            let (values, stop) = stopped(filter, &input).unwrap();
+            let (values, stop) = stop_of(filter, &input).unwrap();
             assert_eq!(values, lines, "{filter}");
-            let said = String::from_utf8(theirs.stderr).unwrap();
+            let said = String::from_utf8(jq_output.stderr).unwrap();
             let (exit, text) = match stop {
                 None => (0, String::new()),
                 // Newer versions of jq have other texts.
                 Some(Stop::Failed(_)) => (5, said.clone()),
                 Some(Stop::Halted { exit, text }) => (i32::from(exit), text),
             };
-            assert_eq!((Some(exit), text), (theirs.status.code(), said), "{filter}");
+            assert_eq!((Some(exit), text), (jq_output.status.code(), said), "{filter}");
         }
     }
 
     #[test]
-    fn commonest_errors_are_in_the_words_of_jq() {
+    fn common_errors_match_jq() {
         let input = json!({"a": 1, "l": []});
         for (filter, words) in [
             (".a.b", "Cannot index number with \"b\""),
@@ -462,13 +462,13 @@ mod tests {
             ("error({a: 1})", "(not a string): {\"a\":1}"),
             ("error(\"x\")", "x"),
         ] {
-            assert_eq!(made(filter, &input).unwrap_err(), words, "{filter}");
+            assert_eq!(outputs(filter, &input).unwrap_err(), words, "{filter}");
         }
     }
 
     #[test]
-    fn errors_are_short() {
+    fn limits_the_length_of_errors() {
         let long = "x".repeat(100_000);
-        assert!(made("error", &json!(long)).unwrap_err().chars().count() < 500);
+        assert!(outputs("error", &json!(long)).unwrap_err().chars().count() < 500);
     }
 }

@@ -13,24 +13,24 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::program::{Program, Stop};
-use crate::failure::{Kind, end};
+use crate::failure::{Kind, exit_process};
 use crate::files::this_program;
 
 /// The only argument of a worker.
-const WORD: &str = "--filter-worker";
+const WORKER_ARGUMENT: &str = "--filter-worker";
 /// Memory limit, on systems that support it.
 #[cfg(unix)]
-const MEMORY: u64 = 1 << 30;
+const MEMORY_LIMIT: u64 = 1 << 30;
 /// Stack size for recursive filters.
 const STACK: usize = 64 << 20;
 /// Size limit of a value in bytes.
-const LONGEST: u64 = 256 << 20;
+const MAX_VALUE_SIZE: u64 = 256 << 20;
 /// Number of compiled filters kept.
-const KEPT: usize = 64;
+const MAX_PROGRAMS: usize = 64;
 
 /// A request.
 #[derive(Debug, Serialize)]
-struct Asked<'a> {
+struct Request<'a> {
     filter: &'a str,
     /// Input of the filter; `None` to only compile it.
     input: Option<[&'a Value; 1]>,
@@ -38,7 +38,7 @@ struct Asked<'a> {
 
 /// A request, as read by the worker.
 #[derive(Deserialize)]
-struct Heard {
+struct ReceivedRequest {
     filter: String,
     input: Option<[jaq_json::Val; 1]>,
 }
@@ -93,14 +93,14 @@ static WORKER: Mutex<Option<Worker>> = Mutex::new(None);
 /// Compiles a filter, and passes its outputs for the input, if there is one, to `take`. `take` returns whether to
 /// continue.
 pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> bool) -> Result<(), FilterError> {
-    let asked = Asked { filter, input: input.map(|input| [input]) };
+    let request = Request { filter, input: input.map(|input| [input]) };
     let failed = |error: &io::Error| FilterError::Failed(format!("it cannot be run: {}", crate::failure::plain(error)));
     let mut worker = WORKER.lock().unwrap_or_else(PoisonError::into_inner);
-    let mut living = match worker.take().and_then(Worker::living) {
+    let mut living = match worker.take().and_then(Worker::if_alive) {
         Some(living) => living,
         None => Worker::start().map_err(|error| failed(&error))?,
     };
-    living.request(&asked).map_err(|error| failed(&error))?;
+    living.request(&request).map_err(|error| failed(&error))?;
     loop {
         match living.answer() {
             Ok(Some(Answer::Value(value))) => {
@@ -129,23 +129,23 @@ pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> b
 impl Worker {
     fn start() -> io::Result<Self> {
         let mut command = Command::new(this_program()?);
-        command.arg(WORD).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        command.arg(WORKER_ARGUMENT).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         // Its own process group, so that Ctrl-C does not reach it.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn()?;
-        let none = || io::Error::other("no pipe");
-        let requests = child.stdin.take().ok_or_else(none)?;
-        let answers = BufReader::new(child.stdout.take().ok_or_else(none)?);
+        let no_input = || io::Error::other("no pipe");
+        let requests = child.stdin.take().ok_or_else(no_input)?;
+        let answers = BufReader::new(child.stdout.take().ok_or_else(no_input)?);
         Ok(Self { child, requests, answers })
     }
 
     /// The worker, if it is still alive.
-    fn living(mut self) -> Option<Self> {
+    fn if_alive(mut self) -> Option<Self> {
         matches!(self.child.try_wait(), Ok(None)).then_some(self)
     }
 
-    fn request(&mut self, asked: &Asked<'_>) -> io::Result<()> {
+    fn request(&mut self, asked: &Request<'_>) -> io::Result<()> {
         let mut line = serde_json::to_vec(asked)?;
         line.push(b'\n');
         match self.requests.write_all(&line).and_then(|()| self.requests.flush()) {
@@ -158,10 +158,10 @@ impl Worker {
     /// Next answer; `None` if the worker has ended.
     fn answer(&mut self) -> io::Result<Option<Answer>> {
         let mut line = Vec::new();
-        (&mut self.answers).take(LONGEST).read_until(b'\n', &mut line)?;
+        (&mut self.answers).take(MAX_VALUE_SIZE).read_until(b'\n', &mut line)?;
         match line.last() {
             Some(b'\n') => Ok(Some(serde_json::from_slice(&line)?)),
-            Some(_) if u64::try_from(line.len()).unwrap_or(u64::MAX) >= LONGEST => {
+            Some(_) if u64::try_from(line.len()).unwrap_or(u64::MAX) >= MAX_VALUE_SIZE => {
                 Ok(Some(Answer::Failed("it makes a value that is too long".to_owned())))
             }
             _ => Ok(None),
@@ -178,8 +178,8 @@ impl Drop for Worker {
 }
 
 /// Whether the command line is that of a worker.
-pub fn is_meant(args: &[OsString]) -> bool {
-    matches!(args, [_, word] if word == WORD)
+pub fn is_worker(args: &[OsString]) -> bool {
+    matches!(args, [_, word] if word == WORKER_ARGUMENT)
 }
 
 /// Answers requests until stdin ends.
@@ -196,14 +196,14 @@ pub fn serve() -> Result<(), Kind> {
             break;
         }
     }
-    end(Kind::PipeClosed)
+    exit_process(Kind::PipeClosed)
 }
 
 #[cfg(unix)]
 fn limit() {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
-    for (resource, most) in [(Resource::As, MEMORY), (Resource::Core, 0)] {
+    for (resource, most) in [(Resource::As, MEMORY_LIMIT), (Resource::Core, 0)] {
         let most = getrlimit(resource).maximum.map_or(most, |maximum| maximum.min(most));
         // On systems without such a limit, there is none.
         let _ = setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
@@ -216,16 +216,16 @@ fn limit() {}
 fn compute(requests: &mpsc::Receiver<Vec<u8>>) {
     let mut programs: HashMap<String, Program> = HashMap::new();
     let mut stdout = BufWriter::new(super::answers());
-    let mut say = |answer: &Answer, is_last: bool| {
+    let mut send = |answer: &Answer, is_last: bool| {
         let mut line = serde_json::to_vec(answer).unwrap_or_default();
         line.push(b'\n');
         let written = stdout.write_all(&line);
         written.and_then(|()| if is_last { stdout.flush() } else { Ok(()) }).is_ok()
     };
     for request in requests {
-        let Ok(Heard { filter, input }) = serde_json::from_slice(&request) else { return };
+        let Ok(ReceivedRequest { filter, input }) = serde_json::from_slice(&request) else { return };
         drop(request);
-        if programs.len() >= KEPT {
+        if programs.len() >= MAX_PROGRAMS {
             programs.clear();
         }
         let done = match programs.get(&filter) {
@@ -235,13 +235,13 @@ fn compute(requests: &mpsc::Receiver<Vec<u8>>) {
         let last = match (done, input) {
             (Err(why), _) => Answer::Mistake(why),
             (Ok(_), None) => Answer::Done,
-            (Ok(program), Some([input])) => match program.run(input, |value| say(&Answer::Value(value), false)) {
+            (Ok(program), Some([input])) => match program.run(input, |value| send(&Answer::Value(value), false)) {
                 Ok(()) => Answer::Done,
                 Err(Stop::Failed(why)) => Answer::Failed(why),
                 Err(Stop::Halted { exit, text }) => Answer::Halted(exit, text),
             },
         };
-        if !say(&last, true) {
+        if !send(&last, true) {
             return;
         }
     }

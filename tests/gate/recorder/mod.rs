@@ -9,10 +9,10 @@ mod yrcx;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use armctl::command::leaf_commands::leaves;
+use armctl::command::example_lines::robot_lines;
 use armctl::controller::Risk;
 
-use super::desk::{Came, Desk, came};
+use super::desk::{CommandResult, Workspace, result_of};
 use crate::support::terminal::Terminal;
 
 /// Effect of the recorded requests: the most severe one.
@@ -37,7 +37,7 @@ pub trait Recorder {
     /// Its target URL.
     fn url(&self) -> &str;
     /// Effect of the requests since the last call.
-    fn take(&mut self) -> Vec<(Effect, String)>;
+    fn take_effect(&mut self) -> Vec<(Effect, String)>;
 }
 
 const STOPS: [&str; 7] =
@@ -56,7 +56,7 @@ struct Line {
 fn lines(family: &str) -> Vec<Line> {
     let mut seen = BTreeSet::new();
     let mut lines = Vec::new();
-    for (line, risk) in leaves() {
+    for (line, risk) in robot_lines() {
         let words = bounded(&split(line.split("  #").next().unwrap_or(line)));
         let is_other = ["yerc", "yrcx", "toyo"].iter().any(|other| *other != family && words[0] == *other);
         let is_name = |word: &&String| word.chars().all(|char| char.is_ascii_lowercase() || char == '-');
@@ -108,14 +108,14 @@ fn bounded(words: &[String]) -> Vec<String> {
 
 /// State of the robot, and kind of connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Pass {
+enum RunMode {
     ReadOnly,
     WithoutYes,
     DryRun,
 }
 
-impl Pass {
-    fn more(self) -> &'static [&'static str] {
+impl RunMode {
+    fn max_effect(self) -> &'static [&'static str] {
         match self {
             Self::ReadOnly => &["--yes"],
             Self::WithoutYes => &[],
@@ -130,7 +130,7 @@ impl Pass {
     }
 
     /// The highest risk that a line may have.
-    fn most(self, line: &Line, in_session: bool) -> Option<Effect> {
+    fn declared_risk(self, line: &Line, in_session: bool) -> Option<Effect> {
         match self {
             Self::DryRun => in_session.then_some(Effect::Link),
             _ if line.is_stop => Some(Effect::Stop),
@@ -143,16 +143,16 @@ impl Pass {
 
 /// An environment with a robot whose complete backup `press` differs from the controller.
 pub struct Bench<'a> {
-    desk: Desk,
+    desk: Workspace,
     recorder: &'a mut dyn Recorder,
     wrong: String,
 }
 
 impl<'a> Bench<'a> {
     pub fn new(recorder: &'a mut dyn Recorder) -> Self {
-        let bench = Self { desk: Desk::new(""), recorder, wrong: String::new() };
+        let bench = Self { desk: Workspace::new(""), recorder, wrong: String::new() };
         bench.is_read_only(false);
-        bench.recorder.take();
+        bench.recorder.take_effect();
         bench
     }
 
@@ -162,19 +162,19 @@ impl<'a> Bench<'a> {
         std::fs::write(self.desk.folder.path().join("robots.toml"), entry).expect("the inventory is written");
     }
 
-    fn run(&self, words: &[&str]) -> Came {
+    fn run(&self, words: &[&str]) -> CommandResult {
         let mut command = self.desk.command("-r cell --timeout 500ms");
         // Restores the file after an edit command.
         command.env("EDITOR", "true");
-        came(&command.args(words).output().expect("armctl starts"))
+        result_of(&command.args(words).output().expect("armctl starts"))
     }
 
     /// Runs a command that must succeed before the test.
     #[track_caller]
     pub fn prepare(&mut self, line: &str) {
-        let came = self.run(&line.split(' ').collect::<Vec<_>>());
-        assert_eq!(came.exit, Some(0), "{line}: {came:?}");
-        self.recorder.take();
+        let result = self.run(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(result.exit, Some(0), "{line}: {result:?}");
+        self.recorder.take_effect();
     }
 
     /// Creates a file that lines use.
@@ -183,12 +183,13 @@ impl<'a> Bench<'a> {
     }
 
     /// Runs all lines in one mode; `by` selects the robot.
-    fn pass(&mut self, pass: Pass, by: &str, in_session: bool) {
-        self.is_read_only(pass == Pass::ReadOnly);
+    fn run_mode(&mut self, pass: RunMode, by: &str, in_session: bool) {
+        self.is_read_only(pass == RunMode::ReadOnly);
         for line in lines(self.recorder.family()).iter().filter(|line| pass.has(line)) {
-            let words: Vec<&str> = line.words.iter().map(String::as_str).chain(pass.more().iter().copied()).collect();
+            let words: Vec<&str> =
+                line.words.iter().map(String::as_str).chain(pass.max_effect().iter().copied()).collect();
             let came = self.run(&words);
-            let wrong = self.judge(pass.most(line, in_session), &came);
+            let wrong = self.check_effect(pass.declared_risk(line, in_session), &came);
             if let Some(wrong) = wrong.or_else(|| refusal(pass, line, &came)) {
                 writeln!(self.wrong, "{by}, {pass:?}: {}: {wrong}", words.join(" ")).expect("text grows");
             }
@@ -197,8 +198,8 @@ impl<'a> Bench<'a> {
     }
 
     /// Checks the recorded effect of a line.
-    fn judge(&mut self, most: Option<Effect>, came: &Came) -> Option<String> {
-        let sent = self.recorder.take();
+    fn check_effect(&mut self, most: Option<Effect>, came: &CommandResult) -> Option<String> {
+        let sent = self.recorder.take_effect();
         let is_known = came.exit.is_some_and(|exit| (0..=9).contains(&exit));
         match sent.iter().find(|(effect, _)| most.is_none_or(|most| *effect > most)) {
             Some((effect, what)) => Some(format!("{effect:?} was sent: {what}; {came:?}")),
@@ -207,13 +208,13 @@ impl<'a> Bench<'a> {
     }
 
     /// Runs `setup` and `teach`, which ask at a terminal.
-    fn panels(&mut self, by: &str) {
+    fn run_panels(&mut self, by: &str) {
         let url = self.recorder.url().to_owned();
-        for pass in [Pass::ReadOnly, Pass::WithoutYes, Pass::DryRun] {
-            self.is_read_only(pass == Pass::ReadOnly);
-            let words = [&["teach"], pass.more()].concat();
+        for pass in [RunMode::ReadOnly, RunMode::WithoutYes, RunMode::DryRun] {
+            self.is_read_only(pass == RunMode::ReadOnly);
+            let words = [&["teach"], pass.max_effect()].concat();
             let came = self.run(&words);
-            let wrong = self.judge(Some(Effect::Read).filter(|_| pass != Pass::DryRun), &came);
+            let wrong = self.check_effect(Some(Effect::Read).filter(|_| pass != RunMode::DryRun), &came);
             // There is no terminal.
             if let Some(wrong) = wrong.or_else(|| (came.exit != Some(2)).then(|| format!("{came:?}"))) {
                 writeln!(self.wrong, "{by}, {pass:?}: teach: {wrong}").expect("text grows");
@@ -222,7 +223,7 @@ impl<'a> Bench<'a> {
         for is_read_only in [true, false] {
             self.is_read_only(is_read_only);
             let mut teach = Terminal::start(self.desk.command("-r cell teach"), 100, 30).expect("a terminal");
-            let asks = teach.says_one_of(&["is read-only", "Continue?"]) == 1;
+            let asks = teach.wait_for_one_of(&["is read-only", "Continue?"]) == 1;
             if asks {
                 teach.press("n\r");
             }
@@ -235,33 +236,33 @@ impl<'a> Bench<'a> {
         let mut command = self.desk.command("--config new.toml setup");
         command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
         let mut setup = Terminal::start(command, 100, 30).expect("a terminal");
-        setup.says("Where is the robot?");
+        setup.wait_for_text("Where is the robot?");
         setup.press("\r");
-        setup.says("a URL:");
+        setup.wait_for_text("a URL:");
         setup.press(&format!("{url}\r"));
         // A failed layer, for example because a session holds the port, causes a question.
         for _ in 0..8 {
-            match setup.says_one_of(&["What now?", "Name [", "Which controller"]) {
+            match setup.wait_for_one_of(&["What now?", "Name [", "Which controller"]) {
                 // The third entry of the list; each key draws it again.
                 0 => {
                     setup.press("\x1b[B\x1b[B\r");
-                    setup.says("What now?: continue anyway");
+                    setup.wait_for_text("What now?: continue anyway");
                 }
                 1 => break,
                 _ => {
                     setup.press("\r");
-                    setup.says("Which controller is it?: ");
+                    setup.wait_for_text("Which controller is it?: ");
                 }
             }
         }
         setup.press("\r");
-        setup.says("Read-only");
+        setup.wait_for_text("Read-only");
         setup.press("\r");
-        setup.says("Write this");
+        setup.wait_for_text("Write this");
         setup.press("n\r");
         assert_eq!(setup.end().code(), Some(7), "{by}: setup");
-        let came = Came { exit: Some(7), stdout: String::new(), stderr: String::new() };
-        if let Some(wrong) = self.judge(Some(Effect::Read), &came) {
+        let came = CommandResult { exit: Some(7), stdout: String::new(), stderr: String::new() };
+        if let Some(wrong) = self.check_effect(Some(Effect::Read), &came) {
             writeln!(self.wrong, "{by}: teach with a no, setup: {wrong}").expect("text grows");
         }
     }
@@ -278,14 +279,14 @@ impl<'a> Bench<'a> {
                 let read = if self.recorder.family() == "yrcx" { "yrcx io get" } else { "status" };
                 self.prepare(read);
             }
-            for pass in [Pass::DryRun, Pass::ReadOnly, Pass::WithoutYes] {
-                self.pass(pass, by, in_session);
+            for pass in [RunMode::DryRun, RunMode::ReadOnly, RunMode::WithoutYes] {
+                self.run_mode(pass, by, in_session);
             }
             if in_session {
                 self.desk.run("session close --all");
             }
-            self.recorder.take();
-            self.panels(by);
+            self.recorder.take_effect();
+            self.run_panels(by);
         }
         assert!(self.wrong.is_empty(), "{}", self.wrong);
     }
@@ -293,13 +294,13 @@ impl<'a> Bench<'a> {
 
 /// Checks the refusal of a line: a change of a read-only robot, or a motion, ends with exit code 7. A command of
 /// another fieldbus is a usage error, and so is a missing file.
-fn refusal(pass: Pass, line: &Line, came: &Came) -> Option<String> {
+fn refusal(pass: RunMode, line: &Line, came: &CommandResult) -> Option<String> {
     // On a read-only robot, such commands read only what needs no selection.
     let depends = line.words.iter().any(|word| ["backup", "diff"].contains(&word.as_str()));
     let must = match pass {
-        Pass::ReadOnly => line.risk > Risk::Read && !line.is_stop && !depends,
-        Pass::WithoutYes => line.risk == Risk::Motion,
-        Pass::DryRun => false,
+        RunMode::ReadOnly => line.risk > Risk::Read && !line.is_stop && !depends,
+        RunMode::WithoutYes => line.risk == Risk::Motion,
+        RunMode::DryRun => false,
     };
     let is_refused = matches!(came.exit, Some(7 | 2)) || came.stderr.contains("no such file");
     (must && !is_refused).then(|| format!("not refused: {came:?}"))

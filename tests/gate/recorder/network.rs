@@ -6,7 +6,7 @@ use super::yrcx::{Controller, hold_all};
 use crate::support::namespaces::{SKIPPED, run};
 
 /// Command in the second network namespace.
-const THERE: &str = "THERE";
+const DEVICE_ADDRESS: &str = "THERE";
 
 #[test]
 fn profinet_commands_send_only_authorized_frames() {
@@ -23,9 +23,9 @@ fn profinet_commands_send_only_authorized_frames() {
 #[test]
 #[ignore = "the test above runs it in its namespaces"]
 fn runs_between_two_network_cards() {
-    let there = std::env::var(THERE).expect("the other namespace");
-    let mut words = there.split(' ');
+    let device = std::env::var(DEVICE_ADDRESS).expect("the other namespace");
+    let mut words = device.split(' ');
     let mut armctl = Command::new(words.next().expect("a program"));
     armctl.args(words).arg(env!("CARGO_BIN_EXE_armctl"));
-    hold_all(Controller::start(armctl, "profinet", &["--interface", "pd0"]).reached_over("@IFACE", "@pc0"));
+    hold_all(Controller::start(armctl, "profinet", &["--interface", "pd0"]).url_of_bus("@IFACE", "@pc0"));
 }

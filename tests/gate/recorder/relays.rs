@@ -30,7 +30,7 @@ impl Recorder for Relay {
         &self.url
     }
 
-    fn take(&mut self) -> Vec<(Effect, String)> {
+    fn take_effect(&mut self) -> Vec<(Effect, String)> {
         let sent = std::mem::take(&mut *self.sent.lock().expect("no relay panics"));
         let effect = |bytes: &[u8]| match ((self.is_harmless)(bytes), (self.is_stop)(bytes)) {
             (_, true) => Effect::Stop,

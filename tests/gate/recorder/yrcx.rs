@@ -36,9 +36,9 @@ stock = false
 /// A simulated controller on one of its fieldbuses.
 pub struct Controller {
     process: Child,
-    said: BufReader<ChildStderr>,
+    output: BufReader<ChildStderr>,
     url: String,
-    shown: Image,
+    last_image: Image,
     _state: tempfile::TempDir,
 }
 
@@ -54,14 +54,14 @@ impl Controller {
         let mut line = String::new();
         let mut stdout = BufReader::new(process.stdout.take().expect("a pipe"));
         stdout.read_line(&mut line).expect("it says where it is");
-        let said = BufReader::new(process.stderr.take().expect("a pipe"));
+        let output = BufReader::new(process.stderr.take().expect("a pipe"));
         let url = line.trim_end().rsplit(' ').next().expect("a URL").to_owned();
         assert!(url.contains("://"), "{bus}: {line}");
-        Self { process, said, url, shown: resting(), _state: folder }
+        Self { process, output, url, last_image: resting(), _state: folder }
     }
 
     /// Replaces a part of the URL.
-    pub fn reached_over(mut self, from: &str, to: &str) -> Self {
+    pub fn url_of_bus(mut self, from: &str, to: &str) -> Self {
         self.url = self.url.replace(from, to);
         self
     }
@@ -72,7 +72,7 @@ impl Controller {
 
     fn line(&mut self) -> String {
         let mut line = String::new();
-        let read = self.said.read_line(&mut line).expect("it answers");
+        let read = self.output.read_line(&mut line).expect("it answers");
         assert_ne!(read, 0, "the simulator has ended");
         line.trim_end().to_owned()
     }
@@ -81,7 +81,7 @@ impl Controller {
     fn effect(&mut self, entry: &str) -> Effect {
         let Some((command, signals)) = entry.strip_prefix("WI ").and_then(|entry| entry.split_once(" SI ")) else {
             // The next master begins with a resting image.
-            self.shown = resting();
+            self.last_image = resting();
             return Effect::Link;
         };
         let mut image = Image::default();
@@ -91,7 +91,7 @@ impl Controller {
                 *word = u16::from_str_radix(text, 16).expect("a word");
             }
         }
-        let before = std::mem::replace(&mut self.shown, image);
+        let before = std::mem::replace(&mut self.last_image, image);
         if (before, image) == (resting(), resting()) {
             return Effect::Link;
         }
@@ -130,7 +130,7 @@ impl Recorder for Controller {
         &self.url
     }
 
-    fn take(&mut self) -> Vec<(Effect, String)> {
+    fn take_effect(&mut self) -> Vec<(Effect, String)> {
         self.type_line("journal");
         let count = loop {
             let line = self.line();

@@ -24,7 +24,7 @@ use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::files;
 use crate::output::Format;
-use crate::output::busy::busy;
+use crate::output::busy_work::register;
 use crate::output::envelope::ErrorBody;
 use crate::transport::capture::{Carrier, Message, OpenError, Summary, read};
 pub use crate::transport::capture::{holds_telegram, parse_hex};
@@ -238,7 +238,7 @@ pub fn print<D: CaptureDecoder>(
     let (is_streamed, without_fields) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
     let room = if is_streamed { NOTES_LIMIT } else { ROOM };
     let (capture, decoder) = {
-        let _busy = busy();
+        let _busy = register();
         source.capture(decoder, room, without_fields)?
     };
     if run.screen.format == Format::Value {

@@ -115,9 +115,9 @@ impl<F: Field> Capture<F> {
 
     /// Summary of the number of messages and their links.
     pub(super) fn head(&self) -> String {
-        let with_link = self.packets.saturating_sub(self.other_packets);
+        let family_packets = self.packets.saturating_sub(self.other_packets);
         let what = if self.is_filtered { "selected and of this family" } else { "of this family" };
-        let mut head = format!("{}, {with_link} of them {what}", count_text(self.packets, "packet"));
+        let mut head = format!("{}, {family_packets} of them {what}", count_text(self.packets, "packet"));
         for Link { link, client, controller, messages } in &self.links {
             head.push_str(&format!("\nlink {link}: {client} -> {controller}, {}", count_text(*messages, "message")));
         }

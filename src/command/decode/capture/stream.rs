@@ -14,7 +14,7 @@ use crate::command::frame::run::{Run, RunError, as_value};
 use crate::command::frame::schema_of;
 use crate::failure::Failure;
 use crate::output::Format;
-use crate::output::busy::busy;
+use crate::output::busy_work::register;
 use crate::output::csv::{RowsOf, Sheet};
 use crate::output::render::{self, Layout};
 use crate::output::view::{Table, View};
@@ -34,7 +34,7 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
     let mut problems = Problems::default();
     let mut layout = Layout::new(&Row::<D::Field>::COLUMNS);
     let summary = {
-        let _busy = busy();
+        let _busy = register();
         source.decode(&mut decoder, |message| {
             let row = links.row(message, std::time::Duration::ZERO);
             problems.add(&row);
@@ -47,7 +47,7 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
     (about.links, about.problems) = (links.list, problems);
     let failure = about.failure();
     let second_pass = SecondPass { source, summary: &summary, all: about.problems.all };
-    let _busy = busy();
+    let _busy = register();
     if !run.is_for_people() {
         let Capture { file, packets, other_packets, links, notes, damage, .. } = &about;
         let messages = Messages(RefCell::new(Some((second_pass, decoder.restart()))));
@@ -101,7 +101,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         let text = |text: String| render::text(&View::text(text), width, color);
         screen.data(&text(about.head()))?;
         screen.data("\n")?;
-        let mut layout = layout.fit(width);
+        let mut layout = layout.fit_width(width);
         let mut table = Table::new(&Row::<D::Field>::COLUMNS, "");
         let mut write = |table: &mut Table| {
             let piece = layout.piece(&table.rows, color);
@@ -128,7 +128,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
 
     /// Messages as CSV, without their lists of fields.
     fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<(), Failure> {
-        let sheet = Sheet::of(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
+        let sheet = Sheet::from_schema(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
         let (mut text, mut count) = (sheet.header(&[]), 0_usize);
         let mut written = Ok(());
         self.rows(decoder, |row| {

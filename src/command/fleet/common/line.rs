@@ -209,9 +209,11 @@ fn parse(family: Family, words: &[String]) -> Parsed {
         Ok(_) => Err(Failure::local("internal error: a shared line is a command of each family")),
         Err(error) => {
             let message = error.render().to_string();
-            let told = message.lines().next().unwrap_or_default().trim_start_matches("error: ");
-            let message =
-                told.split_once("': ").filter(|_| told.starts_with("invalid value")).map_or(told, |(_, why)| why);
+            let first_line = message.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            let message = first_line
+                .split_once("': ")
+                .filter(|_| first_line.starts_with("invalid value"))
+                .map_or(first_line, |(_, why)| why);
             Err(Failure::usage(message).hint(format!("see `armctl {family} {} -h`", words[..2].join(" "))))
         }
     }

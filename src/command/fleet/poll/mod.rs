@@ -1,14 +1,14 @@
 //! The poller: polls robots of any family, and sends events to its consumers.
 //!
-//! Consumers declare what they need with a [`Wish`], and receive a stream of [`Event`]s. A robot is polled once per
+//! Consumers declare what they need with a [`PollRequest`], and receive a stream of [`Event`]s. A robot is polled once per
 //! interval for all consumers together. Each robot has its own task, so a slow robot does not delay the others.
 //!
 //! | file | contents |
 //! |---|---|
-//! | `follow` | polling loop of one robot: ticks, backoff, session |
+//! | `robot_loop` | polling loop of one robot: ticks, backoff, session |
 //! | `roster` | list of robots, updated from the inventory |
-//! | `wish` | needs of the consumers, and their sum |
-//! | `extra` | extra read commands with each poll |
+//! | `poll_request` | needs of the consumers, and their sum |
+//! | `extra_command` | extra read commands with each poll |
 //!
 //! The poller only reads, through links in [`ConnectMode::Monitor`](crate::command::ConnectMode). It opens no control
 //! connection to a YRCX. If a session has the link, it polls through the session.
@@ -129,7 +129,7 @@ impl PollResult {
 #[derive(Debug)]
 pub struct Subscription {
     events: mpsc::Receiver<Event>,
-    wish: watch::Sender<PollRequest>,
+    request: watch::Sender<PollRequest>,
 }
 
 impl Subscription {
@@ -138,11 +138,11 @@ impl Subscription {
         self.events.recv().await
     }
 
-    /// Replaces the wish.
-    pub fn wish(&self, wish: PollRequest) {
-        self.wish.send_if_modified(|last| {
-            let is_new = *last != wish;
-            *last = wish;
+    /// Replaces the request.
+    pub fn update_request(&self, request: PollRequest) {
+        self.request.send_if_modified(|last| {
+            let is_new = *last != request;
+            *last = request;
             is_new
         });
     }
@@ -180,30 +180,36 @@ impl Poll {
     }
 
     /// Adds a consumer.
-    pub fn subscribe(&mut self, wish: PollRequest) -> Subscription {
-        let (wish, wishes) = watch::channel(wish);
+    pub fn subscribe(&mut self, request: PollRequest) -> Subscription {
+        let (request, requests) = watch::channel(request);
         let (tell, events) = mpsc::channel(EVENTS);
-        self.consumers.push((wishes, tell));
-        Subscription { events, wish }
+        self.consumers.push((requests, tell));
+        Subscription { events, request }
     }
 
     /// Polls until every [`Subscription`] is dropped; then closes the links, within a time limit.
     pub async fn run(self) {
         let Self { roster, screen, consumers } = self;
-        let (mut wishes, tellers): (Vec<_>, Vec<_>) = consumers.into_iter().unzip();
-        let tell = EventSender(tellers.into());
-        let (wants, _) = watch::channel(MergedRequests::merge_all(&wishes));
-        let mut fleet =
-            Fleet { roster, screen, tell, wants, active: BTreeMap::new(), followers: FuturesUnordered::new() };
+        let (mut requests, tellers): (Vec<_>, Vec<_>) = consumers.into_iter().unzip();
+        let event_sender = EventSender(tellers.into());
+        let (requests_sender, _) = watch::channel(MergedRequests::merge_all(&requests));
+        let mut fleet = Fleet {
+            roster,
+            screen,
+            events: event_sender,
+            requests: requests_sender,
+            active: BTreeMap::new(),
+            followers: FuturesUnordered::new(),
+        };
         fleet.match_roster(true).await;
         loop {
             tokio::select! {
-                () = changed(&mut wishes) => {
-                    if wishes.is_empty() {
+                () = changed(&mut requests) => {
+                    if requests.is_empty() {
                         break;
                     }
-                    fleet.wants.send_if_modified(|last| {
-                        let now = MergedRequests::merge_all(&wishes);
+                    fleet.requests.send_if_modified(|last| {
+                        let now = MergedRequests::merge_all(&requests);
                         let is_new = *last != now;
                         *last = now;
                         is_new
@@ -211,7 +217,7 @@ impl Poll {
                 }
                 Some(id) = fleet.followers.next() => fleet.remove_robot(&id).await,
                 read = fleet.roster.changed() => {
-                    fleet.tell.send(Event::Inventory(read)).await;
+                    fleet.events.send(Event::Inventory(read)).await;
                     fleet.match_roster(false).await;
                 }
             }
@@ -233,14 +239,14 @@ impl EventSender {
     }
 }
 
-/// Waits for a changed wish. Removes the wishes of consumers that are gone.
-async fn changed(wishes: &mut Vec<watch::Receiver<PollRequest>>) {
-    if wishes.is_empty() {
+/// Waits for a changed request. Removes the requests of consumers that are gone.
+async fn changed(requests: &mut Vec<watch::Receiver<PollRequest>>) {
+    if requests.is_empty() {
         return;
     }
-    let (changed, at, _) = select_all(wishes.iter_mut().map(|wish| wish.changed().boxed_local())).await;
+    let (changed, at, _) = select_all(requests.iter_mut().map(|request| request.changed().boxed_local())).await;
     if changed.is_err() {
-        wishes.swap_remove(at);
+        requests.swap_remove(at);
     }
 }
 
@@ -248,8 +254,8 @@ async fn changed(wishes: &mut Vec<watch::Receiver<PollRequest>>) {
 struct Fleet {
     roster: Roster,
     screen: Screen,
-    tell: EventSender,
-    wants: watch::Sender<MergedRequests>,
+    events: EventSender,
+    requests: watch::Sender<MergedRequests>,
     active: BTreeMap<RobotId, Active>,
     followers: FuturesUnordered<LocalBoxFuture<'static, RobotId>>,
 }
@@ -266,10 +272,10 @@ impl Fleet {
     /// Starts and stops tasks to match the roster. A new robot waits until the removed ones have closed their links,
     /// because it can be the same controller with another name.
     async fn match_roster(&mut self, is_start: bool) {
-        let wanted: BTreeMap<RobotId, &Robot> =
+        let expected: BTreeMap<RobotId, &Robot> =
             self.roster.robots().iter().map(|robot| (RobotId::for_robot(robot), robot)).collect();
         for (id, active) in &mut self.active {
-            if wanted.get(id).is_none_or(|robot| **robot != active.entry)
+            if expected.get(id).is_none_or(|robot| **robot != active.entry)
                 && let Some(stop) = active.stop.take()
             {
                 stop.send_replace(true);
@@ -286,7 +292,7 @@ impl Fleet {
             .cloned()
             .collect();
         // Spread the robots over the interval. Ticks have no drift, so they stay spread.
-        let share = self.wants.borrow().every / u32::try_from(new.len().max(1)).unwrap_or(u32::MAX);
+        let share = self.requests.borrow().every / u32::try_from(new.len().max(1)).unwrap_or(u32::MAX);
         for (at, given) in (0_u32..).zip(new) {
             let id = RobotId::for_robot(&given);
             let robot = Arc::new(self.roster.identify(&given));
@@ -295,13 +301,13 @@ impl Fleet {
                 robot: Arc::clone(&robot),
                 screen: self.screen,
                 delay: if is_start { share * at } else { Duration::ZERO },
-                wants: self.wants.subscribe(),
+                requests: self.requests.subscribe(),
                 stop: stopped,
-                events: self.tell.clone(),
+                events: self.events.clone(),
                 extra_commands: HashMap::new(),
             };
             self.active.insert(id.clone(), Active { entry: given, robot: Arc::clone(&robot), stop: Some(stop) });
-            self.tell.send(Event::Appeared(robot)).await;
+            self.events.send(Event::Appeared(robot)).await;
             self.followers.push(
                 async move {
                     follow(follower).await;
@@ -314,7 +320,7 @@ impl Fleet {
 
     async fn remove_robot(&mut self, id: &RobotId) {
         if let Some(active) = self.active.remove(id) {
-            self.tell.send(Event::Gone(active.robot)).await;
+            self.events.send(Event::Gone(active.robot)).await;
         }
         self.match_roster(false).await;
     }

@@ -37,7 +37,7 @@ impl PollRequest {
     }
 }
 
-/// Sum of all wishes.
+/// Sum of all requests.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MergedRequests {
     /// Polling interval.
@@ -53,8 +53,8 @@ pub(super) struct MergedRequests {
 const IDLE_INTERVAL: Duration = Duration::from_secs(1);
 
 impl MergedRequests {
-    /// Combines all wishes.
-    pub fn merge_all(wishes: &[watch::Receiver<PollRequest>]) -> Self {
+    /// Combines all requests.
+    pub fn merge_all(requests: &[watch::Receiver<PollRequest>]) -> Self {
         let idle = Self {
             every: IDLE_INTERVAL,
             longest_pause: IDLE_INTERVAL,
@@ -62,8 +62,8 @@ impl MergedRequests {
             whole: Vec::new(),
             extras: Vec::new(),
         };
-        let wishes = wishes.iter().map(|wish| wish.borrow().clone());
-        wishes.map(Self::from).reduce(Self::merge).unwrap_or(idle)
+        let requests = requests.iter().map(|request| request.borrow().clone());
+        requests.map(Self::from).reduce(Self::merge).unwrap_or(idle)
     }
 
     fn merge(mut self, other: Self) -> Self {
@@ -88,8 +88,8 @@ impl MergedRequests {
 }
 
 impl From<PollRequest> for MergedRequests {
-    fn from(wish: PollRequest) -> Self {
-        let PollRequest { every, detail, whole, extras, longest_pause } = wish;
+    fn from(request: PollRequest) -> Self {
+        let PollRequest { every, detail, whole, extras, longest_pause } = request;
         Self { every, longest_pause, detail, whole: whole.into_iter().collect(), extras: extras.to_vec() }
     }
 }

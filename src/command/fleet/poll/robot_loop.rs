@@ -27,7 +27,7 @@ pub(super) struct RobotTask {
     pub screen: Screen,
     /// Start delay, to spread the robots over the interval.
     pub delay: Duration,
-    pub wants: watch::Receiver<MergedRequests>,
+    pub requests: watch::Receiver<MergedRequests>,
     pub stop: watch::Receiver<bool>,
     pub events: EventSender,
     /// Extra commands of this robot by their text.
@@ -83,7 +83,7 @@ pub(super) async fn follow(mut follower: RobotTask) {
             LoopEnd::Session => start = Instant::now(),
             LoopEnd::Failed(failure, traffic) => {
                 let (every, longest) = {
-                    let wants = follower.wants.borrow();
+                    let wants = follower.requests.borrow();
                     (wants.every, wants.longest_pause)
                 };
                 let pause = pauses.next(every, longest);
@@ -116,11 +116,11 @@ impl RobotTask {
     async fn poll_link(&mut self, link: &mut Link, pauses: &mut Backoff) -> LoopEnd {
         let id = RobotId::for_robot(&self.robot);
         let mut stopped = self.stop.clone();
-        let mut ticks = Ticks::new(Instant::now(), self.wants.borrow().every);
+        let mut ticks = Ticks::new(Instant::now(), self.requests.borrow().every);
         let mut sessions = Instant::now() + SESSION_CHECK_INTERVAL;
         let mut missed = 0;
         loop {
-            let wants = self.wants.borrow_and_update().clone();
+            let wants = self.requests.borrow_and_update().clone();
             let start = Instant::now();
             let result = tokio::select! {
                 biased;
@@ -147,17 +147,17 @@ impl RobotTask {
             let mut next = ticks.next(now);
             // The poll took longer than the interval: count the missed ticks.
             missed = ticks.between(start, next);
-            // Waits for the next tick. A new wish for more detail is served at once.
+            // Waits for the next tick. A new request for more detail is served at once.
             loop {
                 tokio::select! {
                     biased;
                     () = wait_for_stop(&mut stopped) => return LoopEnd::Stopped,
                     () = sleep_until(next) => break,
-                    changed = self.wants.changed() => {
+                    changed = self.requests.changed() => {
                         if changed.is_err() {
                             return LoopEnd::Stopped;
                         }
-                        let now = self.wants.borrow_and_update().clone();
+                        let now = self.requests.borrow_and_update().clone();
                         if now.detail(&id) > wants.detail(&id) {
                             missed = 0;
                             break;

@@ -62,8 +62,8 @@ fn fleet() -> Plant {
 }
 
 /// Runs a poller for one consumer until `consume` returns.
-async fn subscription<T>(mut poll: Poll, wish: PollRequest, consume: impl AsyncFnOnce(&mut Subscription) -> T) -> T {
-    let mut events = poll.subscribe(wish);
+async fn subscription<T>(mut poll: Poll, request: PollRequest, consume: impl AsyncFnOnce(&mut Subscription) -> T) -> T {
+    let mut events = poll.subscribe(request);
     let received_events = async {
         let seen = consume(&mut events).await;
         drop(events);
@@ -101,8 +101,8 @@ async fn polls_every_family_in_each_detail() {
         let plant = fleet();
         let poll = plant.all();
         let id = whole.map(|at: usize| RobotId::for_robot(&poll.robots()[at]));
-        let wish = PollRequest { detail, whole: id, ..PollRequest::every(EVERY) };
-        let samples = subscription(poll, wish, async |events: &mut Subscription| {
+        let request = PollRequest { detail, whole: id, ..PollRequest::every(EVERY) };
+        let samples = subscription(poll, request, async |events: &mut Subscription| {
             let mut samples: BTreeMap<String, Vec<Sample>> = BTreeMap::new();
             while samples.len() < 3 || samples.values().any(|samples| samples.len() < 3) {
                 if let Event::Polled(look) = events.next().await.expect("it goes on") {
@@ -136,7 +136,7 @@ async fn unreachable_robot_does_not_delay_others() {
         // All traffic to it is lost.
         ("d", "yerc", "sim:?fault=drop%3D100%25"),
     ]);
-    let began = Instant::now();
+    let start = Instant::now();
     let counts = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
         let mut counts = BTreeMap::new();
         loop {
@@ -158,18 +158,19 @@ async fn unreachable_robot_does_not_delay_others() {
         }
     })
     .await;
-    let looks = began.elapsed().as_millis() / EVERY.as_millis();
-    assert!(looks >= 10, "it takes a timeout until one knows");
+    let polls = start.elapsed().as_millis() / EVERY.as_millis();
+    assert!(polls >= 10, "it takes a timeout until one knows");
     assert_eq!(counts.len(), 3);
-    assert!(counts.values().all(|count| count + 2 >= looks), "{counts:?} of {looks}");
+    assert!(counts.values().all(|count| count + 2 >= polls), "{counts:?} of {polls}");
 }
 
 #[tokio::test(start_paused = true)]
 async fn backoff_of_a_silent_robot_grows() {
     let plant = Plant::new(&[("d", "yerc", "sim:?fault=drop%3D100%25")]);
-    let wish = PollRequest { longest_pause: Duration::from_secs(5), ..PollRequest::every(EVERY) };
-    let told = subscription(plant.all(), wish, async |events: &mut Subscription| received(events, 6, true).await).await;
-    assert_eq!(told, ["appeared d", "failed d 1", "failed d 2", "failed d 4", "failed d 5", "failed d 5"]);
+    let request = PollRequest { longest_pause: Duration::from_secs(5), ..PollRequest::every(EVERY) };
+    let events =
+        subscription(plant.all(), request, async |events: &mut Subscription| received(events, 6, true).await).await;
+    assert_eq!(events, ["appeared d", "failed d 1", "failed d 2", "failed d 4", "failed d 5", "failed d 5"]);
 }
 
 #[tokio::test(start_paused = true)]
@@ -217,7 +218,7 @@ async fn consumers_share_polls_at_the_shortest_interval() {
         }
         let ten_looks = began.elapsed();
         assert!(ten_looks >= 9 * EVERY && ten_looks <= 11 * EVERY, "{ten_looks:?}");
-        // One consumer is dropped, so only the other wish counts.
+        // One consumer is dropped, so only the other request counts.
         drop(other);
         let mut last = BTreeMap::new();
         for _ in 0..12 {
@@ -236,8 +237,8 @@ async fn runs_extra_commands_with_the_polls_of_their_family() {
     let plant = fleet();
     let extras = ["yerc var get B0..B1", "toyo counter get 1", "yerc var get B0"];
     let extras: Rc<[Rc<Extra>]> = extras.iter().map(|text| Rc::new(Extra::parse(text).unwrap())).collect();
-    let wish = PollRequest { extras, ..PollRequest::every(EVERY) };
-    let extras = subscription(plant.all(), wish, async |events: &mut Subscription| {
+    let request = PollRequest { extras, ..PollRequest::every(EVERY) };
+    let extras = subscription(plant.all(), request, async |events: &mut Subscription| {
         let mut extras = BTreeMap::new();
         while extras.len() < 3 {
             if let Event::Polled(look) = events.next().await.expect("it goes on") {
@@ -267,8 +268,8 @@ async fn resolves_names_of_extra_commands_per_robot() {
     let named = |address: &str| format!("[robot.names]\nparts = \"{address}\"");
     plant.write_text(&[entry("a", &named("B5")), entry("b", &named("B6")), entry("c", "")].concat());
     let extra = Rc::new(Extra::parse("yerc var get parts").unwrap());
-    let wish = PollRequest { extras: Rc::from([extra]), ..PollRequest::every(EVERY) };
-    let told = subscription(plant.all(), wish, async |events: &mut Subscription| {
+    let request = PollRequest { extras: Rc::from([extra]), ..PollRequest::every(EVERY) };
+    let told = subscription(plant.all(), request, async |events: &mut Subscription| {
         let mut told = BTreeMap::new();
         while told.len() < 3 {
             if let Event::Polled(look) = events.next().await.expect("it goes on") {

@@ -522,7 +522,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     }
 
     /// Ends the run: sends queued records within a time limit, then a last message, and leaves the rest for the next
-    /// process. It always takes less than [`END`]. After a failure it reports less.
+    /// process. It always takes less than [`END_TIMEOUT`]. After a failure it reports less.
     pub async fn end(mut self, has_failed: bool) -> Counts {
         let now = Instant::now();
         let told = async {

@@ -1,4 +1,4 @@
-//! Trait for a message format: plain topics ([`Plain`](super::plain::Plain)), or a Sparkplug node
+//! Trait for a message format: plain topics ([`PlainFormat`](super::plain_format::PlainFormat)), or a Sparkplug node
 //! ([`Node`](super::sparkplug::Node)). Its input is poller events and broker messages. It knows no connection and no
 //! clock.
 

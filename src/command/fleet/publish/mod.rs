@@ -5,16 +5,16 @@
 //! |---|---|
 //! | `broker` | address and credentials of the broker |
 //! | `topic` | names as topic levels |
-//! | `also` | extra commands whose results are published |
-//! | `speech` | trait for a message format |
-//! | `plain` | one topic per robot and kind, with envelopes |
+//! | `extra_topic` | extra commands whose results are published |
+//! | `message_format` | trait for a message format |
+//! | `plain_format` | one topic per robot and kind, with envelopes |
 //! | `sparkplug` | a Sparkplug B node whose devices are robots |
 //! | `outbox` | queue of unsent messages in memory; no broker, no clock |
 //! | `spool` | the same queue on disk |
-//! | `pump` | from poller to broker |
+//! | `delivery` | from poller to broker |
 //! | `uplink` | the connection |
 //! | `log` | log, and status for the service manager |
-//! | `words` | texts of broker refusals |
+//! | `error_text` | texts of broker refusals |
 
 mod broker;
 mod delivery;

@@ -99,7 +99,7 @@ impl Outbox {
         }
         loop {
             if !self.has_more_on_disk() && self.bytes + size <= self.memory_limit {
-                self.hold(record, None);
+                self.load_record(record, None);
                 return;
             }
             let has_room = self.spool.as_mut().map(|spool| (spool.append(&record), spool.bytes()));
@@ -148,9 +148,9 @@ impl Outbox {
     /// Returns the next record to send, and marks it as sent.
     pub fn take_next(&mut self) -> Option<(Ticket, Record)> {
         self.refill();
-        let held = self.memory.iter_mut().find(|held| held.state == State::Waiting)?;
-        held.state = State::Sent;
-        Some((held.ticket, held.record.clone()))
+        let queued = self.memory.iter_mut().find(|held| held.state == State::Waiting)?;
+        queued.state = State::Sent;
+        Some((queued.ticket, queued.record.clone()))
     }
 
     /// Removes a record that has arrived or can never be sent.
@@ -195,8 +195,8 @@ impl Outbox {
     /// Writes records that are only in memory to the disk, before those already there, for the next process. Returns
     /// the number of records that did not fit.
     pub fn save_all(mut self) -> (u64, Option<io::Error>) {
-        let alone = self.memory.drain(..).filter(|held| held.segment.is_none());
-        let records: Vec<Record> = alone.map(|held| held.record).collect();
+        let only_memory = self.memory.drain(..).filter(|held| held.segment.is_none());
+        let records: Vec<Record> = only_memory.map(|held| held.record).collect();
         let count = u64::try_from(records.len()).unwrap_or(u64::MAX);
         match &mut self.spool {
             None => (count, None),
@@ -208,7 +208,7 @@ impl Outbox {
         self.spool.as_ref().is_some_and(Spool::has_more)
     }
 
-    fn hold(&mut self, record: Record, segment: Option<u64>) {
+    fn load_record(&mut self, record: Record, segment: Option<u64>) {
         self.bytes += record.size();
         self.memory.push_back(QueuedRecord { ticket: self.next, record, state: State::Waiting, segment });
         self.next += 1;
@@ -220,7 +220,7 @@ impl Outbox {
             && let Some(spool) = &mut self.spool
             && let Some((segment, record)) = spool.read()
         {
-            self.hold(record, Some(segment));
+            self.load_record(record, Some(segment));
         }
     }
 

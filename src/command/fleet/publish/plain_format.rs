@@ -86,11 +86,11 @@ impl PlainFormat {
     /// Records for data that has changed or is due again.
     fn changed(&mut self, robot: &Robot, envelopes: Vec<(String, Envelope)>, now_ms: u64) -> Vec<Record> {
         let Ok(level) = self.levels.level_of(robot) else { return Vec::new() };
-        let told = self.sent.entry(RobotId::for_robot(robot)).or_default();
+        let last_sent = self.sent.entry(RobotId::for_robot(robot)).or_default();
         let mut records = Vec::new();
         for (kind, envelope) in envelopes {
             let Ok(what) = serde_json::to_vec(&envelope) else { continue };
-            let is_due = told
+            let is_due = last_sent
                 .get(&kind)
                 .is_none_or(|last| last.what != what || now_ms.saturating_sub(last.at_ms) >= self.every_ms);
             if !is_due {
@@ -100,12 +100,12 @@ impl PlainFormat {
             let Ok(body) = serde_json::to_vec(&Envelope { time, ..envelope }) else { continue };
             let key = format!("{}/{level}/{kind}", self.prefix);
             records.push(Record { kind: 0, time_ms: now_ms, key, body, epoch: 0 });
-            told.insert(kind, SentState { what, at_ms: now_ms });
+            last_sent.insert(kind, SentState { what, at_ms: now_ms });
         }
         records
     }
 
-    fn looked(&mut self, look: &PollResult, now_ms: u64) -> Vec<Record> {
+    fn records_of_poll(&mut self, look: &PollResult, now_ms: u64) -> Vec<Record> {
         let robot = &look.robot;
         let mut line = OverviewReport { family: robot.family.name(), ..look.sample.line.clone() };
         let at = (line.state.position, line.not_asked);
@@ -147,7 +147,7 @@ impl PlainFormat {
     }
 
     /// The robot was removed: clears its retained messages.
-    fn gone(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
+    fn records_of_removed_robot(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
         let told = self.sent.remove(&RobotId::for_robot(robot)).unwrap_or_default();
         let Ok(level) = self.levels.level_of(robot) else { return Vec::new() };
         let empty = |kind: String| Record {
@@ -187,9 +187,9 @@ impl MessageFormat for PlainFormat {
 
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
         match event {
-            Event::Polled(look) => self.looked(look, now_ms),
+            Event::Polled(look) => self.records_of_poll(look, now_ms),
             Event::Failed { robot, failure, .. } => self.failed(robot, failure, now_ms),
-            Event::Gone(robot) => self.gone(robot, now_ms),
+            Event::Gone(robot) => self.records_of_removed_robot(robot, now_ms),
             Event::Appeared(_) | Event::Inventory(_) => Vec::new(),
         }
     }

@@ -104,7 +104,7 @@ impl Report for Discovered {
         let mut table = Table::new(&["family", "target", "device"], self.nothing);
         for (number, (target, family, device)) in self.places().into_iter().enumerate() {
             let is_port = number >= self.boards.len();
-            let family = if is_port { "toyo?".into() } else { Cell::maybe(family) };
+            let family = if is_port { "toyo?".into() } else { Cell::optional(family) };
             table.row([family, Cell::from(target).whole(), device.into()]);
         }
         View::table(table)

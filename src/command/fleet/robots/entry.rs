@@ -12,7 +12,7 @@ use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
-use crate::output::jq::after_a_change;
+use crate::output::jq::failure_after_change;
 use crate::output::view::{self, Cell, View};
 use crate::settings::duration;
 use crate::settings::inventory::{Entry, Inventory, is_name, named};
@@ -295,7 +295,7 @@ impl Report for WasSet {
         let mut table = view::Table::new(&["setting", "old", "new"], "");
         for SettingChange { setting, old, new } in &self.changes {
             let shown = |value: &Option<serde_json::Value>| {
-                Cell::maybe(value.as_ref().map(|value| match value {
+                Cell::optional(value.as_ref().map(|value| match value {
                     serde_json::Value::String(text) => text.clone(),
                     serde_json::Value::Array(list) => {
                         list.iter().filter_map(serde_json::Value::as_str).collect::<Vec<_>>().join(" ")
@@ -391,7 +391,7 @@ impl Report for WasChosen {
 
 /// The change is done even if the report could not be written.
 fn changes_text(reported: Result<(), RunError>) -> Result<(), RunError> {
-    reported.map_err(|stopped| RunError { failure: after_a_change(stopped.failure), ..stopped })
+    reported.map_err(|stopped| RunError { failure: failure_after_change(stopped.failure), ..stopped })
 }
 
 /// Checks that a name is valid and not in use.

@@ -7,7 +7,7 @@ use anyhow::Context as _;
 use crate::command::frame::run::Run;
 use crate::failure::{Failure, Kind};
 use crate::files;
-use crate::output::busy::busy;
+use crate::output::busy_work::register;
 use crate::settings::document::{Document, DocumentError};
 use crate::settings::inventory::Inventory;
 
@@ -45,7 +45,7 @@ pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), Docume
 
 /// Replaces the file with the result of `make`. A version that cannot be parsed is not written.
 pub fn replace(path: &Path, make: impl FnOnce(&str) -> Result<String, Failure>) -> Result<Inventory, Failure> {
-    let _busy = busy();
+    let _busy = register();
     // Locks out other processes between the read and the write.
     let _turn = files::lock_file(path).with_context(|| path.display().to_string())?;
     let text = make(&read(path)?)?;

@@ -18,7 +18,7 @@ use crate::command::families;
 use crate::command::frame::attach::{folder_failure, in_use, info, session_key};
 use crate::command::frame::session_manager::{HeldBy, ManagerRequest, SessionManager};
 use crate::failure::Failure;
-use crate::guardian::{self, HolderGuardian};
+use crate::guardian::{self, SessionGuardian};
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::transport::session::host::{EndReason, Host};
@@ -28,7 +28,7 @@ use crate::transport::session::location::{LockResult, SessionFolder};
 pub struct SessionHost {
     host: Host,
     /// Stops the motions of clients when this process ends.
-    guardian: Rc<HolderGuardian>,
+    guardian: Rc<SessionGuardian>,
     /// Action after the link is closed.
     finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
     label: String,
@@ -69,14 +69,14 @@ impl SessionHost {
         let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
         let host =
             Host::new(claim, key, info, held, log.clone()).with_context(|| location.socket().display().to_string())?;
-        let on_orphan = robot.clone();
-        let guardian = Rc::new(HolderGuardian::new(robot, face.stop()));
+        let orphaned_robot = robot.clone();
+        let guardian = Rc::new(SessionGuardian::new(robot, face.stop()));
         let guardian_result = Rc::clone(&guardian);
         let is_simulated = robot.target.value.is_simulated();
-        let host = host.with_guard(move |moves| if is_simulated { Ok(()) } else { guardian_result.moves(moves) });
+        let host = host.with_guard(move |moves| if is_simulated { Ok(()) } else { guardian_result.set_moving(moves) });
         let host = host.with_stop(move |why| {
             log(&format!("{why}: armctl stops the robot"));
-            guardian::stop_orphan(&on_orphan, face.stop(), log.clone());
+            guardian::stop_orphan(&orphaned_robot, face.stop(), log.clone());
         });
         let mut entry = WatchedEntry::new(robot);
         let host = host.with_read_only_check(face.guard(), move || entry.is_read_only());
@@ -145,13 +145,13 @@ impl ManagerThread {
 
 /// Body of the thread.
 async fn work(mut orders: mpsc::UnboundedReceiver<ManagerRequest>, say: Say) {
-    let held = Rc::new(RefCell::new(BTreeSet::new()));
+    let by_robot = Rc::new(RefCell::new(BTreeSet::new()));
     let (end, ended) = watch::channel(false);
     let mut holdings = JoinSet::new();
     while let Some(order) = orders.recv().await {
         match order {
             ManagerRequest::Hold { robot, access, screen, done } => {
-                let (held, say, ended) = (Rc::clone(&held), Arc::clone(&say), ended.clone());
+                let (held, say, ended) = (Rc::clone(&by_robot), Arc::clone(&say), ended.clone());
                 holdings.spawn_local(hold(*robot, access, screen, done, held, say, ended));
             }
             ManagerRequest::End(done) => {
@@ -176,7 +176,7 @@ async fn hold(
 ) {
     let key = session_key(&robot);
     let label = robot.label();
-    let tell = {
+    let reply = {
         let (say, label) = (Arc::clone(&say), label.clone());
         move |text: &str| say(&format!("{label}: {text}"))
     };
@@ -185,7 +185,7 @@ async fn hold(
     let access = Access { trace: access.trace.filter(|_| records), ..access };
     let attempt = async {
         match SessionFolder::find() {
-            _ if !is_held => SessionHost::open(&robot, &access, &screen, tell).await.map(Some),
+            _ if !is_held => SessionHost::open(&robot, &access, &screen, reply).await.map(Some),
             Ok(Some(place)) if place.location(&key).socket().exists() => Ok(None),
             // A line that bypasses the held link would reach another simulator, or open a second connection.
             _ => Err(Failure::local(format!(

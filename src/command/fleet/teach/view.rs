@@ -8,7 +8,7 @@ use ratatui::style::{Modifier, Style};
 use super::keys::KEYS;
 use super::model::{HistoryEntry, Model, PointUse, Prompt};
 use crate::command::fleet::top;
-use crate::output::painter::{Painter, Palette, after, line_of, to_ascii, wrapped};
+use crate::output::painter::{Painter, Palette, line_of, rest_after, to_ascii, wrap};
 use crate::output::view::Tone;
 
 /// Lines of the panel, and the limit of lines for past commands.
@@ -44,9 +44,13 @@ pub(super) fn render(buffer: &mut Buffer, area: Rect, model: &Model, robot: &Rob
     controls(&mut painter, panel, model, robot.is_real);
     lines(&mut painter, Rect { y: panel.y + PANEL, height: panel.height.saturating_sub(PANEL), ..panel }, model);
     let shown: Vec<_> = KEYS.iter().filter(|key| !key.short.is_empty()).collect();
-    painter.keys(foot, &shown);
+    painter.draw_keys(foot, &shown);
     if model.has_help {
-        painter.help(area, "Each key moves one axis by one step. The next key works after that step.", KEYS.iter());
+        painter.draw_help(
+            area,
+            "Each key moves one axis by one step. The next key works after that step.",
+            KEYS.iter(),
+        );
     }
     if !palette.is_unicode {
         to_ascii(painter.buffer);
@@ -58,14 +62,14 @@ fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool)
     let (accent, quiet) = (painter.palette.accent(), painter.palette.quiet());
     let robot_text = if is_real { "REAL CONTROLLER" } else { "simulator" };
     let tone = painter.palette.tone(if is_real { Tone::Bad } else { Tone::Good });
-    painter.left(after(line_of(area, 0), 1), "teach", accent);
-    painter.right(line_of(area, 0), &format!("{robot_text} "), tone);
+    painter.draw_left(rest_after(line_of(area, 0), 1), "teach", accent);
+    painter.draw_right(line_of(area, 0), &format!("{robot_text} "), tone);
     let step = model.step().map_or("not allowed".to_owned(), |step| format!("{step} {}", model.unit()));
     let speed = model.speed().map(|speed| format!("{speed} {}", model.system().speed_unit));
     let speed = speed.unwrap_or_else(|| "the controller's".to_owned());
     let state = if model.is_moving { (" MOVING ", tone.add_modifier(Modifier::REVERSED)) } else { ("", quiet) };
-    painter.parts(
-        after(line_of(area, 1), 1),
+    painter.draw_parts(
+        rest_after(line_of(area, 1), 1),
         &[
             (model.system().name, Style::new()),
             ("  axis ", quiet),
@@ -78,10 +82,10 @@ fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool)
             state,
         ],
     );
-    let line = after(line_of(area, 2), 1);
+    let line = rest_after(line_of(area, 2), 1);
     let question = model.prompt.as_ref().map(|asked| question(model, asked));
     if let Some(question) = question {
-        painter.left(line, &question, painter.palette.tone(Tone::Warning));
+        painter.draw_left(line, &question, painter.palette.tone(Tone::Warning));
     }
 }
 
@@ -118,13 +122,13 @@ fn lines(painter: &mut Painter<'_>, area: Rect, model: &Model) {
             Some(hint) if age == 0 => format!("{}; {hint}", failure.message),
             _ => failure.message.clone(),
         });
-        let mut why = why.map(|why| wrapped(&why, usize::from(area.width.saturating_sub(5)))).unwrap_or_default();
+        let mut why = why.map(|why| wrap(&why, usize::from(area.width.saturating_sub(5)))).unwrap_or_default();
         why.truncate(if age == 0 { usize::from(area.height.saturating_sub(1)) } else { 1 });
         let taken = u16::try_from(1 + why.len()).unwrap_or(u16::MAX);
         let Some(top) = bottom.checked_sub(taken) else { return };
-        painter.parts(after(line_of(area, top), 1), &[(sign, style), (" ", quiet), (words.as_str(), quiet)]);
+        painter.draw_parts(rest_after(line_of(area, top), 1), &[(sign, style), (" ", quiet), (words.as_str(), quiet)]);
         for (line, text) in (top + 1..).zip(&why) {
-            painter.left(after(line_of(area, line), 4), text, style);
+            painter.draw_left(rest_after(line_of(area, line), 4), text, style);
         }
         bottom = top;
     }

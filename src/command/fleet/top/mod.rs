@@ -173,7 +173,7 @@ impl View<'_> {
             told => return self.model.handle_event(now, told),
         }
         // Another robot can be open now.
-        self.updates.wish(poll_request(&self.model));
+        self.updates.update_request(poll_request(&self.model));
         true
     }
 
@@ -192,7 +192,7 @@ impl View<'_> {
             Some(KeyAction::Refresh) => self.terminal.refresh()?,
             Some(order) => {
                 self.model.handle_key(self.start.elapsed(), order);
-                self.updates.wish(poll_request(&self.model));
+                self.updates.update_request(poll_request(&self.model));
             }
             None => {}
         }

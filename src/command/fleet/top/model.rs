@@ -170,8 +170,8 @@ impl Model {
     }
 
     /// Handles a poller event of a robot. Returns whether anything is new.
-    pub fn handle_event(&mut self, now: Moment, told: Event) -> bool {
-        let (robot, looked) = match told {
+    pub fn handle_event(&mut self, now: Moment, alarm_text: Event) -> bool {
+        let (robot, looked) = match alarm_text {
             Event::Polled(look) => {
                 // The user can correct an unreadable text file, so show its error.
                 let looked = look.unexplained.clone().map_or_else(|| Ok(look.sample.clone()), Err);
@@ -251,7 +251,7 @@ impl Model {
         let mut listed: Vec<usize> = (0..robots.len()).filter(|robot| robots[*robot].has(&matches_filter)).collect();
         match self.sort {
             Sort::Unsorted => {}
-            Sort::BySeverity => listed.sort_by_key(|robot| std::cmp::Reverse(robots[*robot].trouble())),
+            Sort::BySeverity => listed.sort_by_key(|robot| std::cmp::Reverse(robots[*robot].severity_of())),
             Sort::Name => listed.sort_by(|a, b| robots[*a].name.cmp(&robots[*b].name)),
             Sort::Answer => listed.sort_by_key(|robot| std::cmp::Reverse(robots[*robot].answers.back())),
         }
@@ -391,7 +391,7 @@ impl RobotRow {
     }
 
     /// Severity of its state.
-    pub fn trouble(&self) -> Severity {
+    pub fn severity_of(&self) -> Severity {
         if let Contact::Unreachable(_) = self.contact {
             return Severity::Silent;
         }

@@ -215,7 +215,7 @@ impl Run {
             && self.repeat.is_wanted()
             && !self.repeat.is_quiet
             && matches!(place, ReportPosition::First | ReportPosition::Next);
-        let time = (is_round && !sheet.has("time")).then(|| Timestamp::now().to_string());
+        let time = (is_round && !sheet.has_column("time")).then(|| Timestamp::now().to_string());
         let mut before: Vec<&str> = time.iter().map(|_| "time").collect();
         before.extend(rows.iter().find_map(|(robot, _)| robot.map(|_| "robot")));
         let header = sheet.header(&before);
@@ -257,13 +257,13 @@ impl Run {
                 format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
             }
         };
-        screen.data(&self.redraw.over(text))
+        screen.data(&self.redraw.with_erase(text))
     }
 }
 
 /// Columns of a report.
 fn sheet_of(report: &dyn AnyReport) -> Sheet {
-    Sheet::of(&report.schema().to_value(), report.rows())
+    Sheet::from_schema(&report.schema().to_value(), report.rows())
 }
 
 /// Failures of robots, with common ones merged.
@@ -288,7 +288,7 @@ fn common_failures(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
         });
         groups[at].1.push(reason);
     }
-    let told = groups.into_iter().flat_map(|((kind, message, hint), all)| {
+    let failures = groups.into_iter().flat_map(|((kind, message, hint), all)| {
         if all.len() <= MIN_GROUP {
             return all.into_iter().map(|(robot, failure)| with_robot_name(robot, failure.clone())).collect();
         }
@@ -296,7 +296,7 @@ fn common_failures(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
         let message = format!("{} and {} more robots: {message}", names.join(", "), all.len() - MAX_NAMES);
         vec![Failure { hint, ..Failure::new(kind, message) }]
     });
-    told.collect()
+    failures.collect()
 }
 
 /// Text with the name, host and port of the robot replaced by dots.

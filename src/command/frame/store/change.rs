@@ -114,7 +114,7 @@ async fn write_selected<S: Writable>(
         table.plan(link, &rows).await?;
         return Err(unknown());
     };
-    authority.confirm(&old_rows(table, &differing(&compared))).await?;
+    authority.confirm(&describe_change(table, &differing(&compared))).await?;
     write_each(table, link, screen, &mut compared).await;
     Ok(compared)
 }
@@ -169,7 +169,7 @@ pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[Strin
 }
 
 /// What is overwritten that a person wrote, for a question.
-pub fn old_rows<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
+pub fn describe_change<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
     table.consequences(rows).into_iter().fold(overwriting(table, &replaced(table, rows)), Change::note)
 }
 
@@ -178,7 +178,7 @@ pub fn overwriting<S: Writable>(table: &S, lost: &[[String; 3]]) -> Change {
     let [one, many] = S::WORDS.nouns;
     let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.table_suffix());
     let change = match lost.len() {
-        0 => return Change::nothing(),
+        0 => return Change::none(),
         1 => Change::new(format!("overwrite {article} {one}{place}")),
         count => Change::new(format!("overwrite {count} {many}{place}")),
     };

@@ -356,7 +356,7 @@ fn replacing<'j>(
     let total: usize = lost.iter().map(|(_, _, replaced)| replaced.len()).sum();
     let values = if total == 1 { "a value" } else { &format!("{total} values") };
     let change = match total {
-        0 => return Change::nothing(),
+        0 => return Change::none(),
         _ => Change::new(format!("overwrite {values} by the backup")),
     };
     let notes = machine.map(|table| table.consequences()).unwrap_or_default();

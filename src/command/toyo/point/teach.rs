@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::{AXES, Points, TaskOptions, parse_point};
 use crate::command::frame::dry_run::{Known as _, unknown};
-use crate::command::frame::store::{Store as _, Writable as _, old_rows};
+use crate::command::frame::store::{Store as _, Writable as _, describe_change};
 use crate::command::frame::teach::Taught;
 use crate::command::toyo::complete;
 use crate::command::toyo::link::{Link, Toyo};
@@ -18,7 +18,7 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Command as Word;
 use crate::failure::{Failure, Kind};
-use crate::gate::{Confirmation, outdated};
+use crate::gate::{Confirmation, data_changed};
 
 /// Store the current position as a point, and read it back.
 #[derive(Debug, Args)]
@@ -79,13 +79,13 @@ impl Teach {
         let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(current.number(axis).unwrap_or_default()));
         let new = points.cell(point, axes.into())?.wanted;
         let needs_confirmation = authority.asks();
-        let change = old_rows(points, &[(point, Some(&stored), &new)]);
+        let change = describe_change(points, &[(point, Some(&stored), &new)]);
         authority.confirm(&change).await?;
         if needs_confirmation {
             let moved_to = Coordinates::of(&read_position(link).await?, points.letters());
             if moved_to != coordinates {
                 let message = format!("the axes moved after the confirmation, to {}", position_text(&moved_to));
-                return Err(outdated(format!("{message}; nothing was stored")));
+                return Err(data_changed(format!("{message}; nothing was stored")));
             }
         }
         let is_stored = stored == new;

@@ -118,7 +118,7 @@ impl Delete {
         }
         let behind = steps::read_request(last.saturating_add(1).min(5000));
         link.plan_if(&behind, "whether a later step exists");
-        authority.confirm(&Change::nothing()).await?;
+        authority.confirm(&Change::none()).await?;
         steps::plan_open(link).await?;
         link.ask(&self.order(last)).await?;
         link.plan(&steps::read_request(self.step), "the steps after the change");

@@ -129,7 +129,7 @@ impl Report for Difference {
     fn view(&self) -> View {
         let Some(hunks) = self.files[0].more.compared.changes() else { return View::text(self.summary()) };
         let old = format!("task {} (controller)", self.task);
-        View::default().and(Section::Lines(text_diff::unified(&old, self.file(), hunks)))
+        View::default().append(Section::Lines(text_diff::unified(&old, self.file(), hunks)))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -281,7 +281,7 @@ impl Report for Got {
             return View::text(text.clone());
         }
         View::fields([
-            ("file", Cell::maybe(self.files[0].path.as_deref())),
+            ("file", Cell::optional(self.files[0].path.as_deref())),
             ("task", self.task.into()),
             ("steps read", format!("{} to {}", self.first_step, self.last_step).into()),
             ("used steps", self.used_steps.into()),

@@ -135,7 +135,7 @@ impl Insert {
         link.plan(&steps::read_request(self.step), "the steps that move");
         let last = Reason::about("the last step, which must be a NOP").depending_on("number of steps of the task");
         link.plan_depending("@RSTX ?", last);
-        authority.confirm(&Change::nothing()).await?;
+        authority.confirm(&Change::none()).await?;
         steps::plan_open(link).await?;
         link.ask(&self.order()).await?;
         if self.step < 5000 {

@@ -108,7 +108,7 @@ impl Report for Listed {
             let tags = tags.as_ref().map(|tags| tags.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "));
             let tags = match error {
                 Some(error) => Cell::from(in_a_word(error.kind)).tone(Tone::Bad),
-                None => Cell::maybe(tags),
+                None => Cell::optional(tags),
             };
             table.row([
                 (*task).into(),

@@ -61,8 +61,8 @@ impl Report for Current {
         let Self(program) = self;
         View::fields([
             ("task", program.more.task.into()),
-            ("step", Cell::maybe(program.step)),
-            ("instruction", Cell::maybe(program.more.instruction.as_deref())),
+            ("step", Cell::optional(program.step)),
+            ("instruction", Cell::optional(program.more.instruction.as_deref())),
         ])
     }
 }

@@ -85,7 +85,7 @@ pub fn cell(step: u16, instruction: &Record) -> Result<Cell, Failure> {
 /// Change to confirm: replaced steps with old and new text.
 pub fn overwriting(task: u8, replaced: &[[String; 3]]) -> Change {
     let change = match replaced.len() {
-        0 => return Change::nothing(),
+        0 => return Change::none(),
         1 => Change::new(format!("overwrite a step of task {task}")),
         many => Change::new(format!("overwrite {many} steps of task {task}")),
     };

@@ -115,9 +115,9 @@ impl Cmos {
     async fn ask(
         &self,
         link: &mut Link,
-        take: impl FnMut(&[u8]) -> Result<(), Failure>,
+        handle_block: impl FnMut(&[u8]) -> Result<(), Failure>,
     ) -> Result<Option<u64>, Failure> {
-        transfer::fetch_backup(link, self.wait, take).await.map_err(|failure| match failure.kind {
+        transfer::fetch_backup(link, self.wait, handle_block).await.map_err(|failure| match failure.kind {
             Kind::OutcomeUnknown => {
                 failure.hint("the controller may still be busy: wait, then use --download-only, or set a longer --wait")
             }

@@ -78,7 +78,7 @@ fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Chan
         }
     }
     if items.is_empty() {
-        return Change::nothing();
+        return Change::none();
     }
     let plural = if items.len() == 1 { "" } else { "s" };
     let change = Change::new(format!("delete {} file{plural} on the controller", items.len()));

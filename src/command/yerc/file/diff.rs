@@ -164,7 +164,7 @@ impl Report for Difference {
             if !compared.ignored.is_empty() {
                 lines.push(format!("the line {DATE_LINE} also differs and is ignored").into());
             }
-            return View::default().and(Section::Lines(lines));
+            return View::default().append(Section::Lines(lines));
         }
         match &compared.hunks {
             Some(hunks) if !self.equal => {

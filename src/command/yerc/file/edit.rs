@@ -243,7 +243,7 @@ impl Report for EditedJob {
         } else {
             format!("{name} was not changed; nothing was sent")
         };
-        View::default().and(Section::Text(text))
+        View::default().append(Section::Text(text))
     }
 }
 

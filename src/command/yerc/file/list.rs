@@ -90,7 +90,7 @@ fn table(files: &[FileItem<Listed>]) -> View {
     let mut table = Table::new(&["name", "type", "error"], "no files of this type");
     for file in files {
         let error = file.error.as_ref().map(ItemError::cell);
-        table.row([file.name.as_str().into(), Cell::maybe(file.more.file_type), Cell::maybe(error)]);
+        table.row([file.name.as_str().into(), Cell::optional(file.more.file_type), Cell::optional(error)]);
     }
     View::table(table.without_blank("error"))
 }

@@ -183,7 +183,7 @@ async fn compare(
 
 /// Notes in a dry run the requests after the lists.
 async fn plan(link: &mut Link, deliveries: &mut [Delivery], authority: &Authority<'_>) -> Result<(), Failure> {
-    authority.confirm(&Change::nothing()).await?;
+    authority.confirm(&Change::none()).await?;
     for Delivery { file, .. } in &*deliveries {
         let reason = Reason::about("if the file is listed: compares").depending_on("whether the file is listed");
         link.plan_download(&file.save(), reason)?;

@@ -59,7 +59,7 @@ pub async fn confirm_uploads<'a>(
         replaced.push(format!("{name}, with the {} bytes of {path}{unlisted_count}", content.size()));
     }
     if replaced.is_empty() {
-        return authority.confirm(&Change::nothing()).await;
+        return authority.confirm(&Change::none()).await;
     }
     let plural = if replaced.len() == 1 { "" } else { "s" };
     let change = Change::new(format!("overwrite {} file{plural} on the controller", replaced.len()));
@@ -69,7 +69,7 @@ pub async fn confirm_uploads<'a>(
     authority.confirm(&change).await
 }
 
-/// Notes in a dry run the requests of [`deliver`].
+/// Notes in a dry run the requests of [`upload`].
 pub fn plan(
     link: &mut Link,
     delivery: &mut Delivery,

@@ -37,8 +37,9 @@ impl Command for List {
         let wanted = groups(model);
         let progress = screen.spinner("reading signals");
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
-        let say =
-            |_: &[u16], known: usize| progress.say(&format!("reading signals: {known} of {} groups", wanted.len()));
+        let say = |_: &[u16], known: usize| {
+            progress.print_line(&format!("reading signals: {known} of {} groups", wanted.len()));
+        };
         let bytes = read_in_batches(link, plan, &wanted, |_| BatchSplit::Halves, say).await?;
         if let Some(Err(denied)) = bytes.values().find(|_| bytes.values().all(Result::is_err)) {
             return Err(denied.clone().into());

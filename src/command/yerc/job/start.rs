@@ -23,7 +23,7 @@ use crate::controller::Risk;
 use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
 use crate::controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob, StartJob};
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation, outdated};
+use crate::gate::{Change, Confirmation, data_changed};
 use crate::output::Screen;
 use crate::output::view::{Section, View};
 use crate::settings::duration;
@@ -176,7 +176,7 @@ async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
 fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &SelectedJob) -> Result<(), Failure> {
     let shown = |chosen: &SelectedJob| chosen.name(link.encoding).unwrap_or_else(|| "an unknown job".to_owned());
     if !now.is(name) {
-        return Err(outdated(format!(
+        return Err(data_changed(format!(
             "{} is selected now, not {}; no job was started",
             shown(now),
             link.encoding.decode(name)
@@ -184,7 +184,7 @@ fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &Selected
     }
     match (before.speed_override(), now.speed_override()) {
         (Some(before), Some(now)) if before != now => {
-            Err(outdated("the speed override has changed since the question; no job was started"))
+            Err(data_changed("the speed override has changed since the question; no job was started"))
         }
         _ => Ok(()),
     }
@@ -221,7 +221,7 @@ async fn wait(
             }
         }
         if let Some(line) = line(link, screen.can_redraw()).await? {
-            progress.say(&format!("{what}: {line}"));
+            progress.print_line(&format!("{what}: {line}"));
         }
         tokio::time::sleep(POLL_INTERVAL).await;
     }

@@ -49,9 +49,9 @@ fn mover(text: &str) -> Result<Group, String> {
 #[derive(Debug, Args)]
 pub(super) struct To {
     /// Target: x, y, z in mm and rx, ry, rz in degrees; or a position variable, such as P2 or its name
-    #[arg(long, value_name = "X,Y,Z,RX,RY,RZ|REF", allow_hyphen_values = true, value_parser = typed, add = complete::VARIABLE,
+    #[arg(long, value_name = "X,Y,Z,RX,RY,RZ|REF", allow_hyphen_values = true, value_parser = parse_target, add = complete::VARIABLE,
         conflicts_with_all = ["x", "y", "z", "rx", "ry", "rz"])]
-    to: Option<Typed>,
+    to: Option<ParsedTarget>,
     /// Target as axis angles in degrees, with pulses_per_degree of the robot in robots.toml
     #[arg(long, value_name = "S,L,U,R,B,T[,E]", allow_hyphen_values = true, value_parser = axis_degrees,
         conflicts_with_all = ["to", "x", "y", "z", "rx", "ry", "rz"])]
@@ -63,7 +63,7 @@ pub(super) struct To {
 impl To {
     /// The six coordinates; `None` if not given, which is valid only for a station.
     pub(super) fn coordinates(&self) -> Option<[i32; 6]> {
-        if let Some(Typed::Coordinates(to)) = &self.to {
+        if let Some(ParsedTarget::Coordinates(to)) = &self.to {
             return Some(*to);
         }
         let [x, y, z, rx, ry, rz] = self.single.values();
@@ -73,15 +73,15 @@ impl To {
     /// Target other than coordinates.
     pub(super) fn destination(&self) -> Option<Destination> {
         match &self.to {
-            Some(Typed::Variable(variable)) => Some(Destination::Variable(*variable)),
-            Some(Typed::Coordinates(_)) | None => self.deg.clone(),
+            Some(ParsedTarget::Variable(variable)) => Some(Destination::Variable(*variable)),
+            Some(ParsedTarget::Coordinates(_)) | None => self.deg.clone(),
         }
     }
 }
 
 /// Values of `--to`.
 #[derive(Debug, Clone, PartialEq)]
-enum Typed {
+enum ParsedTarget {
     Coordinates([i32; 6]),
     Variable(Reference),
 }
@@ -107,19 +107,19 @@ impl fmt::Display for Destination {
     }
 }
 
-fn typed(text: &str) -> Result<Typed, String> {
+fn parse_target(text: &str) -> Result<ParsedTarget, String> {
     names::parse_or_name(&[Kind::Variable], "P0", text, coordinates_or_variable)
 }
 
-fn coordinates_or_variable(text: &str) -> Result<Typed, String> {
+fn coordinates_or_variable(text: &str) -> Result<ParsedTarget, String> {
     if !text.starts_with(|first: char| first.is_ascii_alphabetic()) {
-        return coordinates(text).map(Typed::Coordinates);
+        return coordinates(text).map(ParsedTarget::Coordinates);
     }
     let variable: Reference = text.parse().map_err(|error| format!("{error}"))?;
     if !variable.kind.is_position() {
         return Err(format!("{variable} is not a position variable; use P or EX"));
     }
-    Ok(Typed::Variable(variable))
+    Ok(ParsedTarget::Variable(variable))
 }
 
 /// Angles in degrees, for as many axes as a robot requires.
@@ -396,7 +396,7 @@ pub(super) struct Values(pub(super) Vec<i32>);
 
 impl Values {
     /// Values in a field of `N` words; missing values are 0.
-    pub(super) fn padded<const N: usize>(&self) -> [i32; N] {
+    pub(super) fn with_zeros<const N: usize>(&self) -> [i32; N] {
         let mut words = [0; N];
         for (word, value) in words.iter_mut().zip(&self.0) {
             *word = *value;
@@ -443,8 +443,8 @@ fn list(text: &str, unit: Unit, count: std::ops::RangeInclusive<usize>) -> Resul
 
 fn coordinates(text: &str) -> Result<[i32; 6], String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-    let wrong = || format!("expected six numbers x,y,z,rx,ry,rz; {} given", parts.len());
-    let parts: [&str; 6] = parts.as_slice().try_into().map_err(|_| wrong())?;
+    let invalid = || format!("expected six numbers x,y,z,rx,ry,rz; {} given", parts.len());
+    let parts: [&str; 6] = parts.as_slice().try_into().map_err(|_| invalid())?;
     let mut values = [0; 6];
     for (axis, (value, part)) in values.iter_mut().zip(parts).enumerate() {
         let read = PositionKind::Base.unit(axis).parse(part);
@@ -508,7 +508,7 @@ pub(super) fn describe(
 }
 
 /// Text of the base axes for the confirmation.
-pub(super) fn base_told(base: Option<&Values>, unit: Unit) -> Option<String> {
+pub(super) fn base_is_given(base: Option<&Values>, unit: Unit) -> Option<String> {
     let values: Vec<String> = base?.0.iter().map(|value| unit.show(*value).to_string()).collect();
     Some(format!("{} {}", values.join(" "), unit.symbol))
 }
@@ -518,7 +518,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speeds_have_their_unit_and_class() {
+    fn parses_units_and_classes_of_speeds() {
         assert_eq!(Speed::percent("10%"), Ok(Speed { class: SpeedClass::Percent, word: 1000 }));
         assert_eq!(Speed::percent("0.01%").map(|speed| speed.word), Ok(1));
         assert_eq!(Speed::percent("100.00 %").map(|speed| speed.word), Ok(10_000));
@@ -535,7 +535,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_in_words() {
+    fn parses_forms() {
         assert_eq!(form("front,lower,noflip"), Ok(Form(0b110)));
         assert_eq!(form("noflip+s-ge180"), Ok(Form(0b10_0100)));
         assert_eq!(extended_form("w-ge180,l-lt180"), Ok(ExtendedForm(0b1_0000)));
@@ -545,7 +545,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_are_exact_and_counted() {
+    fn parses_exact_lists_of_the_right_length() {
         assert_eq!(coordinates("-1,0,+2.5,180,0,-0.0001"), Ok([-1000, 0, 2500, 1_800_000, 0, -1]));
         assert!(coordinates("1,2,3").unwrap_err().contains("3 given"));
         assert!(coordinates("1,2,3,4,5,6.00001").unwrap_err().starts_with("rz: "));
@@ -554,6 +554,6 @@ mod tests {
         assert!(robot_pulses("1,2,3,4,5").is_err());
         assert!(robot_pulses("1,2,3,4,5,6.5").is_err());
         assert!(base_lengths("1,2,3,4").is_err());
-        assert_eq!(base_lengths("1.5").unwrap().padded::<3>(), [1500, 0, 0]);
+        assert_eq!(base_lengths("1.5").unwrap().with_zeros::<3>(), [1500, 0, 0]);
     }
 }

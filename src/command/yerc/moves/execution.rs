@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::question::{Question, moved_meanwhile};
+use super::question::{Question, moved_during_question};
 use crate::client::yerc::AxisSet;
 use crate::command::frame::dry_run::Known as _;
 use crate::command::robot::motion::Motion;
@@ -27,7 +27,7 @@ use crate::settings::duration;
 
 /// A motion that has been checked.
 #[derive(Debug)]
-pub(super) struct Going<Q> {
+pub(super) struct Execution<Q> {
     /// Request.
     pub(super) order: Q,
     /// Group that moves.
@@ -49,7 +49,7 @@ pub(super) enum Goal {
     /// Base coordinates with this tool.
     Base([i32; 6], u32),
     /// Distance along base coordinates without rotation, with this tool.
-    Shift([i32; 3], u32),
+    Relative([i32; 3], u32),
     /// A target that cannot be compared with a position in these coordinates.
     Unknown(Coordinates),
 }
@@ -58,18 +58,18 @@ impl Goal {
     const fn coordinates(&self) -> Coordinates {
         match self {
             Self::Pulses(_) => Coordinates::Pulse,
-            Self::Base(..) | Self::Shift(..) => Coordinates::Base,
+            Self::Base(..) | Self::Relative(..) => Coordinates::Base,
             Self::Unknown(coordinates) => *coordinates,
         }
     }
 
     /// Converts a distance to a target with the start position.
     fn from(self, start: &Position) -> Self {
-        let Self::Shift(by, tool) = self else { return self };
+        let Self::Relative(by, tool) = self else { return self };
         let mut target = [0; 6];
         for (axis, value) in target.iter_mut().enumerate() {
-            let here = start.axes.padded()[axis];
-            let Some(there) = here.checked_add(by.get(axis).copied().unwrap_or(0)) else {
+            let at_start = start.axes.padded()[axis];
+            let Some(there) = at_start.checked_add(by.get(axis).copied().unwrap_or(0)) else {
                 return Self::Unknown(Coordinates::Base);
             };
             *value = there;
@@ -82,7 +82,7 @@ impl Goal {
         let (kind, axes, tool) = match self {
             Self::Pulses(axes) => (PositionKind::Pulse, &axes[..], 0),
             Self::Base(axes, tool) => (PositionKind::Base, &axes[..], *tool),
-            Self::Shift(..) | Self::Unknown(_) => return None,
+            Self::Relative(..) | Self::Unknown(_) => return None,
         };
         let (form, extended) = (Form(0), ExtendedForm(0));
         Some(Position { kind, form, tool, user: 0, extended, axes: Axes::new(axes)? })
@@ -96,8 +96,9 @@ impl Goal {
             // Coordinates of another tool cannot be compared.
             Self::Base(target, tool) if here.tool == *tool && axes.len() >= target.len() => {
                 let unit = |axis| PositionKind::Base.unit(axis);
-                let mut near = target.iter().zip(axes).enumerate().map(|(axis, (t, h))| is_near(unit(axis), *t, *h));
-                let (place, turn) = (near.by_ref().take(3).all(|near| near), near.all(|near| near));
+                let mut nearest_turn =
+                    target.iter().zip(axes).enumerate().map(|(axis, (t, h))| is_near(unit(axis), *t, *h));
+                let (place, turn) = (nearest_turn.by_ref().take(3).all(|near| near), nearest_turn.all(|near| near));
                 match (place, turn) {
                     (false, _) => Some(false),
                     (true, true) => Some(true),
@@ -105,7 +106,7 @@ impl Goal {
                     (true, false) => None,
                 }
             }
-            Self::Base(..) | Self::Shift(..) | Self::Unknown(_) => None,
+            Self::Base(..) | Self::Relative(..) | Self::Unknown(_) => None,
         }
     }
 }
@@ -113,15 +114,15 @@ impl Goal {
 /// Tolerance of the target position: 0.1 mm, 0.1 degree, 100 pulses (less than 0.1 degree on usual axes). It is
 /// larger than the accuracy of a robot and smaller than a useful motion.
 fn is_near(unit: Unit, target: i32, here: i32) -> bool {
-    within(unit, target, here, 100, 1000)
+    is_within_tolerance(unit, target, here, 100, 1000)
 }
 
 /// Tolerance between readings of a robot at rest: 0.02 mm, 0.02 degree, 20 pulses.
 fn is_same(unit: Unit, one: i32, other: i32) -> bool {
-    within(unit, one, other, 20, 200)
+    is_within_tolerance(unit, one, other, 20, 200)
 }
 
-fn within(unit: Unit, one: i32, other: i32, others: i64, degrees: i64) -> bool {
+fn is_within_tolerance(unit: Unit, one: i32, other: i32, others: i64, degrees: i64) -> bool {
     const TURN: i64 = 3_600_000;
     let difference = (i64::from(one) - i64::from(other)).abs();
     if unit == units::DEGREE {
@@ -132,7 +133,7 @@ fn within(unit: Unit, one: i32, other: i32, others: i64, degrees: i64) -> bool {
     difference <= others
 }
 
-impl<Q: Query<Answer = ()>> Going<Q> {
+impl<Q: Query<Answer = ()>> Execution<Q> {
     /// Confirms the motion, starts it and, unless `--no-wait` is set, waits for its end.
     pub(super) async fn run(
         self,
@@ -144,7 +145,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         let coordinates = goal.coordinates();
         let mut start = None;
         for (group, named, flag) in unnamed {
-            refuse_silent_zeros(link, group, named, flag).await?;
+            refuse_implicit_zeros(link, group, named, flag).await?;
         }
         if link.known_model() == Some(Model::Dx100) {
             screen.note("warning: moves are not tested on a dx100; armctl uses the layout of a DX200");
@@ -160,8 +161,8 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         authority.confirm(&question.change(group, start.as_ref(), &goal, link.pulses_per_degree(group))).await?;
         if let (Some(asked), true) = (&start, is_asked) {
             let (now, _) = position::ask(link, group, coordinates).await?;
-            if !stands(asked, &now) {
-                return Err(moved_meanwhile(group, &now));
+            if !is_standing(asked, &now) {
+                return Err(moved_during_question(group, &now));
             }
         }
         let start = start.filter(|_| !no_wait);
@@ -181,40 +182,40 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         let mut moved = MotionReport { motion, variable: None };
         let Some(start) = start else { return Ok(moved) };
 
-        let done = format!("the motion of {group} was accepted");
+        let outcome = format!("the motion of {group} was accepted");
         let progress = screen.spinner(&format!("{group} moves"));
         let began = Instant::now();
         let mut watch = Watch::new(start);
         loop {
-            let status = link.ask(&ReadStatus).await.map_err(|failure| lost_contact(&done, failure))?;
+            let status = link.ask(&ReadStatus).await.map_err(|failure| lost_contact(&outcome, failure))?;
             let asked = position::ask(link, group, coordinates).await;
-            let (here, report) = asked.map_err(|failure| lost_contact(&done, failure))?;
-            let at_target = goal.is_reached(&here);
+            let (here, report) = asked.map_err(|failure| lost_contact(&outcome, failure))?;
+            let is_at_target = goal.is_reached(&here);
             let place = in_a_line(here.kind, here.axes.as_slice(), matches!(group, Group::Robot(_)));
-            match watch.look(began.elapsed(), status, here, at_target) {
-                Look::Moving => progress.say(&format!("{group} {place}")),
-                Look::Ended if at_target == Some(false) => {
+            match watch.look(began.elapsed(), status, here, is_at_target) {
+                Progress::Moving => progress.print_line(&format!("{group} {place}")),
+                Progress::Ended if is_at_target == Some(false) => {
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
-                        format!("{done}, but it ended before its target; position: {place}"),
+                        format!("{outcome}, but it ended before its target; position: {place}"),
                     )
                     .hint("it was stopped without an alarm: check the pendant before you continue"));
                 }
-                Look::Ended => {
+                Progress::Ended => {
                     let motion = &mut moved.motion;
-                    (motion.reached, motion.position) = (at_target, Some(report));
+                    (motion.reached, motion.position) = (is_at_target, Some(report));
                     motion.elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
                     return Ok(moved);
                 }
-                Look::Stopped(trouble) => {
+                Progress::Stopped(trouble) => {
                     let place = resting_place(link, group, coordinates, here, place).await;
-                    return Err(trouble.failure(link, &done, Some(&place)).await);
+                    return Err(trouble.failure(link, &outcome, Some(&place)).await);
                 }
-                Look::NotBegun => {
+                Progress::NotStarted => {
                     let within = duration::display(START_TIMEOUT);
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
-                        format!("{done}, but it has not started within {within}; position: {place}"),
+                        format!("{outcome}, but it has not started within {within}; position: {place}"),
                     )
                     .hint("it may still start: keep clear, and check `yerc status` and the pendant"));
                 }
@@ -234,7 +235,7 @@ pub(super) async fn plan_looks(link: &mut Link, group: Group, coordinates: Coord
 }
 
 /// Maximum number of reads until a robot is at rest: two seconds.
-const LOOKS_TO_REST: u32 = 40;
+const REST_POLLS: u32 = 40;
 
 /// Position of a robot after a stop, as text; the last known position if it cannot be read.
 async fn resting_place(
@@ -244,10 +245,10 @@ async fn resting_place(
     mut last: Position,
     mut place: String,
 ) -> String {
-    for _ in 0..LOOKS_TO_REST {
+    for _ in 0..REST_POLLS {
         tokio::time::sleep(POLL_INTERVAL).await;
         let Ok((here, _)) = position::ask(link, group, coordinates).await else { break };
-        let is_at_rest = stands(&last, &here);
+        let is_at_rest = is_standing(&last, &here);
         place = in_a_line(here.kind, here.axes.as_slice(), matches!(group, Group::Robot(_)));
         last = here;
         if is_at_rest {
@@ -259,7 +260,7 @@ async fn resting_place(
 
 /// A move has words for every axis, and a 0 for an axis that was not named would move it there. That is correct only
 /// if the axis is not fitted, or is at 0.
-async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: &str) -> Result<(), Failure> {
+async fn refuse_implicit_zeros(link: &mut Link, group: Group, named: usize, flag: &str) -> Result<(), Failure> {
     if named >= words(group) {
         return Ok(());
     }
@@ -273,7 +274,7 @@ async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: 
     match answer {
         Ok(position) => {
             let (axes, _) = link.existing_axes(group, Coordinates::Pulse, position.axes).await;
-            silent_zero(group, &Position { axes, ..position }, named, flag).map_or(Ok(()), Err)
+            implicit_zero(group, &Position { axes, ..position }, named, flag).map_or(Ok(()), Err)
         }
         // A group that does not exist cannot move.
         Err(Refusal { status, .. }) if is_absent(status) => Ok(()),
@@ -299,7 +300,7 @@ const fn words(group: Group) -> usize {
     }
 }
 
-fn silent_zero(group: Group, position: &Position, named: usize, flag: &str) -> Option<Failure> {
+fn implicit_zero(group: Group, position: &Position, named: usize, flag: &str) -> Option<Failure> {
     let (axis, value) = position.axes.as_slice().iter().enumerate().skip(named).find(|(_, value)| **value != 0)?;
     let message = format!("axis {} of {group} is at {value} pulses and has no target, so it would move to 0", axis + 1);
     Some(Failure::usage(message).hint(format!("nothing was sent; give every axis of {group} with {flag}")))
@@ -310,13 +311,13 @@ fn silent_zero(group: Group, position: &Position, named: usize, flag: &str) -> O
 struct Watch {
     start: Position,
     last: Position,
-    looked: bool,
-    seen: bool,
+    polls: bool,
+    has_moved: bool,
 }
 
 /// State of the motion after a read of status and position.
 #[derive(Debug, PartialEq, Eq)]
-enum Look {
+enum Progress {
     /// Still moving.
     Moving,
     /// Ended.
@@ -324,35 +325,41 @@ enum Look {
     /// Stopped by a cause.
     Stopped(StandstillCause),
     /// No motion started in time.
-    NotBegun,
+    NotStarted,
 }
 
 impl Watch {
     fn new(start: Position) -> Self {
-        Self { start, last: start, looked: false, seen: false }
+        Self { start, last: start, polls: false, has_moved: false }
     }
 
     /// The position is read after the status: if the status shows that nothing is running, the position is final. The
     /// running bit may be set shortly after the acceptance. So a standstill counts from the second read, and only if
     /// the motion was seen or the robot is at its target.
-    fn look(&mut self, elapsed: Duration, status: ControllerStatus, here: Position, at_target: Option<bool>) -> Look {
-        self.seen |= status.running() || !stands(&self.start, &here);
-        let is_still = !status.running() && self.looked && stands(&self.last, &here);
-        self.looked = true;
+    fn look(
+        &mut self,
+        elapsed: Duration,
+        status: ControllerStatus,
+        here: Position,
+        at_target: Option<bool>,
+    ) -> Progress {
+        self.has_moved |= status.running() || !is_standing(&self.start, &here);
+        let is_still = !status.running() && self.polls && is_standing(&self.last, &here);
+        self.polls = true;
         self.last = here;
         if let Some(trouble) = StandstillCause::of(status) {
-            return Look::Stopped(trouble);
+            return Progress::Stopped(trouble);
         }
-        match (is_still, self.seen || at_target == Some(true)) {
-            (true, true) => Look::Ended,
-            (_, false) if elapsed >= START_TIMEOUT => Look::NotBegun,
-            _ => Look::Moving,
+        match (is_still, self.has_moved || at_target == Some(true)) {
+            (true, true) => Progress::Ended,
+            (_, false) if elapsed >= START_TIMEOUT => Progress::NotStarted,
+            _ => Progress::Moving,
         }
     }
 }
 
 /// Whether both readings are those of a group at rest.
-pub(in crate::command::yerc) fn stands(one: &Position, other: &Position) -> bool {
+pub(in crate::command::yerc) fn is_standing(one: &Position, other: &Position) -> bool {
     let axes = one.axes.as_slice().iter().zip(other.axes.as_slice()).enumerate();
     axes.into_iter().all(|(axis, (a, b))| is_same(one.kind.unit(axis), *a, *b))
 }
@@ -382,10 +389,10 @@ impl Report for MotionReport {
             (Some(_), _) => Cell::from("ended").tone(Tone::Good),
         };
         View::fields([
-            ("group", Cell::maybe(group.as_deref())),
+            ("group", Cell::optional(group.as_deref())),
             ("motion", motion),
-            ("position", Cell::maybe(position.as_ref().map(robot::Position::line))),
-            ("elapsed (ms)", Cell::maybe(*elapsed_ms)),
+            ("position", Cell::optional(position.as_ref().map(robot::Position::line))),
+            ("elapsed (ms)", Cell::optional(*elapsed_ms)),
         ])
     }
 }
@@ -417,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn a_target_is_told_from_what_is_not() {
+    fn distinguishes_target_from_other_positions() {
         let goal = Goal::Base(HOME, 1);
         assert_eq!(goal.is_reached(&at(HOME)), Some(true));
         assert_eq!(goal.is_reached(&at([100_050, 0, 500_000, -1_800_000, 0, 0])), Some(true), "180 is -180");
@@ -432,60 +439,60 @@ mod tests {
     }
 
     #[test]
-    fn a_distance_is_a_target_once_the_start_is_known() {
-        let goal = Goal::Shift([0, 0, -500], 1).from(&at(HOME));
+    fn computes_the_target_of_a_relative_move() {
+        let goal = Goal::Relative([0, 0, -500], 1).from(&at(HOME));
         assert_eq!(goal, Goal::Base([100_000, 0, 499_500, 1_800_000, 0, 0], 1));
-        assert_eq!(Goal::Shift([i32::MAX, 0, 0], 1).from(&at(HOME)), Goal::Unknown(Coordinates::Base));
+        assert_eq!(Goal::Relative([i32::MAX, 0, 0], 1).from(&at(HOME)), Goal::Unknown(Coordinates::Base));
     }
 
     #[test]
-    fn the_running_bit_may_come_late() {
+    fn accepts_a_late_running_bit() {
         let mut watch = Watch::new(at(HOME));
-        let there = [200_000, 0, 500_000, 1_800_000, 0, 0];
-        assert_eq!(watch.look(after(0), status(false), at(HOME), Some(false)), Look::Moving);
-        assert_eq!(watch.look(after(100), status(false), at(HOME), Some(false)), Look::Moving);
-        assert_eq!(watch.look(after(200), status(true), at(HOME), Some(false)), Look::Moving);
-        assert_eq!(watch.look(after(300), status(true), at(there), Some(true)), Look::Moving);
-        assert_eq!(watch.look(after(400), status(false), at(there), Some(true)), Look::Ended);
+        let at_target = [200_000, 0, 500_000, 1_800_000, 0, 0];
+        assert_eq!(watch.look(after(0), status(false), at(HOME), Some(false)), Progress::Moving);
+        assert_eq!(watch.look(after(100), status(false), at(HOME), Some(false)), Progress::Moving);
+        assert_eq!(watch.look(after(200), status(true), at(HOME), Some(false)), Progress::Moving);
+        assert_eq!(watch.look(after(300), status(true), at(at_target), Some(true)), Progress::Moving);
+        assert_eq!(watch.look(after(400), status(false), at(at_target), Some(true)), Progress::Ended);
     }
 
     #[test]
-    fn a_motion_shorter_than_a_look_is_seen_by_its_place() {
+    fn detects_a_short_motion_by_its_position() {
         let mut watch = Watch::new(at(HOME));
         let there = [101_000, 0, 500_000, 1_800_000, 0, 0];
-        assert_eq!(watch.look(after(0), status(false), at(there), None), Look::Moving);
-        assert_eq!(watch.look(after(100), status(false), at(there), None), Look::Ended);
+        assert_eq!(watch.look(after(0), status(false), at(there), None), Progress::Moving);
+        assert_eq!(watch.look(after(100), status(false), at(there), None), Progress::Ended);
     }
 
     #[test]
-    fn a_target_where_the_robot_stands_is_reached_at_once() {
+    fn target_at_the_start_is_reached_at_once() {
         let mut watch = Watch::new(at(HOME));
-        assert_eq!(watch.look(after(0), status(false), at(HOME), Some(true)), Look::Moving);
-        assert_eq!(watch.look(after(100), status(false), at(HOME), Some(true)), Look::Ended);
+        assert_eq!(watch.look(after(0), status(false), at(HOME), Some(true)), Progress::Moving);
+        assert_eq!(watch.look(after(100), status(false), at(HOME), Some(true)), Progress::Ended);
     }
 
     #[test]
-    fn what_never_begins_is_told() {
+    fn reports_a_motion_that_does_not_start() {
         let mut watch = Watch::new(at(HOME));
-        assert_eq!(watch.look(after(0), status(false), at(HOME), None), Look::Moving);
-        assert_eq!(watch.look(START_TIMEOUT, status(false), at(HOME), None), Look::NotBegun);
+        assert_eq!(watch.look(after(0), status(false), at(HOME), None), Progress::Moving);
+        assert_eq!(watch.look(START_TIMEOUT, status(false), at(HOME), None), Progress::NotStarted);
     }
 
     #[test]
-    fn alarm_and_hold_end_the_waiting() {
+    fn alarm_and_hold_end_the_wait() {
         let mut watch = Watch::new(at(HOME));
         let alarmed = status(true).with(StatusBit::Alarm, true);
-        assert_eq!(watch.look(after(0), alarmed, at(HOME), None), Look::Stopped(StandstillCause::Alarm));
+        assert_eq!(watch.look(after(0), alarmed, at(HOME), None), Progress::Stopped(StandstillCause::Alarm));
         let held = status(false).with(StatusBit::HoldPendant, true);
-        assert_eq!(watch.look(after(100), held, at(HOME), None), Look::Stopped(StandstillCause::Hold("pendant")));
+        assert_eq!(watch.look(after(100), held, at(HOME), None), Progress::Stopped(StandstillCause::Hold("pendant")));
     }
 
     #[test]
-    fn axes_that_were_not_named_must_stand_at_zero() {
+    fn requires_unnamed_axes_at_zero() {
         let base = |axes: &[i32]| Position { kind: PositionKind::Pulse, axes: Axes::new(axes).unwrap(), ..at(HOME) };
-        assert!(silent_zero(Group::Base(1), &base(&[0, 0]), 0, "--base-axes").is_none());
-        assert!(silent_zero(Group::Base(1), &base(&[5, 0]), 1, "--base-axes").is_none());
-        let failure = silent_zero(Group::Base(1), &base(&[5, 7]), 1, "--base-axes").unwrap();
+        assert!(implicit_zero(Group::Base(1), &base(&[0, 0]), 0, "--base-axes").is_none());
+        assert!(implicit_zero(Group::Base(1), &base(&[5, 0]), 1, "--base-axes").is_none());
+        let failure = implicit_zero(Group::Base(1), &base(&[5, 7]), 1, "--base-axes").unwrap();
         assert!(failure.message.starts_with("axis 2 of B1 is at 7 pulses"), "{failure}");
         assert_eq!(failure.kind, Kind::Usage);
     }

@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 
-use super::arguments::{Speed, Values, base_told, describe};
+use super::arguments::{Speed, Values, base_is_given, describe};
 use super::execution::Goal;
 use crate::command::yerc::position::{axis_names, in_a_line};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{Position, PositionKind, SpeedClass};
 use crate::failure::Failure;
-use crate::gate::{Change, outdated};
+use crate::gate::{Change, data_changed};
 
 /// Text parts of a motion.
 #[derive(Debug)]
@@ -27,16 +27,16 @@ pub(super) struct Question<'a> {
     /// Values of a station.
     pub(super) station: Option<Cow<'a, Values>>,
     /// `in base coordinates, tool 0`; may be empty.
-    pub(super) how: String,
+    pub(super) manner: String,
     pub(super) speed: Speed,
 }
 
 impl Question<'_> {
     /// One-line text, if nothing was read from the robot.
     pub(super) fn in_a_line(&self) -> String {
-        let base = base_told(self.base.0, self.base.1);
+        let base = base_is_given(self.base.0, self.base.1);
         let place = describe(self.kind, self.robot.as_deref(), base, self.station.as_deref());
-        let how = if self.how.is_empty() { String::new() } else { format!(" {}", self.how) };
+        let how = if self.manner.is_empty() { String::new() } else { format!(" {}", self.manner) };
         let place = if place.is_empty() { place } else { format!(" {} {place}", self.preposition) };
         format!("{}{place}{how} at {}", self.what, self.speed)
     }
@@ -48,13 +48,13 @@ impl Question<'_> {
         match (goal, start) {
             (Goal::Base(target, tool), Some(start)) if start.tool == *tool && start.kind == PositionKind::Base => {
                 change = compared(change, group, start, target, &[]);
-                let [x, y, z] = [0, 1, 2].map(|axis| apart(start, target, axis));
+                let [x, y, z] = [0, 1, 2].map(|axis| describe_distance(start, target, axis));
                 let way = (x * x + y * y + z * z).sqrt() / 1000.0;
                 change = change.note(format!("The target is {way:.3} mm away{}.", self.time(way)));
             }
             (Goal::Pulses(target), Some(start)) if start.kind == PositionKind::Pulse => {
                 change = compared(change, group, start, target, per_degree);
-                if let Some(farthest) = farthest(group, start, target, per_degree) {
+                if let Some(farthest) = longest_distance(group, start, target, per_degree) {
                     change = change.note(farthest);
                 }
             }
@@ -68,10 +68,10 @@ impl Question<'_> {
                 }
             }
         }
-        if let Some(base) = base_told(self.base.0, self.base.1) {
+        if let Some(base) = base_is_given(self.base.0, self.base.1) {
             change = change.item(format!("base: {} {base}", self.preposition));
         }
-        match self.how.trim_end_matches(',').strip_prefix("in ") {
+        match self.manner.trim_end_matches(',').strip_prefix("in ") {
             Some(how) => change.note(format!("In {how}.")),
             None => change,
         }
@@ -104,9 +104,9 @@ pub(in crate::command::yerc) fn compared(
 }
 
 /// Axis with the largest rotation, if degrees are known.
-fn farthest(group: Group, start: &Position, target: &[i32], per_degree: &[f64]) -> Option<String> {
-    let ways = axis_names(start.kind, group).into_iter().zip(per_degree).enumerate();
-    let ways = ways.map(|(at, (name, per))| (name, (apart(start, target, at) / per).abs()));
+fn longest_distance(group: Group, start: &Position, target: &[i32], per_degree: &[f64]) -> Option<String> {
+    let distances = axis_names(start.kind, group).into_iter().zip(per_degree).enumerate();
+    let ways = distances.map(|(at, (name, per))| (name, (describe_distance(start, target, at) / per).abs()));
     let (name, degrees) = ways.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
     Some(format!("Largest rotation: {name}, {degrees:.3} deg."))
 }
@@ -119,13 +119,13 @@ fn shown(kind: PositionKind, axis: usize, value: i32) -> String {
 }
 
 /// Distance of an axis in steps.
-fn apart(start: &Position, target: &[i32], axis: usize) -> f64 {
+fn describe_distance(start: &Position, target: &[i32], axis: usize) -> f64 {
     let of = |axes: &[i32]| axes.get(axis).copied().map_or(0.0, f64::from);
     of(target) - of(start.axes.as_slice())
 }
 
 /// Failure: the robot has moved since the question.
-pub(in crate::command::yerc) fn moved_meanwhile(group: Group, now: &Position) -> Failure {
+pub(in crate::command::yerc) fn moved_during_question(group: Group, now: &Position) -> Failure {
     let place = in_a_line(now.kind, now.axes.as_slice(), matches!(group, Group::Robot(_)));
-    outdated(format!("{group} has moved since the question, to {place}; nothing was sent"))
+    data_changed(format!("{group} has moved since the question, to {place}; nothing was sent"))
 }

@@ -1,7 +1,7 @@
 //! Moves to the content of a position variable (`--to P2`), and to axis angles in degrees (`--deg`).
 
 use super::arguments::{Destination, Speed, Values};
-use super::execution::{Goal, Going, MotionReport, plan_looks};
+use super::execution::{Execution, Goal, MotionReport, plan_looks};
 use super::question::Question;
 use super::{Target, cartesian_move, unnamed_base_axes, way};
 use crate::command::Context;
@@ -11,7 +11,7 @@ use crate::command::yerc::existing_items::ReadError;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::yerc::position;
 use crate::command::yerc::switch_commands::usage;
-use crate::command::yerc::var::{called, is_undefined, unlike};
+use crate::command::yerc::var::{different_words, is_undefined, variable_name};
 use crate::controller::units;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{
@@ -41,13 +41,13 @@ impl Motion<'_> {
         let (name, value) = match destination {
             Destination::Degrees(degrees) => {
                 self.target.refuse_extra_flags("--deg", self.target.frame.user.is_some())?;
-                (None, Value::Position(self.rotated(link, degrees)?))
+                (None, Value::Position(self.rotated_axis(link, degrees)?))
             }
             Destination::Variable(variable) => {
                 let has_frame = self.target.frame.tool.is_some() || self.target.frame.user.is_some();
                 self.target.refuse_extra_flags(&format!("--to {variable}"), has_frame)?;
                 let group = self.target.mover.group;
-                suits(*variable, group)?;
+                is_suitable(*variable, group)?;
                 match read(link, *variable).await.known()? {
                     Some(value) => (Some(*variable), value),
                     None => return Err(self.plan(link, *variable).await?),
@@ -55,15 +55,15 @@ impl Motion<'_> {
             }
         };
         let per_degree = context.link.pulses_per_degree(self.target.mover.group).to_vec();
-        let target = position::taught(self.target.mover.group, &value, &per_degree);
-        let called = name.map(|variable| called(names::of_robot(context.robot, context.screen), variable));
+        let target = position::has_taught_axes(self.target.mover.group, &value, &per_degree);
+        let label = name.map(|variable| variable_name(names::of_robot(context.robot, context.screen), variable));
         let mut report = match value {
             Value::Position(position) if position.kind.is_cartesian() => {
-                let question = self.question(called.as_deref(), &value);
+                let question = self.question(label.as_deref(), &value);
                 self.cartesian(context.link, position, name).await?.run(context, &question).await?
             }
             _ => {
-                let question = self.question(called.as_deref(), &value);
+                let question = self.question(label.as_deref(), &value);
                 self.pulses(context.link, &value, name).await?.run(context, &question).await?
             }
         };
@@ -96,7 +96,7 @@ impl Motion<'_> {
             what: format!("move {} {}{to}", self.target.mover.group, way(self.kind)),
             preposition: "to",
             kind,
-            how,
+            manner: how,
             robot,
             base: (None, units::PULSE),
             station: station.map(std::borrow::Cow::Owned),
@@ -109,7 +109,7 @@ impl Motion<'_> {
         link: &mut Link,
         value: &Value,
         name: Option<Reference>,
-    ) -> Result<Going<MovePulse>, Failure> {
+    ) -> Result<Execution<MovePulse>, Failure> {
         let group = self.target.mover.group;
         let (robot, station) = self.target.mover.words();
         let mut order = PulseMove {
@@ -130,16 +130,16 @@ impl Motion<'_> {
             Value::External(external) if external.kind == PositionKind::Pulse => {
                 let [first @ .., seventh, eighth] = external.axes.padded();
                 if (seventh, eighth) != (0, 0) {
-                    return Err(not_a_target(name, "it has more axes than a move of a station supports"));
+                    return Err(unsuitable_target(name, "it has more axes than a move of a station supports"));
                 }
                 order.station_axes = first;
                 (external.axes, Vec::new())
             }
-            _ => return Err(not_a_target(name, "its type is neither pulses nor coordinates of the manual")),
+            _ => return Err(unsuitable_target(name, "its type is neither pulses nor coordinates of the manual")),
         };
         let order = link.by_model(|model| MovePulse::new(model, self.kind, order)).await?;
         let goal = Goal::Pulses(axes.as_slice().to_vec());
-        Ok(Going { order, group, goal, unnamed, no_wait: self.target.mover.end.no_wait() })
+        Ok(Execution { order, group, goal, unnamed, no_wait: self.target.mover.end.no_wait() })
     }
 
     async fn cartesian(
@@ -147,11 +147,11 @@ impl Motion<'_> {
         link: &mut Link,
         position: Position,
         name: Option<Reference>,
-    ) -> Result<Going<MoveCartesian>, Failure> {
+    ) -> Result<Execution<MoveCartesian>, Failure> {
         let group = self.target.mover.group;
         let [x, y, z, rx, ry, rz, re, eighth] = position.axes.padded();
         if (re, eighth) != (0, 0) {
-            return Err(not_a_target(name, "a move to coordinates does not support its seventh axis")
+            return Err(unsuitable_target(name, "a move to coordinates does not support its seventh axis")
                 .hint("teach it in pulses, which support all axes"));
         }
         let target = [x, y, z, rx, ry, rz];
@@ -163,14 +163,14 @@ impl Motion<'_> {
         let model = link.model_for(|model| MoveCartesian::new(model, self.kind, order)).await?;
         let order = MoveCartesian::new(model, self.kind, order).map_err(|error| {
             let why = error.to_string();
-            not_a_target(name, &format!("a move does not support it: {why}"))
+            unsuitable_target(name, &format!("a move does not support it: {why}"))
                 .hint("teach it in pulses, which support all axes")
         })?;
         let goal = match position.kind {
             PositionKind::Base => Goal::Base(target, position.tool),
             _ => Goal::Unknown(Coordinates::Base),
         };
-        Ok(Going {
+        Ok(Execution {
             order,
             group,
             goal,
@@ -180,7 +180,7 @@ impl Motion<'_> {
     }
 
     /// Converts degrees to pulses, with the values of the inventory.
-    fn rotated(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
+    fn rotated_axis(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
         let group = self.target.mover.group;
         let per_degree = link.pulses_per_degree(group);
         if per_degree.len() < degrees.len() {
@@ -192,7 +192,7 @@ impl Motion<'_> {
                  degrees",
             ));
         }
-        let pulses = degrees.iter().zip(per_degree).map(|(degrees, per_degree)| whole(degrees * per_degree));
+        let pulses = degrees.iter().zip(per_degree).map(|(degrees, per_degree)| rounded(degrees * per_degree));
         let too_far =
             || Failure::usage("--deg: the number of pulses is too large for an axis").hint("check pulses_per_degree");
         let pulses: Vec<i32> = pulses.collect::<Option<_>>().ok_or_else(too_far)?;
@@ -222,7 +222,7 @@ impl Motion<'_> {
         link.plan_depending(&pulse.request(), &base.request(), reason);
         link.plan_existing_axes(group, Coordinates::Pulse);
         let holds = format!("starts the motion, if {variable} contains");
-        let [one, other] = unlike();
+        let [one, other] = different_words();
         let (robot, station) = self.target.mover.words();
         let pulses = |word: i32| PulseMove {
             robot,
@@ -274,7 +274,7 @@ async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
 }
 
 /// Rejects a variable of another group.
-fn suits(variable: Reference, group: Group) -> Result<(), Failure> {
+fn is_suitable(variable: Reference, group: Group) -> Result<(), Failure> {
     let is_right = match group {
         Group::Robot(_) => variable.kind == VariableKind::P,
         Group::Station(_) => variable.kind == VariableKind::Ex,
@@ -288,7 +288,7 @@ fn suits(variable: Reference, group: Group) -> Result<(), Failure> {
         .hint("use P for a robot and EX for a station (--group S1); a base moves with its robot"))
 }
 
-fn not_a_target(name: Option<Reference>, why: &str) -> Failure {
+fn unsuitable_target(name: Option<Reference>, why: &str) -> Failure {
     let name = name.map_or_else(|| "this".to_owned(), |name| name.to_string());
     Failure::new(Kind::Usage, format!("{name} is not a valid target: {why}; no motion command was sent"))
 }
@@ -299,7 +299,7 @@ fn word(kind: PositionKind) -> &'static str {
 }
 
 /// Nearest whole number of pulses.
-fn whole(pulses: f64) -> Option<i32> {
+fn rounded(pulses: f64) -> Option<i32> {
     let text = format!("{pulses:.0}");
     text.parse().ok()
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::position::{self, PositionData};
 use super::value::Data;
-use super::word::unlike;
+use super::word::different_words;
 use crate::command::frame::store::Field;
 use crate::controller::text::{Encoding, hex, unhex};
 use crate::controller::yerc::group::Group;
@@ -106,7 +106,7 @@ pub fn check_position(cells: &Cells) -> Result<(), String> {
 ///
 /// # Errors
 /// Which field is missing or wrong.
-pub fn over(cells: &Cells, kind: VariableKind, old: Option<&Value>) -> Result<Value, String> {
+pub fn merge_over(cells: &Cells, kind: VariableKind, old: Option<&Value>) -> Result<Value, String> {
     let mut merged = old.and_then(PositionData::of).map(|data| data.fields()).unwrap_or_default();
     let is_other_type = cells.get(position::TYPE).is_some_and(|given| merged.get(position::TYPE) != Some(given));
     let is_alone = merged.is_empty() || is_other_type;
@@ -128,14 +128,14 @@ pub fn over(cells: &Cells, kind: VariableKind, old: Option<&Value>) -> Result<Va
 }
 
 /// Two values that differ in all unknown fields, for a dry run.
-pub fn sketch(cells: &Cells, kind: VariableKind) -> Option<[Value; 2]> {
+pub fn zero_bytes(cells: &Cells, kind: VariableKind) -> Option<[Value; 2]> {
     if !kind.is_position() {
         let all = |byte| Value::parse(kind, &vec![byte; kind.size()]).ok();
         return Some([all(0)?, all(0x41)?]);
     }
     let is_pulses = cells.keys().any(|name| name.ends_with("_pulses")) || kind == VariableKind::Ex;
-    let named = cells.get(position::TYPE).and_then(|name| position::named(name));
-    let types = match (named, kind) {
+    let named_axes = cells.get(position::TYPE).and_then(|name| position::parse_named_values(name));
+    let types = match (named_axes, kind) {
         (Some(named), _) => [named; 2],
         (None, _) if is_pulses => [PositionKind::Pulse; 2],
         (None, _) if cells.is_empty() => [PositionKind::Pulse, PositionKind::Base],
@@ -148,10 +148,10 @@ pub fn sketch(cells: &Cells, kind: VariableKind) -> Option<[Value; 2]> {
         _ => Group::R1,
     };
     let whole = |at: usize| {
-        let old = unlike()[at];
+        let old = different_words()[at];
         let (tool, user) = (old.tool.min(LAST_TOOL), old.user.min(LAST_TOOL));
-        let old = position::held(group, Position { kind: types[at], tool, user, ..old });
-        over(cells, kind, Some(&old)).ok()
+        let old = position::stored_position(group, Position { kind: types[at], tool, user, ..old });
+        merge_over(cells, kind, Some(&old)).ok()
     };
     Some([whole(0)?, whole(1)?])
 }
@@ -169,16 +169,17 @@ mod tests {
 
     /// Writes a value to cells and reads it back.
     #[track_caller]
-    fn survives(kind: VariableKind, value: &Value) {
+    fn round_trips(kind: VariableKind, value: &Value) {
         let cells = of(value, Encoding::ShiftJis);
-        let back = if kind.is_position() { over(&cells, kind, None) } else { plain(kind, &cells, Encoding::ShiftJis) };
+        let back =
+            if kind.is_position() { merge_over(&cells, kind, None) } else { plain(kind, &cells, Encoding::ShiftJis) };
         assert_eq!(back.map(|value| value.emit()), Ok(value.emit()), "{cells:?}");
         let columns: Vec<String> = fields().into_iter().map(|field| field.name.into_owned()).collect();
         assert!(cells.keys().all(|column| columns.contains(column)), "{cells:?}");
     }
 
     #[test]
-    fn values_survive_their_cells() {
+    fn values_round_trip_through_cells() {
         for (name, text) in [
             ("B7", "255"),
             ("I0", "-32768"),
@@ -195,31 +196,31 @@ mod tests {
             ("EX1", "pulse:1=77,2=200"),
         ] {
             let (kind, value) = value(name, text);
-            survives(kind, &value);
+            round_trips(kind, &value);
         }
         for bytes in [&b"\x83\x65"[..], b"\x83", b"\xff\x01x", b"a\"b,;\n"] {
-            survives(VariableKind::S32, &Value::Long(Text::new(bytes).unwrap()));
+            round_trips(VariableKind::S32, &Value::Long(Text::new(bytes).unwrap()));
         }
     }
 
     #[test]
-    fn reals_survive_their_cells() {
+    fn reals_round_trip_through_cells() {
         for bits in [0, 1, 0x8000_0000, 0x3F80_0001, 0x7F7F_FFFF, 0x0080_0000, 0x4B7F_FFFF, 0x7F80_0000, 0xFFC0_0001] {
-            survives(VariableKind::R, &Value::Real(f32::from_bits(bits)));
+            round_trips(VariableKind::R, &Value::Real(f32::from_bits(bits)));
         }
         let mut bits = 12345_u32;
         for _ in 0..5000 {
             bits = bits.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            survives(VariableKind::R, &Value::Real(f32::from_bits(bits)));
+            round_trips(VariableKind::R, &Value::Real(f32::from_bits(bits)));
         }
     }
 
     #[test]
-    fn a_position_keeps_what_has_no_cell() {
+    fn position_keeps_bytes_without_a_cell() {
         let old = value("P2", "base:x=1000,y=0.5,z=1200,rx=180,ry=0,rz=0,tool=2,form=lower").1;
         let over = |cells: &[(&str, &str)], old| {
             let cells = cells.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect();
-            over(&cells, VariableKind::P, old)
+            merge_over(&cells, VariableKind::P, old)
         };
         let new = value("P2", "base:x=7.25,y=0.5,z=1200,rx=180,ry=0,rz=0,tool=2,form=lower").1;
         assert_eq!(over(&[("x_mm", "7.25")], Some(&old)), Ok(new));
@@ -232,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_of_another_kind_are_refused() {
+    fn refuses_cells_of_another_kind() {
         let cells = |column: &str, text: &str| Cells::from([(column.to_owned(), text.to_owned())]);
         let plain = |kind, column, text| plain(kind, &cells(column, text), Encoding::ShiftJis).unwrap_err();
         assert!(plain(VariableKind::B, NUMBER, "256").contains("not a number from 0 to 255"));

@@ -12,7 +12,7 @@ fn same_many(id: &str, target: &str, first: &[&str], rest: &[String]) {
 }
 
 #[test]
-fn single_writes_are_the_golden_frames() {
+fn single_writes_are_golden_frames() {
     same("R19", DX200, &["io", "set", "--group", "2956=0xA5"]);
     same("M03t", DX200, &["register", "set", "10=0x1234"]);
     same("R21", FS100, &["register", "set", "559=65535"]);
@@ -28,7 +28,7 @@ fn single_writes_are_the_golden_frames() {
 }
 
 #[test]
-fn plural_reads_and_writes_are_the_golden_frames() {
+fn plural_reads_and_writes_are_golden_frames() {
     same("R57", DX200, &["io", "get", "--group", "1..474"]);
     same("R59", FS100, &["io", "set", "--group", "2502=0x80", "--group", "2501=1"]);
     same("R61", DX200, &["register", "set", "100=100", "102=300", "101=200"]);
@@ -45,7 +45,7 @@ fn plural_reads_and_writes_are_the_golden_frames() {
 }
 
 #[test]
-fn many_variables_are_a_handful_of_requests() {
+fn batches_many_variables_into_few_requests() {
     let commands = |words: &[&str]| {
         let frames = dry_run(DX200, words).unwrap();
         let certain = frames.iter().filter(|frame| frame["depends_on"].is_null());
@@ -58,7 +58,7 @@ fn many_variables_are_a_handful_of_requests() {
 }
 
 #[test]
-fn what_cannot_be_meant_is_not_sent() {
+fn rejects_invalid_assignments() {
     let failed = |words: &[&str]| {
         let failure = dry_run(DX200, words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2, "{words:?}");
@@ -79,7 +79,7 @@ fn what_cannot_be_meant_is_not_sent() {
 }
 
 #[test]
-fn undefined_positions_in_a_range_are_reported_one_by_one() {
+fn reports_each_undefined_position_of_a_range() {
     let mut bench = Bench::new("sim:");
     bench.data(&["var", "set", "P20=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "EX3=pulse:1=9"]);
     let data = bench.data(&["var", "get", "P18..P22", "EX3", "P18", "B8"]);
@@ -100,7 +100,7 @@ fn undefined_positions_in_a_range_are_reported_one_by_one() {
 }
 
 #[test]
-fn numbers_beyond_the_last_are_found_and_named() {
+fn reports_numbers_beyond_the_last() {
     let (data, failure) = Bench::new("sim:").run(&["var", "get", "B90..B110"]).unwrap();
     assert_eq!(failure.unwrap().kind.exit(), 9);
     let values = data["items"].as_array().unwrap();
@@ -112,7 +112,7 @@ fn numbers_beyond_the_last_are_found_and_named() {
 }
 
 #[test]
-fn a_dump_is_restored_to_the_last_byte() {
+fn restores_a_dump_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (first, second) = (path("first.csv"), path("second.csv"));
@@ -148,7 +148,7 @@ fn a_dump_is_restored_to_the_last_byte() {
 }
 
 #[test]
-fn a_variable_is_copied_to_others_of_its_kind() {
+fn copies_a_variable_to_others_of_its_kind() {
     let mut bench = Bench::new("sim:");
     bench.data(&["var", "set", "B1=7", "P20=pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=3", "S1=a,\"b\""]);
     bench.data(&["var", "copy", "B1", "B2..B3"]);
@@ -162,7 +162,7 @@ fn a_variable_is_copied_to_others_of_its_kind() {
 }
 
 #[test]
-fn a_file_of_var_get_sets_a_position() {
+fn sets_a_position_from_a_file_of_var_get() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let mut bench = Bench::new("sim:");
     let shown = bench.data(&["var", "get", "P2"]);
@@ -176,7 +176,7 @@ fn a_file_of_var_get_sets_a_position() {
 }
 
 #[test]
-fn nothing_is_written_where_nobody_answers() {
+fn writes_nothing_without_an_answer() {
     let mut bench = Bench::new("sim:?fault=drop=100%25");
     let failure = bench.run(&["var", "set", "B0=1", "I0=1"]).unwrap_err();
     // The old value is read first, and the controller does not answer that.

@@ -10,11 +10,11 @@ mod table;
 mod value;
 mod word;
 
-pub use self::position::{PositionData, as_position, held};
+pub use self::position::{PositionData, as_position, stored_position};
 pub use self::raw::confirm_raw;
 use self::table::Variables;
 pub use self::table::is_undefined;
-pub use self::word::unlike;
+pub use self::word::different_words;
 use crate::command::commands;
 use crate::command::frame::store::{Copy, Dump, Get, List, Restore};
 use crate::command::frame::watch::Watch;
@@ -42,7 +42,7 @@ commands! {
 }
 
 /// Variable in a confirmation: `P5`, or `P5 (HOME)` with its name.
-pub fn called(names: &Names, variable: Reference) -> String {
+pub fn variable_name(names: &Names, variable: Reference) -> String {
     let address = variable.to_string();
     match names.label(Kind::Variable, &address) {
         Some(label) => format!("{address} ({label})"),

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
-use super::word::unlike;
+use super::word::different_words;
 use crate::controller::units::{self, Quantity, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{
@@ -15,7 +15,7 @@ use crate::controller::yerc::payload::{
 use crate::controller::yerc::variables::{Value, VariableKind};
 
 /// Position of a group as a variable value: P for robots, BP for bases, EX for stations.
-pub fn held(group: Group, position: Position) -> Value {
+pub fn stored_position(group: Group, position: Position) -> Value {
     let Position { kind, axes, .. } = position;
     match group {
         Group::Robot(_) => Value::Position(position),
@@ -31,7 +31,7 @@ pub fn as_position(value: &Value) -> Position {
         Value::Position(position) => *position,
         Value::Base(track) => bare(track.kind, track.axes),
         Value::External(station) => bare(station.kind, station.axes),
-        _ => unlike()[0],
+        _ => different_words()[0],
     }
 }
 
@@ -92,7 +92,7 @@ impl PositionData {
             }),
             _ => None,
         };
-        let axes = axes.iter().take(shown).map(|axis| (key(axis), amount(axis.unit.show(axis.value)))).collect();
+        let axes = axes.iter().take(shown).map(|axis| (key(axis), parse_amount(axis.unit.show(axis.value)))).collect();
         Some(Self { text, r#type: type_name(kind), type_code: kind.word(), axes, arm })
     }
 
@@ -204,13 +204,13 @@ const fn suffix(unit: Unit) -> &'static str {
 }
 
 /// Exact decimal as a JSON number.
-fn amount(quantity: Quantity) -> Json {
+fn parse_amount(quantity: Quantity) -> Json {
     let text = quantity.to_string();
     serde_json::from_str(&text).unwrap_or(Json::String(text))
 }
 
 /// Type with this name.
-pub fn named(name: &str) -> Option<PositionKind> {
+pub fn parse_named_values(name: &str) -> Option<PositionKind> {
     PositionKind::ALL.iter().find(|row| row.2 == name).map(|row| row.0)
 }
 
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn names_carry_units() {
+    fn field_names_have_units() {
         let json =
             serde_json::to_value(data(VariableKind::P, "base:x=100.000,y=0,z=0.5,rx=180,ry=0,rz=0,tool=1")).unwrap();
         assert_eq!(json["x_mm"], json!(100.0));
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn contradictions_are_refused() {
+    fn refuses_contradictions() {
         let fields = data(VariableKind::P, "base:x=1,y=2,z=3,rx=4,ry=5,rz=6").fields();
         let changed = |name: &str, text: &str| {
             let mut fields = fields.clone();
@@ -254,11 +254,15 @@ mod tests {
         assert!(changed("x_pulses", "9").contains("twice"));
         assert!(changed("form_code", "-1").starts_with("form_code: '-1'"));
         assert!(changed("speed", "17").starts_with("speed is not of a position"));
-        let mut lone = fields.clone();
-        lone.remove("x_mm");
-        lone.insert("x_deg".to_owned(), "1".to_owned());
-        assert!(from_fields(VariableKind::P, &lone).unwrap_err().starts_with("x_deg is not an axis of this position"));
-        lone.remove(TYPE);
-        assert!(from_fields(VariableKind::P, &lone).unwrap_err().starts_with("type is missing"));
+        let mut single_value = fields.clone();
+        single_value.remove("x_mm");
+        single_value.insert("x_deg".to_owned(), "1".to_owned());
+        assert!(
+            from_fields(VariableKind::P, &single_value)
+                .unwrap_err()
+                .starts_with("x_deg is not an axis of this position")
+        );
+        single_value.remove(TYPE);
+        assert!(from_fields(VariableKind::P, &single_value).unwrap_err().starts_with("type is missing"));
     }
 }

@@ -7,7 +7,7 @@ use super::word::with_field;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Known as _;
 use crate::command::frame::settings_report::{OLD_VALUE, nothing_written};
-use crate::command::frame::store::{Differing, old_rows};
+use crate::command::frame::store::{Differing, describe_change};
 use crate::command::yerc::existing_items::ReadError;
 use crate::command::yerc::link::Link;
 use crate::controller::yerc::query::ReadVariable;
@@ -25,7 +25,7 @@ pub async fn confirm_raw(
     intent: String,
 ) -> Result<(), Failure> {
     let Some(references) = references(request) else { return authority.confirm(&Change::new(intent)).await };
-    let Taught { positions, has_unread } = taught(link, &references).await?;
+    let TaughtPositions { positions, has_unread } = read_taught(link, &references).await?;
     let new: Vec<Option<(Reference, Value)>> = references
         .iter()
         .enumerate()
@@ -36,11 +36,11 @@ pub async fn confirm_raw(
         new.iter().map(|(reference, value)| (*reference, positions.get(reference), value)).collect();
     let is_clear = !has_unread && new.len() == positions.len();
     let table = Variables::with_encoding(link.encoding);
-    authority.confirm(&if is_clear { old_rows(&table, &differing) } else { Change::new(intent) }).await
+    authority.confirm(&if is_clear { describe_change(&table, &differing) } else { Change::new(intent) }).await
 }
 
 /// What positions hold before a write.
-struct Taught {
+struct TaughtPositions {
     /// Positions that were taught.
     positions: HashMap<Reference, Value>,
     /// Whether the controller refused to tell what others hold.
@@ -48,8 +48,8 @@ struct Taught {
 }
 
 /// Reads positions one by one, because each can be undefined. A dry run notes the requests.
-async fn taught(link: &mut Link, references: &[Reference]) -> Result<Taught, Failure> {
-    let mut taught = Taught { positions: HashMap::new(), has_unread: false };
+async fn read_taught(link: &mut Link, references: &[Reference]) -> Result<TaughtPositions, Failure> {
+    let mut taught = TaughtPositions { positions: HashMap::new(), has_unread: false };
     for reference in references {
         let question = ReadVariable::new(reference.kind, reference.number);
         match link.for_purpose(OLD_VALUE).ask_optional(&question).await.known().map_err(nothing_written)? {

@@ -175,7 +175,7 @@ impl Set {
     /// The new content of each variable. Words of a position that is written completely are merged into it.
     fn rows(&self, table: &Variables) -> Result<Vec<Row<Variables>>, Failure> {
         let mut rows: Vec<Row<Variables>> = Vec::new();
-        let twice = |key| Failure::usage(format!("{key} is given twice")).hint("give each variable one value");
+        let repeated = |key| Failure::usage(format!("{key} is given twice")).hint("give each variable one value");
         for Assignment { reference, input } in &self.assignments {
             let row = rows.iter_mut().find(|(key, _)| key == reference).map(|(_, draft)| draft);
             match (input, row) {
@@ -187,7 +187,7 @@ impl Set {
                 (input, None) => rows.push((*reference, Draft::Whole(value_of(table, *reference, input)?))),
                 (input, Some(draft)) => {
                     let (Draft::Words(words), false) = (&*draft, matches!(input, Input::Word(_))) else {
-                        return Err(twice(reference));
+                        return Err(repeated(reference));
                     };
                     let mut value = value_of(table, *reference, input)?;
                     for word in words {
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_checked_before_anything_is_sent() {
+    fn checks_values_before_sending() {
         assert_eq!(error("B0=256"), "'256' is not a number from 0 to 255");
         assert_eq!(error("B0"), "write a variable, '=' and a value, as in B0=255");
         assert_eq!(

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::cells::{self, Cells};
 use super::value::Data;
-use super::word::{Word, unlike};
+use super::word::{Word, different_words};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
@@ -19,7 +19,7 @@ use crate::command::yerc::complete;
 use crate::command::yerc::existing_items::ReadError;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::yerc::switch_commands::usage;
-use crate::command::yerc::var::position::held;
+use crate::command::yerc::var::position::stored_position;
 use crate::controller::Risk;
 use crate::controller::names::Kind;
 use crate::controller::text::Encoding;
@@ -125,11 +125,11 @@ impl Variables {
                     value
                 };
                 let given: Vec<String> = words.iter().map(|word| format!("{}={}", word.name(), word.value())).collect();
-                (Some(unlike().map(|old| merged(held(Group::R1, old)))), given.join(", "))
+                (Some(different_words().map(|old| merged(stored_position(Group::R1, old)))), given.join(", "))
             }
             Draft::Fields(cells) => {
                 let given: Vec<String> = cells.iter().map(|(name, text)| format!("{name}={text}")).collect();
-                (cells::sketch(cells, reference.kind), given.join(", "))
+                (cells::zero_bytes(cells, reference.kind), given.join(", "))
             }
         };
         let Some([one, other]) = both else {
@@ -265,12 +265,12 @@ impl Store for Variables {
             let is_position = run.first().is_some_and(|reference| reference.kind.is_position());
             if is_position { BatchSplit::Single } else { BatchSplit::Halves }
         };
-        let told = |_: &[Reference], known: usize| {
+        let reported = |_: &[Reference], known: usize| {
             if let Some(progress) = &progress {
-                progress.say(&format!("reading variables ({known} of {})", keys.len()));
+                progress.print_line(&format!("reading variables ({known} of {})", keys.len()));
             }
         };
-        let answers = read_in_batches(link, |references| Ok(plan_reads(references)), &wanted, parts, told).await?;
+        let answers = read_in_batches(link, |references| Ok(plan_reads(references)), &wanted, parts, reported).await?;
         let missing = || Failure::new(FailureKind::Malformed, "the answer does not have this variable");
         let row = |reference: &Reference| match answers.get(reference) {
             Some(Ok(value)) => Ok(value.clone()),
@@ -323,7 +323,7 @@ impl Writable for Variables {
         let wrong = |why: String| Failure::usage(format!("{key}: {why}")).hint("nothing was written");
         match (draft, old) {
             (Draft::Whole(value), _) => Ok(value.clone()),
-            (Draft::Fields(cells), old) => cells::over(cells, key.kind, old).map_err(wrong),
+            (Draft::Fields(cells), old) => cells::merge_over(cells, key.kind, old).map_err(wrong),
             (Draft::Words(words), Some(old)) => {
                 let mut new = old.clone();
                 for word in words {
@@ -346,7 +346,7 @@ impl Writable for Variables {
     /// Consecutive variables of a kind are one request; so is a single axis of a BP or an EX.
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
         let (alone, together): (Vec<usize>, Vec<usize>) =
-            (0..rows.len()).partition(|index| only_word(&rows[*index]).is_some());
+            (0..rows.len()).partition(|index| single_word(&rows[*index]).is_some());
         let values = together.iter().map(|index| &rows[*index]).map(|(key, _, new)| (*key, (*new).clone()));
         let Ok(steps) = Self::steps(values) else { return (0..rows.len()).map(|index| vec![index]).collect() };
         let index_of =
@@ -386,7 +386,7 @@ impl Writable for Variables {
 
     async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
         if let [row] = rows
-            && let Some(field) = only_word(row).and_then(|word| word.field(row.0))
+            && let Some(field) = single_word(row).and_then(|word| word.field(row.0))
         {
             return link.ask(&field.map_err(usage)?).await;
         }
@@ -398,6 +398,6 @@ impl Writable for Variables {
 }
 
 /// The only axis of a BP or an EX that changes.
-fn only_word((key, old, new): &Differing<'_, Variables>) -> Option<Word> {
+fn single_word((key, old, new): &Differing<'_, Variables>) -> Option<Word> {
     Word::only_difference(*key, (*old)?, new)
 }

@@ -51,7 +51,7 @@ impl Word {
     pub fn field(self, variable: Reference) -> Option<Result<WriteField, QueryError>> {
         match self {
             // Attribute 1 is the type.
-            Self::Axis(axis, word) if word_is_written_alone(variable) => {
+            Self::Axis(axis, word) if is_single_word_write(variable) => {
                 Some(WriteField::new(variable.kind, variable.number, 2 + axis, word.to_le_bytes()))
             }
             _ => None,
@@ -69,7 +69,7 @@ impl Word {
         let ((old_kind, old), (new_kind, new)) = (axes(old)?, axes(new)?);
         let mut differing = (0_u8..).zip(old.iter().zip(&new)).filter(|(_, (old, new))| old != new);
         match (differing.next(), differing.next()) {
-            (Some((index, (_, new))), None) if old_kind == new_kind && word_is_written_alone(variable) => {
+            (Some((index, (_, new))), None) if old_kind == new_kind && is_single_word_write(variable) => {
                 Some(Self::Axis(index, *new))
             }
             _ => None,
@@ -77,7 +77,7 @@ impl Word {
     }
 }
 
-fn word_is_written_alone(variable: Reference) -> bool {
+fn is_single_word_write(variable: Reference) -> bool {
     variable.kind.is_position() && variable.kind != VariableKind::P
 }
 
@@ -98,7 +98,7 @@ pub fn with_field(old: &Value, request: &Request) -> Option<Value> {
 }
 
 /// Two positions that differ in every byte, to show in a dry run the known part of one.
-pub fn unlike() -> [Position; 2] {
+pub fn different_words() -> [Position; 2] {
     let position = |kind, word: u32, axis| Position {
         kind,
         form: Form(word),

@@ -147,7 +147,7 @@ impl Comparison {
     /// Content of the confirmation.
     fn change(&self, folder: &str) -> Change {
         let count = match self.replaced.len() {
-            0 => return Change::nothing(),
+            0 => return Change::none(),
             1 => "1 value".to_owned(),
             many => format!("{many} values"),
         };

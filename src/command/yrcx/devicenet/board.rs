@@ -232,12 +232,12 @@ impl Identity {
     pub fn fields(&self) -> Vec<(&'static str, Cell)> {
         vec![
             ("MAC ID", u32::from(self.mac).into()),
-            ("name", Cell::maybe(self.name.clone())),
-            ("vendor", Cell::maybe(self.vendor)),
-            ("device type", Cell::maybe(self.device_type)),
-            ("product", Cell::maybe(self.product)),
-            ("revision", Cell::maybe(self.revision.clone())),
-            ("serial", Cell::maybe(self.serial.clone())),
+            ("name", Cell::optional(self.name.clone())),
+            ("vendor", Cell::optional(self.vendor)),
+            ("device type", Cell::optional(self.device_type)),
+            ("product", Cell::optional(self.product)),
+            ("revision", Cell::optional(self.revision.clone())),
+            ("serial", Cell::optional(self.serial.clone())),
         ]
     }
 }

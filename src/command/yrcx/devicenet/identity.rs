@@ -37,6 +37,6 @@ pub struct Identified {
 
 impl Report for Identified {
     fn view(&self) -> View {
-        View::default().and(Section::Fields(self.identity.fields()))
+        View::default().append(Section::Fields(self.identity.fields()))
     }
 }

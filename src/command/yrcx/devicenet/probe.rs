@@ -59,10 +59,10 @@ impl Report for Probed {
         let mut fields = self.identity.as_ref().map(Identity::fields).unwrap_or_default();
         let owner = if self.owned { "another master" } else { "free" };
         fields.push(("owner", owner.into()));
-        fields.push(("from the controller", Cell::maybe(self.in_size.map(|size| format!("{size} bytes")))));
-        fields.push(("to the controller", Cell::maybe(self.out_size.map(|size| format!("{size} bytes")))));
-        fields.push(("I/O size", Cell::maybe(self.profile)));
-        View::default().and(Section::Fields(fields))
+        fields.push(("from the controller", Cell::optional(self.in_size.map(|size| format!("{size} bytes")))));
+        fields.push(("to the controller", Cell::optional(self.out_size.map(|size| format!("{size} bytes")))));
+        fields.push(("I/O size", Cell::optional(self.profile)));
+        View::default().append(Section::Fields(fields))
     }
 
     fn failure(&self) -> Option<Failure> {

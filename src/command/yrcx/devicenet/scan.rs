@@ -42,7 +42,7 @@ impl Report for Scanned {
             let state = if node.on_line { "on line" } else { "going on line" };
             table.row([u32::from(node.mac).into(), node.vendor.into(), node.serial.as_str().into(), state.into()]);
         }
-        View::default().and(Section::Table(table))
+        View::default().append(Section::Table(table))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -325,7 +325,7 @@ impl Identity {
             ("revision", self.revision.as_str().into()),
             ("serial number", self.serial.as_str().into()),
             ("status", status.trim_end_matches(": ").into()),
-            ("state", Cell::maybe(self.state)),
+            ("state", Cell::optional(self.state)),
         ]
     }
 }

@@ -51,6 +51,6 @@ impl Report for Identified {
         let mut fields = vec![("address", self.address.as_str().into())];
         fields.extend(self.identity.fields());
         fields.push(("services", services.into()));
-        View::default().and(Section::Fields(fields))
+        View::default().append(Section::Fields(fields))
     }
 }

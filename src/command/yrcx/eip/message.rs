@@ -168,11 +168,11 @@ impl Value {
 impl Report for Value {
     fn view(&self) -> View {
         let bytes = text::unhex(&self.hex).filter(|bytes| !bytes.is_empty());
-        let bytes = Cell::maybe(bytes.map(|bytes| shown(&bytes)));
+        let bytes = Cell::optional(bytes.map(|bytes| shown(&bytes)));
         let mut fields = vec![("object", self.object.as_str().into()), ("bytes", bytes)];
         fields.extend(self.number.map(|number| ("number", format!("{number} ({number:#x})").into())));
         fields.extend(self.text.as_deref().map(|text| ("text", text.into())));
-        View::default().and(Section::Fields(fields))
+        View::default().append(Section::Fields(fields))
     }
 }
 

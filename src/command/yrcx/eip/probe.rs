@@ -71,26 +71,26 @@ impl Report for ProbeReport {
 
     fn view(&self) -> View {
         let mut view = match &self.identity {
-            Some(identity) => View::default().and(Section::Fields(identity.fields())),
+            Some(identity) => View::default().append(Section::Fields(identity.fields())),
             None => View::text("the board has no identity"),
         };
         let mut assemblies = Table::new(&["assembly", "bytes"], "no readable assembly");
         for assembly in &self.probed.assemblies {
-            assemblies.row([assembly.instance.into(), Cell::maybe(assembly.bytes)]);
+            assemblies.row([assembly.instance.into(), Cell::optional(assembly.bytes)]);
         }
         let mut attempts = Table::new(&["in", "out", "config", "answer"], "no connection was requested");
         for attempt in &self.probed.attempts {
-            let config = Cell::maybe(attempt.config);
+            let config = Cell::optional(attempt.config);
             attempts.row([attempt.input.into(), attempt.output.into(), config, attempt.answer.as_str().into()]);
         }
-        view = view.and(Section::Table(assemblies));
+        view = view.append(Section::Table(assemblies));
         if self.has_tried {
-            view = view.and(Section::Table(attempts));
+            view = view.append(Section::Table(attempts));
         }
         let Some(found) = &self.probed.connectable else { return view };
-        let bytes = |size: Option<u16>| Cell::maybe(size.map(|size| format!("{size} bytes")));
+        let bytes = |size: Option<u16>| Cell::optional(size.map(|size| format!("{size} bytes")));
         let owner = if self.probed.owned { warned("another master") } else { "free".into() };
-        view.and(Section::Fields(vec![
+        view.append(Section::Fields(vec![
             ("from the controller", bytes(found.in_size)),
             ("to the controller", bytes(found.out_size)),
             ("owner", owner),

@@ -61,8 +61,8 @@ pub struct Arms {
 impl Report for Arms {
     fn view(&self) -> View {
         View::fields([
-            ("selected", Cell::maybe(self.selected.as_deref())),
-            ("current", Cell::maybe(self.current.as_deref())),
+            ("selected", Cell::optional(self.selected.as_deref())),
+            ("current", Cell::optional(self.current.as_deref())),
         ])
     }
 

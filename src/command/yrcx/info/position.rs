@@ -96,7 +96,7 @@ impl Place {
     fn line(&self, elapsed_ms: u64) -> Table {
         let mut table = Table::new(&["elapsed (ms)", "axis 1", "axis 2", "axis 3", "axis 4", "unit"], "");
         let joints: Vec<&Joint> = self.positions.read().flat_map(|position| &position.joints).collect();
-        let axis = |at: usize| Cell::maybe(joints.get(at).map(|joint| joint.cell()));
+        let axis = |at: usize| Cell::optional(joints.get(at).map(|joint| joint.cell()));
         let unit = if joints.iter().any(|joint| joint.mm.is_some()) { "mm" } else { "pulses" };
         table.row([elapsed_ms.into(), axis(0), axis(1), axis(2), axis(3), unit.into()]);
         table

@@ -69,7 +69,7 @@ pub struct Versions {
 
 impl Report for Versions {
     fn view(&self) -> View {
-        let cell = |text: &Option<String>| Cell::maybe(text.as_deref());
+        let cell = |text: &Option<String>| Cell::optional(text.as_deref());
         let [first, second, third, fourth] = &self.driver_versions;
         View::fields([
             ("host", cell(&self.host_version)),
@@ -93,7 +93,7 @@ pub struct Models {
 
 impl Report for Models {
     fn view(&self) -> View {
-        let cell = |model: Option<i32>| Cell::maybe(model.map(|number| number.to_string()));
+        let cell = |model: Option<i32>| Cell::optional(model.map(|number| number.to_string()));
         let [first, second, third, fourth] = self.axis_types.map(cell);
         View::fields([
             ("robot type", cell(self.robot_type)),
@@ -115,7 +115,7 @@ pub struct Speeds {
 
 impl Report for Speeds {
     fn view(&self) -> View {
-        let cell = |speed: Option<i32>| Cell::maybe(speed.map(|percent| format!("{percent} %")));
+        let cell = |speed: Option<i32>| Cell::optional(speed.map(|percent| format!("{percent} %")));
         View::fields([
             ("manual", cell(self.manual_speed_percent)),
             ("automatic", cell(self.auto_speed_percent)),

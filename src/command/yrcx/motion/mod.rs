@@ -295,7 +295,7 @@ impl MotionReport {
         let elapsed = self.motion.elapsed_ms.map(|ms| format!(" in {}.{:03} s", ms / 1000, ms % 1000));
         let view = View::text(format!("{}{}{more}", self.words, elapsed.unwrap_or_default()));
         match &self.motion.position {
-            Some(position) => view.and(Section::Table(joint_table(&position.joints))),
+            Some(position) => view.append(Section::Table(joint_table(&position.joints))),
             None => view,
         }
     }

@@ -8,7 +8,7 @@ use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
-use crate::gate::{Change, outdated};
+use crate::gate::{Change, data_changed};
 
 /// Target of a motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +37,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
     authority.confirm(&goal.clone().from(here).describe(change, here)).await?;
     match self::goal(link, order).await? {
         Some(now) if now == goal => Ok(()),
-        _ => Err(outdated("the point changed after the question; not moved")),
+        _ => Err(data_changed("the point changed after the question; not moved")),
     }
 }
 

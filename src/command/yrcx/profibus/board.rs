@@ -207,14 +207,14 @@ impl Station {
 
     /// Fields of a view.
     pub fn fields(&self) -> Vec<(&'static str, Cell)> {
-        let bytes = |size: Option<usize>| Cell::maybe(size.map(|size| format!("{size} bytes")));
+        let bytes = |size: Option<usize>| Cell::optional(size.map(|size| format!("{size} bytes")));
         vec![
             ("station", self.station.into()),
             ("kind", self.kind.into()),
-            ("ident", Cell::maybe(self.ident.clone())),
-            ("master", Cell::maybe(self.master)),
+            ("ident", Cell::optional(self.ident.clone())),
+            ("master", Cell::optional(self.master)),
             ("diagnosis", self.diagnosis.as_str().into()),
-            ("configuration", Cell::maybe(self.configuration.clone())),
+            ("configuration", Cell::optional(self.configuration.clone())),
             ("from the controller", bytes(self.in_size)),
             ("to the controller", bytes(self.out_size)),
         ]

@@ -56,10 +56,10 @@ impl Report for Diagnosed {
         let mut fields = vec![
             ("station", self.station.into()),
             ("ident", self.ident.as_str().into()),
-            ("master", Cell::maybe(self.master)),
-            ("state", Cell::maybe((!self.states.is_empty()).then(|| self.states.join(", ")))),
+            ("master", Cell::optional(self.master)),
+            ("state", Cell::optional((!self.states.is_empty()).then(|| self.states.join(", ")))),
         ];
         fields.extend(self.blocks.iter().map(|block| ("block", block.as_str().into())));
-        View::default().and(Section::Fields(fields))
+        View::default().append(Section::Fields(fields))
     }
 }

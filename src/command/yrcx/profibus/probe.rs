@@ -40,7 +40,7 @@ pub struct Probed {
 
 impl Report for Probed {
     fn view(&self) -> View {
-        View::default().and(Section::Fields(self.station.fields()))
+        View::default().append(Section::Fields(self.station.fields()))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -44,9 +44,9 @@ impl Report for Stations {
             table.row([
                 station.station.into(),
                 station.kind.into(),
-                Cell::maybe(station.ident.clone()),
-                Cell::maybe(station.master),
-                Cell::maybe(station.configuration.clone()),
+                Cell::optional(station.ident.clone()),
+                Cell::optional(station.master),
+                Cell::optional(station.configuration.clone()),
                 station.diagnosis.as_str().into(),
             ]);
         }

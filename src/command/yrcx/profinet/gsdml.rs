@@ -138,18 +138,18 @@ impl From<&Fitting> for Module {
 impl Report for Described {
     fn view(&self) -> View {
         let device = vec![("vendor", self.vendor.as_str().into()), ("device", self.device.as_str().into())];
-        let mut view = View::default().and(Section::Fields(device));
+        let mut view = View::default().append(Section::Fields(device));
         for head in &self.access_points {
-            let known = |text: &str| Cell::maybe((!text.is_empty()).then_some(text));
-            view = view.and(Section::Fields(vec![
+            let known = |text: &str| Cell::optional((!text.is_empty()).then_some(text));
+            view = view.append(Section::Fields(vec![
                 ("access point", head.id.as_str().into()),
                 ("name", known(&head.name)),
                 ("ident", head.ident.as_str().into()),
                 ("station", known(&head.station)),
                 ("startup", head.startup.join(", ").into()),
                 ("shortest cycle", format!("{} us", head.cycle_us).into()),
-                ("layout", Cell::maybe(head.layout.as_deref())),
-                ("parameters", Cell::maybe(head.parameters.map(|count| format!("{count} records")))),
+                ("layout", Cell::optional(head.layout.as_deref())),
+                ("parameters", Cell::optional(head.parameters.map(|count| format!("{count} records")))),
             ]));
             let columns = ["module", "name", "ident", "slots", "from device", "to device"];
             let mut table = Table::new(&columns, "no modules");
@@ -164,7 +164,7 @@ impl Report for Described {
                     module.out_size.into(),
                 ]);
             }
-            view = view.and(Section::Table(table));
+            view = view.append(Section::Table(table));
         }
         view
     }

@@ -40,6 +40,6 @@ pub struct Identified {
 
 impl Report for Identified {
     fn view(&self) -> View {
-        View::default().and(Section::Fields(self.station.fields()))
+        View::default().append(Section::Fields(self.station.fields()))
     }
 }

@@ -223,17 +223,17 @@ impl Report for Probed {
             ]);
         }
         fields.extend(self.refusals.iter().map(|why| ("remark", Cell::from(why.as_str()).tone(Tone::Warning))));
-        let mut view = View::default().and(Section::Fields(fields));
+        let mut view = View::default().append(Section::Fields(fields));
         if let Some(modules) = &self.modules {
             let mut table = Table::new(&["slot", "module", "submodules"], "no modules");
             for module in modules {
                 table.row([module.slot.into(), module.ident.as_str().into(), module.submodules.join(" ").into()]);
             }
-            view = view.and(Section::Table(table));
+            view = view.append(Section::Table(table));
         }
         let mut table = Table::new(&["possible layout", "answer"], "no possible layout");
         for attempt in &self.layouts {
-            let answer = Cell::maybe(attempt.answer.as_deref());
+            let answer = Cell::optional(attempt.answer.as_deref());
             let tone = match attempt.fits {
                 Some(true) => Tone::Good,
                 Some(false) => Tone::Bad,
@@ -241,7 +241,7 @@ impl Report for Probed {
             };
             table.row([Cell::from(attempt.layout.as_str()).whole(), answer.tone(tone)]);
         }
-        view.and(Section::Table(table))
+        view.append(Section::Table(table))
     }
 
     fn failure(&self) -> Option<Failure> {

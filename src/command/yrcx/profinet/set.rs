@@ -130,7 +130,7 @@ impl Command for Blink {
             risk: self.risk(),
             what: "DCP Set signal",
             block: Block::signal(),
-            change: |_: &Found| Change::nothing(),
+            change: |_: &Found| Change::none(),
             is_so: Box::new(|_| true),
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
@@ -158,7 +158,7 @@ impl Command for SetName {
         let change = |found: &Found| {
             let old = &found.station.name;
             let change = Change::new(format!("overwrite the name of station {}", found.mac));
-            if old.is_empty() { Change::nothing() } else { change.replaces("name", old, &self.name).note(ENDS) }
+            if old.is_empty() { Change::none() } else { change.replaces("name", old, &self.name).note(ENDS) }
         };
         let name = self.name.clone();
         let task = Task {
@@ -199,7 +199,7 @@ impl Command for SetIp {
         let address = self.address.address;
         let suite = IpSuite { gateway: self.gateway.unwrap_or(self.address.gateway), ..self.address };
         let change = |found: &Found| match found.station.address() {
-            None => Change::nothing(),
+            None => Change::none(),
             Some(old) => Change::new(format!("overwrite the address of station {}", found.mac))
                 .replaces("address", &old.to_string(), &address.to_string())
                 .note(ENDS),
@@ -250,7 +250,7 @@ impl Command for Reset {
             let (name, address) = (&found.station.name, found.station.address());
             let mut change = Change::new(format!("delete the settings of station {}", found.mac));
             if name.is_empty() && address.is_none() {
-                return Change::nothing();
+                return Change::none();
             }
             if !name.is_empty() {
                 change = change.item(format!("name: {name}"));

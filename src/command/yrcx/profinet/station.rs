@@ -82,17 +82,17 @@ impl Station {
 
     /// Fields of a view.
     pub fn fields(&self) -> Vec<(&'static str, Cell)> {
-        let known = |text: &str| Cell::maybe((!text.is_empty()).then_some(text));
+        let known = |text: &str| Cell::optional((!text.is_empty()).then_some(text));
         let mut fields = vec![
             ("station", known(&self.station)),
             ("card", self.mac.as_str().into()),
             ("kind", known(&self.kind)),
-            ("vendor", Cell::maybe(self.vendor.as_deref())),
-            ("device", Cell::maybe(self.device.as_deref())),
+            ("vendor", Cell::optional(self.vendor.as_deref())),
+            ("device", Cell::optional(self.device.as_deref())),
             ("roles", known(&self.roles.join(", "))),
-            ("IP", Cell::maybe(self.ip.as_deref())),
-            ("mask", Cell::maybe(self.mask.as_deref())),
-            ("gateway", Cell::maybe(self.gateway.as_deref())),
+            ("IP", Cell::optional(self.ip.as_deref())),
+            ("mask", Cell::optional(self.mask.as_deref())),
+            ("gateway", Cell::optional(self.gateway.as_deref())),
         ];
         fields.extend(self.remarks.iter().map(|remark| ("remark", Cell::from(remark.as_str()).tone(Tone::Warning))));
         fields

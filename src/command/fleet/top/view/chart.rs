@@ -12,7 +12,7 @@ use ratatui::widgets::canvas::{Canvas, Line};
 use super::whole;
 use crate::command::fleet::top::model::Moment;
 use crate::command::fleet::top::track::window;
-use crate::output::painter::{Painter, after, line_of, width};
+use crate::output::painter::{Painter, line_of, rest_after, width};
 use crate::output::view::Tone;
 
 /// Data of a chart.
@@ -49,8 +49,8 @@ pub fn draw(painter: &mut Painter<'_>, area: Rect, chart: &Chart<'_>, side: u16,
     let time = window(every);
     let heading = line_of(area, 0);
     painter.paint(heading, style);
-    painter.parts(heading, &[(chart.subject, style), ("  ", style), (chart.what, style)]);
-    painter.right(heading, &format!("last {}", whole(time)), style);
+    painter.draw_parts(heading, &[(chart.subject, style), ("  ", style), (chart.what, style)]);
+    painter.draw_right(heading, &format!("last {}", whole(time)), style);
     if area.height < 3 || chart.points.is_empty() {
         return;
     }
@@ -58,13 +58,13 @@ pub fn draw(painter: &mut Painter<'_>, area: Rect, chart: &Chart<'_>, side: u16,
     let side = side.min(area.width / 2);
     let first = line_of(area, 1);
     let last = line_of(area, area.height - 1);
-    painter.right(Rect { width: side, ..first }, &top, quiet);
-    painter.right(Rect { width: side, ..last }, &bottom, quiet);
+    painter.draw_right(Rect { width: side, ..first }, &top, quiet);
+    painter.draw_right(Rect { width: side, ..last }, &bottom, quiet);
     for line in 1..area.height {
-        let place = after(line_of(area, line), side);
-        painter.left(Rect { width: place.width.min(2), ..place }, " │", quiet);
+        let place = rest_after(line_of(area, line), side);
+        painter.draw_left(Rect { width: place.width.min(2), ..place }, " │", quiet);
     }
-    let picture = after(Rect { y: first.y, height: area.height - 1, ..area }, side + 2);
+    let picture = rest_after(Rect { y: first.y, height: area.height - 1, ..area }, side + 2);
     let color = painter.palette.tone(Tone::Good).fg.unwrap_or_default();
     plot(painter, picture, chart.points, (now.as_secs_f64(), time.as_secs_f64()), color);
 }

@@ -9,7 +9,7 @@ use crate::command::face::sample::{Axis, Bank, Indicator, Sample, Whole};
 use crate::command::fleet::top::model::{Contact, Model, Moment, RobotRow};
 use crate::command::fleet::top::track::Track;
 use crate::command::robot::alarm::Alarm;
-use crate::output::painter::{Painter, after, line_of, width, wrapped};
+use crate::output::painter::{Painter, line_of, rest_after, width, wrap};
 use crate::output::view::Tone;
 
 /// Width of the axes next to a chart, and minimum width of a chart.
@@ -34,16 +34,16 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &RobotRo
         ("  ", quiet),
         (seen.place.as_str(), quiet),
     ];
-    painter.parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
+    painter.draw_parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
     format_interval(painter, line, model);
 }
 
 /// Everything else, from the top, as far as there is room.
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRow, now: Moment) {
-    let Some(sample) = seen.sample() else { return trouble(painter, area, seen) };
+    let Some(sample) = seen.sample() else { return draw_fault(painter, area, seen) };
     let Some(whole) = &sample.full else {
         let why = if model.is_paused() { "no details before the pause; press Space to continue" } else { "looking" };
-        painter.left(after(line_of(area, 1), 2), why, painter.palette.quiet());
+        painter.draw_left(rest_after(line_of(area, 1), 2), why, painter.palette.quiet());
         return;
     };
     let mut rest = area;
@@ -69,22 +69,22 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRo
 }
 
 /// Draws the reason for missing data.
-fn trouble(painter: &mut Painter<'_>, area: Rect, seen: &RobotRow) {
+fn draw_fault(painter: &mut Painter<'_>, area: Rect, seen: &RobotRow) {
     let Contact::Unreachable(failure) = &seen.contact else {
-        painter.left(after(line_of(area, 1), 2), "waiting for the first answer", painter.palette.quiet());
+        painter.draw_left(rest_after(line_of(area, 1), 2), "waiting for the first answer", painter.palette.quiet());
         return;
     };
     let mut line = 1;
     let bad = painter.palette.tone(Tone::Bad);
     let hint = failure.hint.as_ref().map(|hint| (format!("hint: {hint}"), Style::new()));
     for (text, style) in [(failure.message.clone(), bad)].into_iter().chain(hint) {
-        for part in wrapped(&text, usize::from(area.width.saturating_sub(4))) {
-            painter.left(after(line_of(area, line), 2), &part, style);
+        for part in wrap(&text, usize::from(area.width.saturating_sub(4))) {
+            painter.draw_left(rest_after(line_of(area, line), 2), &part, style);
             line += 1;
         }
         line += 1;
     }
-    painter.left(after(line_of(area, line), 2), "armctl keeps trying.", painter.palette.quiet());
+    painter.draw_left(rest_after(line_of(area, line), 2), "armctl keeps trying.", painter.palette.quiet());
 }
 
 /// Draws the indicators in columns. Returns the number of lines.
@@ -93,10 +93,10 @@ fn indicators(painter: &mut Painter<'_>, area: Rect, indicators: &[Indicator]) -
     let columns = u16::try_from(widest).unwrap_or_default() + 3;
     let across = (area.width.saturating_sub(1) / columns).max(1);
     for (at, indicator) in (0..).zip(indicators) {
-        let place = after(line_of(area, at / across), 1 + at % across * columns);
+        let row_area = rest_after(line_of(area, at / across), 1 + at % across * columns);
         let style = light(painter, indicator.is_on, indicator.tone);
         let name = if indicator.is_on || indicator.tone != Tone::Plain { style } else { painter.palette.quiet() };
-        painter.parts(place, &[(sign(indicator.is_on), style), (" ", style), (indicator.name, name)]);
+        painter.draw_parts(row_area, &[(sign(indicator.is_on), style), (" ", style), (indicator.name, name)]);
     }
     u16::try_from(indicators.len()).unwrap_or(u16::MAX).div_ceil(across)
 }
@@ -122,16 +122,16 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
             Some(what) => (format!(" {what}; the controller does not report which one here"), bad),
             None => (" no alarm".to_owned(), painter.palette.quiet()),
         };
-        painter.left(line_of(area, 0), &text, style);
+        painter.draw_left(line_of(area, 0), &text, style);
         return 1;
     }
     let mut taken = 0;
     for Alarm { code, text, remedy, .. } in &sample.alarms {
         let place = line_of(area, taken);
         let [code, text] = [code, text].map(|text| text.as_deref().unwrap_or("?"));
-        let columns = painter.parts(place, &[(" ", bad), (code, bad), ("  ", bad), (text, bad)]);
+        let columns = painter.draw_parts(place, &[(" ", bad), (code, bad), ("  ", bad), (text, bad)]);
         if let Some(remedy) = remedy {
-            painter.parts(after(place, columns + 2), &[(remedy, Style::new())]);
+            painter.draw_parts(rest_after(place, columns + 2), &[(remedy, Style::new())]);
         }
         taken += 1;
     }
@@ -142,8 +142,8 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
 fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRow, whole: &Whole, now: Moment) {
     if whole.axes.is_empty() {
         let why = whole.not_asked.unwrap_or("the controller does not report its position");
-        for (line, part) in (1..).zip(wrapped(why, usize::from(area.width.saturating_sub(2)))) {
-            painter.left(after(line_of(area, line), 1), &part, painter.palette.quiet());
+        for (line, part) in (1..).zip(wrap(why, usize::from(area.width.saturating_sub(2)))) {
+            painter.draw_left(rest_after(line_of(area, line), 1), &part, painter.palette.quiet());
         }
         return;
     }
@@ -182,17 +182,17 @@ fn table(painter: &mut Painter<'_>, area: Rect, whole: &Whole, tracks: &[Track],
     let position_at = 1 + NAME;
     let bar_at = position_at + POSITION + 1 + UNIT;
     let part = |line: Rect, at: u16, columns: u16| {
-        let place = after(line, at);
+        let place = rest_after(line, at);
         Rect { width: columns.min(place.width), ..place }
     };
     let heading = line_of(area, 0);
     let style = painter.palette.heading();
     let by_limits = whole.axes.iter().any(|axis| axis.limits.is_some());
     painter.paint(heading, style);
-    painter.left(part(heading, 1, NAME), "AXIS", style);
-    painter.right(part(heading, position_at, POSITION), "POSITION", style);
-    painter.left(part(heading, bar_at, bar), if by_limits { "SOFT LIMITS" } else { "RANGE SEEN" }, style);
-    painter.right(part(heading, bar_at + bar, torque), "TORQUE", style);
+    painter.draw_left(part(heading, 1, NAME), "AXIS", style);
+    painter.draw_right(part(heading, position_at, POSITION), "POSITION", style);
+    painter.draw_left(part(heading, bar_at, bar), if by_limits { "SOFT LIMITS" } else { "RANGE SEEN" }, style);
+    painter.draw_right(part(heading, bar_at + bar, torque), "TORQUE", style);
     // Scroll so that the selected axis is visible.
     let lines = usize::from(area.height.saturating_sub(1));
     let first = (chosen + 1).saturating_sub(lines);
@@ -200,16 +200,16 @@ fn table(painter: &mut Painter<'_>, area: Rect, whole: &Whole, tracks: &[Track],
         let line = line_of(area, line);
         let is_chosen = index == chosen;
         if is_chosen {
-            painter.left(part(line, 0, 1), "▌", painter.palette.accent());
+            painter.draw_left(part(line, 0, 1), "▌", painter.palette.accent());
         }
         let style = if is_chosen { Style::new().add_modifier(Modifier::BOLD) } else { Style::new() };
-        painter.left(part(line, 1, NAME), &axis.name, style);
-        painter.right(part(line, position_at, POSITION), &number(axis.position, axis.decimals), style);
-        painter.left(part(line, position_at + POSITION + 1, UNIT), axis.unit, painter.palette.quiet());
+        painter.draw_left(part(line, 1, NAME), &axis.name, style);
+        painter.draw_right(part(line, position_at, POSITION), &number(axis.position, axis.decimals), style);
+        painter.draw_left(part(line, position_at + POSITION + 1, UNIT), axis.unit, painter.palette.quiet());
         let seen = tracks.get(index).map_or((axis.position, axis.position), |track| track.range);
         gauge(painter, part(line, bar_at, bar), axis, seen);
         if let Some(value) = axis.torque {
-            painter.right(part(line, bar_at + bar, torque), &number(value, 0), style);
+            painter.draw_right(part(line, bar_at + bar, torque), &number(value, 0), style);
         }
     }
 }
@@ -225,7 +225,7 @@ fn gauge(painter: &mut Painter<'_>, place: Rect, axis: &Axis, seen: (f64, f64)) 
     let full = "█".repeat(filled);
     let empty = "░".repeat(usize::from(columns) - filled);
     let (style, quiet) = (painter.palette.tone(tone), painter.palette.quiet());
-    painter.parts(place, &[(&full, style), (&empty, quiet)]);
+    painter.draw_parts(place, &[(&full, style), (&empty, quiet)]);
 }
 
 /// Number of lines for the signals with their heading.
@@ -247,20 +247,20 @@ fn bank_lines(bank: &Bank, columns: u16) -> u16 {
 fn banks(painter: &mut Painter<'_>, area: Rect, banks: &[Bank]) {
     let heading = line_of(area, 0);
     painter.paint(heading, painter.palette.heading());
-    painter.left(after(heading, 1), "SIGNALS", painter.palette.heading());
+    painter.draw_left(rest_after(heading, 1), "SIGNALS", painter.palette.heading());
     let mut first = 1;
     for bank in banks {
         let across = (area.width.saturating_sub(BANK) / BANK_WIDTH).max(1);
-        painter.left(after(line_of(area, first), 1), bank.name, painter.palette.quiet());
+        painter.draw_left(rest_after(line_of(area, first), 1), bank.name, painter.palette.quiet());
         for (at, eight) in (0..).zip(&bank.groups) {
-            let place = after(line_of(area, first + at / across), BANK + at % across * BANK_WIDTH);
+            let place = rest_after(line_of(area, first + at / across), BANK + at % across * BANK_WIDTH);
             let label = Rect { width: place.width.min(6), ..place };
-            painter.right(label, &eight.label, painter.palette.quiet());
+            painter.draw_right(label, &eight.label, painter.palette.quiet());
             let on = painter.palette.tone(Tone::Good);
             let off = painter.palette.quiet();
             for (at, is_on) in (0..).zip(eight.signals) {
-                let cell = after(place, 7 + at);
-                painter.left(Rect { width: cell.width.min(1), ..cell }, sign(is_on), if is_on { on } else { off });
+                let cell = rest_after(place, 7 + at);
+                painter.draw_left(Rect { width: cell.width.min(1), ..cell }, sign(is_on), if is_on { on } else { off });
             }
         }
         first += bank_lines(bank, area.width);

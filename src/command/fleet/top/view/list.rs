@@ -5,7 +5,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::{answer, format_interval};
 use crate::command::fleet::top::model::{Contact, Model, Moment, RobotRow, Severity, Sort};
-use crate::output::painter::{self, Painter, after, line_of, width};
+use crate::output::painter::{self, Painter, line_of, rest_after, width};
 use crate::output::view::Tone;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +36,7 @@ const LEVELS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█
 /// First line: number of robots and of problems.
 pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let robots = model.robots();
-    let count = |trouble| robots.iter().filter(|seen| seen.trouble() == trouble).count();
+    let count = |trouble| robots.iter().filter(|seen| seen.severity_of() == trouble).count();
     let (silent, alarms) = (count(Severity::Silent), count(Severity::Alarm));
     let waiting = robots.iter().filter(|seen| seen.contact == Contact::Waiting).count();
     let plural = if robots.len() == 1 { "" } else { "s" };
@@ -60,7 +60,7 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model) {
         parts.push((format!(" · {}", model.sort.name()), painter.palette.quiet()));
     }
     let parts: Vec<(&str, Style)> = parts.iter().map(|(text, style)| (text.as_str(), *style)).collect();
-    painter.parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
+    painter.draw_parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
     format_interval(painter, line, model);
 }
 
@@ -72,9 +72,9 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
     let style = painter.palette.heading();
     for (column, place) in &columns {
         if column.is_right() {
-            painter.right(on(*place, heading), column.title(), style);
+            painter.draw_right(draw_cell(*place, heading), column.title(), style);
         } else {
-            painter.left(on(*place, heading), column.title(), style);
+            painter.draw_left(draw_cell(*place, heading), column.title(), style);
         }
     }
     let room = Rect { y: area.y.saturating_add(1), height: area.height.saturating_sub(2), ..area };
@@ -85,17 +85,17 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
         let line = line_of(room, line);
         let Some(seen) = model.robots().get(*robot) else { continue };
         for (column, place) in &columns {
-            column.draw(painter, on(*place, line), seen, now, model);
+            column.draw(painter, draw_cell(*place, line), seen, now, model);
         }
         if *robot == model.cursor {
-            painter.left(Rect { width: line.width.min(1), ..line }, "▌", painter.palette.accent());
-            painter.paint(after(line, 1), Style::new().add_modifier(Modifier::BOLD));
+            painter.draw_left(Rect { width: line.width.min(1), ..line }, "▌", painter.palette.accent());
+            painter.paint(rest_after(line, 1), Style::new().add_modifier(Modifier::BOLD));
         }
     }
     if listed.is_empty() {
-        painter.left(after(line_of(room, 1), 2), "no robot matches the filter", painter.palette.quiet());
+        painter.draw_left(rest_after(line_of(room, 1), 2), "no robot matches the filter", painter.palette.quiet());
     } else if area.height > 2 {
-        trouble(painter, line_of(area, area.height - 1), model);
+        draw_fault(painter, line_of(area, area.height - 1), model);
     }
 }
 
@@ -105,7 +105,7 @@ fn first_line(cursor: usize, robots: usize, lines: usize) -> usize {
 }
 
 /// Draws the problem of the selected robot.
-fn trouble(painter: &mut Painter<'_>, line: Rect, model: &Model) {
+fn draw_fault(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let Some(seen) = model.selected_robot() else { return };
     let (text, tone) = if let Contact::Unreachable(failure) = &seen.contact {
         let hint = failure.hint.as_ref().map(|hint| format!("; {hint}")).unwrap_or_default();
@@ -115,7 +115,7 @@ fn trouble(painter: &mut Painter<'_>, line: Rect, model: &Model) {
         (if alarm.is_empty() { seen.place.clone() } else { format!("{}: {alarm}", seen.name) }, tone)
     };
     let style = if tone == Tone::Plain { painter.palette.quiet() } else { painter.palette.tone(tone) };
-    painter.left(after(line, 1), &text, style);
+    painter.draw_left(rest_after(line, 1), &text, style);
 }
 
 /// Columns that fit the width, with position and width.
@@ -141,16 +141,16 @@ fn columns(width: u16, robots: &[RobotRow]) -> Vec<(Column, Rect)> {
     let available = all
         .into_iter()
         .filter(|(column, _, least)| width >= *least && !(has_fine && *column == Column::Position { decimals: 0 }));
-    let mut there: Vec<(Column, u16)> = available.map(|(column, columns, _)| (column, columns)).collect();
-    let taken: u16 = 2 + there.iter().map(|(_, columns)| columns + gap).sum::<u16>();
-    for (column, columns) in &mut there {
+    let mut available_width: Vec<(Column, u16)> = available.map(|(column, columns, _)| (column, columns)).collect();
+    let taken: u16 = 2 + available_width.iter().map(|(_, columns)| columns + gap).sum::<u16>();
+    for (column, columns) in &mut available_width {
         if *column == Column::Alarm {
             *columns = width.saturating_sub(taken).max(ALARM);
         }
     }
     let mut x = 2;
-    let mut columns_with_area = Vec::with_capacity(there.len());
-    for (column, columns) in there {
+    let mut columns_with_area = Vec::with_capacity(available_width.len());
+    for (column, columns) in available_width {
         columns_with_area.push((column, Rect { x, width: columns.min(width.saturating_sub(x)), ..Rect::ZERO }));
         x += columns + gap;
     }
@@ -158,7 +158,7 @@ fn columns(width: u16, robots: &[RobotRow]) -> Vec<(Column, Rect)> {
 }
 
 /// Position of a column in a line.
-fn on(column: Rect, line: Rect) -> Rect {
+fn draw_cell(column: Rect, line: Rect) -> Rect {
     Rect { x: line.x + column.x, y: line.y, width: column.width, height: line.height }
 }
 
@@ -207,32 +207,32 @@ impl Column {
             Self::Alarm => {
                 let (text, tone) = seen.alarm();
                 let style = if tone == Tone::Plain { palette.quiet() } else { palette.tone(tone) };
-                painter.left(place, &text, style);
+                painter.draw_left(place, &text, style);
                 return;
             }
             Self::Position { decimals } => return position(painter, place, seen, decimals, plain),
             Self::Answer => {
                 let (text, style) = answer(painter, seen, now, model.every);
-                painter.right(place, &text, style);
+                painter.draw_right(place, &text, style);
                 return;
             }
             Self::Trend => return trend(painter, place, seen),
         };
-        painter.left(place, text, style);
+        painter.draw_left(place, text, style);
     }
 }
 
 /// Draws three coordinates in columns.
 fn position(painter: &mut Painter<'_>, place: Rect, seen: &RobotRow, decimals: usize, style: Style) {
-    let Some(sample) = seen.sample() else { return painter.right(place, "-", painter.palette.quiet()) };
+    let Some(sample) = seen.sample() else { return painter.draw_right(place, "-", painter.palette.quiet()) };
     let Some(at) = sample.line.state.position else {
         let why = if sample.line.not_asked.is_some() { "not asked" } else { "-" };
-        return painter.right(place, why, painter.palette.quiet());
+        return painter.draw_right(place, why, painter.palette.quiet());
     };
     let columns = (place.width.saturating_sub(2)) / 3;
     for (index, value) in (0..).zip([at.x_mm, at.y_mm, at.z_mm]) {
-        let column = after(place, index * (columns + 1));
-        painter.right(Rect { width: columns.min(column.width), ..column }, &format!("{value:.decimals$}"), style);
+        let column = rest_after(place, index * (columns + 1));
+        painter.draw_right(Rect { width: columns.min(column.width), ..column }, &format!("{value:.decimals$}"), style);
     }
 }
 
@@ -247,7 +247,7 @@ fn trend(painter: &mut Painter<'_>, place: Rect, seen: &RobotRow) {
     });
     let signs: String = signs.collect();
     debug_assert!(width(&signs) <= PAST);
-    painter.left(place, &signs, painter.palette.quiet());
+    painter.draw_left(place, &signs, painter.palette.quiet());
 }
 
 #[cfg(test)]

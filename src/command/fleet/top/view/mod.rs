@@ -14,7 +14,7 @@ use ratatui::style::{Modifier, Style};
 use super::keys::KEYS;
 use super::model::{Model, Moment, RobotRow};
 pub use crate::output::painter::Palette;
-use crate::output::painter::{Painter, after, line_of, to_ascii};
+use crate::output::painter::{Painter, line_of, rest_after, to_ascii};
 use crate::output::view::Tone;
 
 /// Draws the screen.
@@ -36,7 +36,7 @@ fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: 
     keys(&mut painter, foot, model);
     if model.has_help {
         let title = "No key can move a robot or change anything.";
-        painter.help(area, title, KEYS.iter().map(|(_, key)| key));
+        painter.draw_help(area, title, KEYS.iter().map(|(_, key)| key));
     }
     if !palette.is_unicode {
         to_ascii(painter.buffer);
@@ -62,12 +62,12 @@ fn rows(area: Rect) -> [Rect; 3] {
 /// Draws the polling interval and the pause mark at the end of the first line.
 fn format_interval(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let pace = format!("every {:?} ", model.every);
-    painter.right(line, &pace, painter.palette.quiet());
+    painter.draw_right(line, &pace, painter.palette.quiet());
     if model.is_paused() {
         let taken = u16::try_from(pace.len()).unwrap_or_default();
         let room = Rect { width: line.width.saturating_sub(taken + 1), ..line };
         let style = painter.palette.tone(Tone::Warning).add_modifier(Modifier::REVERSED);
-        painter.right(room, " PAUSED ", style);
+        painter.draw_right(room, " PAUSED ", style);
     }
 }
 
@@ -76,13 +76,13 @@ fn keys(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let (accent, quiet) = (painter.palette.accent(), painter.palette.quiet());
     if model.is_typing {
         let parts = [(" filter: ", accent), (model.filter.as_str(), Style::new()), ("█", accent)];
-        let taken = painter.parts(line, &parts);
-        painter.left(after(line, taken + 2), "Enter keeps the filter, Esc shows all again", quiet);
+        let taken = painter.draw_parts(line, &parts);
+        painter.draw_left(rest_after(line, taken + 2), "Enter keeps the filter, Esc shows all again", quiet);
         return;
     }
     let counts = |(list, one): (bool, bool)| if model.is_open { one } else { list };
     let shown = KEYS.iter().filter(|(place, key)| !key.short.is_empty() && counts(*place)).map(|(_, key)| key);
-    painter.keys(line, &shown.collect::<Vec<_>>());
+    painter.draw_keys(line, &shown.collect::<Vec<_>>());
 }
 
 /// Time of the last answer: `4.1 ms`, or `12s ago` if it is late.

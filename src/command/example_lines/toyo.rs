@@ -1,10 +1,10 @@
 //! Lines of the commands of `toyo`.
 
-use super::Leaf;
+use super::ExampleLine;
 use crate::controller::Risk::{Destroy, Motion, Read, Write};
 
 #[rustfmt::skip]
-pub const LEAVES: &[Leaf] = &[
+pub const LINES: &[ExampleLine] = &[
     ("toyo accel-table get", Read),
     ("toyo accel-table get 1-5,20", Read),
     ("toyo accel-table watch 1", Read),

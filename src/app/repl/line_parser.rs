@@ -7,13 +7,13 @@ use crate::settings::target::Family;
 
 /// Inserts the family before its commands.
 #[derive(Debug, Default)]
-pub struct Meaning {
+pub struct LineParser {
     prefix: Vec<String>,
     /// Parser for command lines.
     pub parser: Parser,
 }
 
-impl Meaning {
+impl LineParser {
     /// Creates it with the words to insert; the first is the family.
     pub fn new(prefix: Vec<String>) -> Self {
         Self { prefix, parser: Parser::default() }
@@ -64,24 +64,24 @@ pub fn family_help(prefix: &[String]) -> Vec<OsString> {
 mod tests {
     use super::*;
 
-    fn meant(prefix: &[&str], line: &str) -> String {
+    fn parse_line(prefix: &[&str], line: &str) -> String {
         let prefix = prefix.iter().map(ToString::to_string).collect();
         let words: Vec<String> = line.split(' ').map(ToOwned::to_owned).collect();
-        let args = Meaning::new(prefix).args(&words);
+        let args = LineParser::new(prefix).args(&words);
         args.iter().map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")
     }
 
     #[test]
-    fn a_line_is_of_the_family_or_of_all() {
-        assert_eq!(meant(&["yerc"], "status"), "armctl yerc status");
-        assert_eq!(meant(&["yerc"], "-o json status"), "armctl yerc -o json status");
-        assert_eq!(meant(&["yerc"], "robots list"), "armctl robots list");
-        assert_eq!(meant(&["yerc"], "toyo status"), "armctl toyo status");
-        assert_eq!(meant(&["yerc"], "yerc status"), "armctl yerc status");
-        assert_eq!(meant(&["yerc"], "satus"), "armctl yerc satus");
-        assert_eq!(meant(&["yrcx", "--unit", "2"], "servo on"), "armctl yrcx --unit 2 servo on");
-        assert_eq!(meant(&["yrcx"], "help"), "armctl yrcx -h");
-        assert_eq!(meant(&[], "status"), "armctl status");
-        assert_eq!(meant(&[], "?"), "armctl -h");
+    fn line_belongs_to_the_family_or_is_common() {
+        assert_eq!(parse_line(&["yerc"], "status"), "armctl yerc status");
+        assert_eq!(parse_line(&["yerc"], "-o json status"), "armctl yerc -o json status");
+        assert_eq!(parse_line(&["yerc"], "robots list"), "armctl robots list");
+        assert_eq!(parse_line(&["yerc"], "toyo status"), "armctl toyo status");
+        assert_eq!(parse_line(&["yerc"], "yerc status"), "armctl yerc status");
+        assert_eq!(parse_line(&["yerc"], "satus"), "armctl yerc satus");
+        assert_eq!(parse_line(&["yrcx", "--unit", "2"], "servo on"), "armctl yrcx --unit 2 servo on");
+        assert_eq!(parse_line(&["yrcx"], "help"), "armctl yrcx -h");
+        assert_eq!(parse_line(&[], "status"), "armctl status");
+        assert_eq!(parse_line(&[], "?"), "armctl -h");
     }
 }

@@ -5,24 +5,24 @@ use std::time::Duration;
 
 use super::envelope::Envelope;
 use super::{Screen, fullscreen, prompt};
-use crate::failure::{Failure, Kind, end};
+use crate::failure::{Failure, Kind, exit_process};
 use crate::files;
 
 /// Screen for the last message, once known.
 static SCREEN: Mutex<Option<Screen>> = Mutex::new(None);
 
 /// Time limit for the last message, because a stopped terminal blocks.
-const LAST_WORDS: Duration = Duration::from_millis(200);
+const MESSAGE_TIMEOUT: Duration = Duration::from_millis(200);
 
 impl Screen {
     /// Uses this screen for the message of an immediate exit.
-    pub fn tells_the_end(self) {
+    pub fn use_for_exit(self) {
         *SCREEN.lock().unwrap_or_else(PoisonError::into_inner) = Some(self);
     }
 }
 
 /// Restores the terminal, prints the reason, and exits as interrupted.
-pub fn at_once(why: &str) -> ! {
+pub fn exit_now(why: &str) -> ! {
     let (done, is_done) = mpsc::channel();
     let failure = Failure::new(Kind::Interrupted, why);
     // On its own thread, because another thread can hold the lock of stdout or stderr.
@@ -37,9 +37,9 @@ pub fn at_once(why: &str) -> ! {
         }
         let _ = done.send(());
     });
-    let _ = is_done.recv_timeout(LAST_WORDS);
+    let _ = is_done.recv_timeout(MESSAGE_TIMEOUT);
     files::remove_drafts();
-    end(Kind::Interrupted)
+    exit_process(Kind::Interrupted)
 }
 
 /// Suspends the process group, as a shell expects of Ctrl-Z. Returns when it continues; at once without a shell that
@@ -51,8 +51,8 @@ pub fn suspend() {
 
     // In a container, the session leader can be outside, with process id 0. rustix panics at that, nix does not.
     let parent = getppid();
-    let is_beside = getsid(Some(parent)).is_ok_and(|its| getsid(None) == Ok(its));
-    if is_beside && getpgid(Some(parent)).is_ok_and(|its| its != getpgrp()) {
+    let is_same_session = getsid(Some(parent)).is_ok_and(|its| getsid(None) == Ok(its));
+    if is_same_session && getpgid(Some(parent)).is_ok_and(|its| its != getpgrp()) {
         // SIGTSTP would be handled by our own signal handler.
         let _ = kill_current_process_group(Signal::STOP);
     }

@@ -4,27 +4,27 @@
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 static DEPTH: AtomicUsize = AtomicUsize::new(0);
-static TURN: AtomicU64 = AtomicU64::new(0);
+static WORK_NUMBER: AtomicU64 = AtomicU64::new(0);
 
 /// Blocking work, until it is dropped.
 #[derive(Debug)]
-pub struct Busy(());
+pub struct BusyWork(());
 
 /// Registers blocking work; can be nested.
-pub fn busy() -> Busy {
+pub fn register() -> BusyWork {
     if DEPTH.fetch_add(1, Ordering::SeqCst) == 0 {
-        TURN.fetch_add(1, Ordering::SeqCst);
+        WORK_NUMBER.fetch_add(1, Ordering::SeqCst);
     }
-    Busy(())
+    BusyWork(())
 }
 
-impl Drop for Busy {
+impl Drop for BusyWork {
     fn drop(&mut self) {
         DEPTH.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
 /// Number of the current blocking work. The same number later means that it is still the same work.
-pub fn under_way() -> Option<u64> {
-    (DEPTH.load(Ordering::SeqCst) > 0).then(|| TURN.load(Ordering::SeqCst))
+pub fn current() -> Option<u64> {
+    (DEPTH.load(Ordering::SeqCst) > 0).then(|| WORK_NUMBER.load(Ordering::SeqCst))
 }

@@ -1,10 +1,10 @@
 //! Lines of the commands of `yerc`.
 
-use super::Leaf;
+use super::ExampleLine;
 use crate::controller::Risk::{Destroy, Motion, Read, Write};
 
 #[rustfmt::skip]
-pub const LEAVES: &[Leaf] = &[
+pub const LINES: &[ExampleLine] = &[
     ("yerc alarm list", Read),
     ("yerc alarm list --watch 5s", Read),
     ("yerc alarm history --class major", Read),

@@ -9,10 +9,10 @@ mod yrcx;
 use crate::controller::Risk::{self, Destroy, Read, Write};
 
 /// A line, and what it does at most. What stops the robot is marked by its own test.
-pub type Leaf = (&'static str, Risk);
+pub type ExampleLine = (&'static str, Risk);
 
 /// Lines of the commands for robots of any family.
-const COMMON: &[Leaf] = &[
+const COMMON: &[ExampleLine] = &[
     ("status", Read),
     ("status --watch 5s", Read),
     ("status -r 'cell*' --json", Read),
@@ -46,8 +46,8 @@ const COMMON: &[Leaf] = &[
 ];
 
 /// All lines for robots: of every command the usual ones, and where its words decide what it does, one of each.
-pub fn leaves() -> impl Iterator<Item = &'static Leaf> {
-    [COMMON, yerc::LEAVES, yrcx::LEAVES, toyo::LEAVES].into_iter().flatten()
+pub fn robot_lines() -> impl Iterator<Item = &'static ExampleLine> {
+    [COMMON, yerc::LINES, yrcx::LINES, toyo::LINES].into_iter().flatten()
 }
 
 /// The lines of the command of these words.
@@ -57,15 +57,15 @@ pub fn examples(path: &[&str]) -> impl Iterator<Item = &'static str> {
 
 /// Every line.
 pub fn all() -> impl Iterator<Item = &'static str> {
-    leaves().map(|(line, _)| *line).chain(without_robot::LINES.iter().copied())
+    robot_lines().map(|(line, _)| *line).chain(without_robot::LINES.iter().copied())
 }
 
 /// Whether a command can move a robot, or delete or overwrite what a person wrote; of a noun, whether all of its verbs
 /// can. `path` are its words.
 pub fn is_dangerous(path: &[&str], is_noun: bool) -> bool {
-    let mut has_subcommand = leaves().filter(|(line, _)| starts_with_words(line, path)).peekable();
-    let is_one = |(_, risk): &Leaf| *risk >= Destroy;
-    has_subcommand.peek().is_some() && if is_noun { has_subcommand.all(is_one) } else { has_subcommand.any(is_one) }
+    let mut lines = robot_lines().filter(|(line, _)| starts_with_words(line, path)).peekable();
+    let is_one = |(_, risk): &ExampleLine| *risk >= Destroy;
+    lines.peek().is_some() && if is_noun { lines.all(is_one) } else { lines.any(is_one) }
 }
 
 /// Whether a list of the values that a command lacks may preselect the first: not where Enter alone would delete

@@ -1,10 +1,10 @@
 //! Lines of the commands of `yrcx`.
 
-use super::Leaf;
+use super::ExampleLine;
 use crate::controller::Risk::{Destroy, Motion, Read, Write};
 
 #[rustfmt::skip]
-pub const LEAVES: &[Leaf] = &[
+pub const LINES: &[ExampleLine] = &[
     ("yrcx abs-reset --axis 2 --move +", Motion),
     ("yrcx abs-reset --axis 2", Destroy),
     ("yrcx alarm list", Read),
