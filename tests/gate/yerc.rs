@@ -145,7 +145,8 @@ fn every_verb_asks_before_overwriting_a_taught_position() {
         assert_eq!(desk.run(&format!("{sets} {line}")).exit, Some(0), "{line}");
     }
     let data = desk.data(&format!("{sets} BP6.axis1=7 --yes"));
-    assert_eq!((&data["parts"][0]["old"], &data["parts"][0]["new"]), (&1.into(), &7.into()));
+    let pulses = |side: &str| &data["items"][0][side]["axis_1_pulses"];
+    assert_eq!((pulses("old"), pulses("new")), (&1.into(), &7.into()));
     assert_eq!(
         desk.run(&format!(
             "-r cell yerc raw --command 0x7F --instance 9 --attribute 6 --service 0x10 --data {variable} --yes"
