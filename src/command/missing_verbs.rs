@@ -55,6 +55,8 @@ pub const MISSING: &[(&str, &str, &str)] = &[
     ("yerc timer", "the protocol does not read timers", "`armctl yerc hours` reads the operating hours"),
     ("yerc param", "the protocol does not read single parameters",
         "`armctl yerc file get '*.PRM'` downloads the parameter files"),
+    ("yerc register list", "the protocol does not list registers in use",
+        "`armctl yerc register get 0..99` reads a range"),
     ("yerc point", "taught points of a Yaskawa controller are position variables P, BP and EX",
         "`armctl yerc var get P5` reads one; see `armctl yerc var -h`"),
     ("yerc job get", "jobs are files on a Yaskawa controller", "`armctl yerc file get WELD.JBI` downloads one"),
@@ -87,6 +89,8 @@ pub const MISSING: &[(&str, &str, &str)] = &[
     ("toyo move", "the protocol moves to taught points only", "see `armctl toyo run -h`"),
     ("toyo names", "a Toyo controller keeps no names of signals", "`armctl names set NAME ADDRESS` gives one in robots.toml"),
     ("toyo explain", "codes are explained without a connection", "`armctl explain toyo CODE`"),
+    ("toyo point delete", "the protocol does not delete points",
+        "`armctl toyo point set 5 0 0 0 0` sets all coordinates to 0, which counts as empty"),
     ("toyo hold", "the protocol has no hold", "`armctl toyo stop` stops what moves"),
 ];
 

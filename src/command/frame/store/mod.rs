@@ -455,8 +455,7 @@ fn item<S: Store>(
 
 /// Columns of a table of rows.
 fn columns<S: Store>(table: &S) -> Columns {
-    let [one, many] = S::WORDS.nouns;
-    Columns { name: one, values: table.headings(), empty: many }
+    Columns { name: S::WORDS.nouns[0], values: table.headings(), empty: "nothing stored" }
 }
 
 /// Columns of a file: the row, its fields, and its user name.
