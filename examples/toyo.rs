@@ -32,7 +32,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     }
     // Until it is told to stop, an axis may move.
     let place = robot.stop(Moving::Jog).await?;
-    println!("axis 1 stands at {:.2} mm", f64::from(place.number("x").unwrap_or_default()) / 100.0);
+    println!("axis 1 is at {:.2} mm", f64::from(place.number("x").unwrap_or_default()) / 100.0);
     let (_, closed) = robot.close().await;
     Ok(closed?)
 }

@@ -35,7 +35,7 @@ async fn main() -> anyhow::Result<()> {
     while robot.ask(&position).await?.axes.as_slice()[0] != 5_000 {
         tokio::time::sleep(Duration::from_millis(20)).await;
     }
-    println!("S stands at 5000 pulses");
+    println!("S is at 5000 pulses");
     robot.close().await?;
     Ok(())
 }

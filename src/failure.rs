@@ -66,7 +66,7 @@ impl Kind {
 }
 
 /// Ends the process at once with the exit code of `kind`, without waiting for other threads.
-#[expect(clippy::exit, reason = "for those who must not wait for the rest of the process")]
+#[expect(clippy::exit, reason = "the process must end at once")]
 pub fn exit_process(kind: Kind) -> ! {
     std::process::exit(kind.exit().into())
 }
@@ -118,7 +118,7 @@ impl Failure {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                 failure.hint("free some space, and repeat the command")
             }
-            ErrorKind::InvalidData => failure.hint("this is not the kind of file that is wanted here"),
+            ErrorKind::InvalidData => failure.hint("this file has another format"),
             ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
             ErrorKind::FileTooLarge => failure.hint("check that it is the file that was meant"),
             ErrorKind::NotADirectory => failure.hint("check the path: a part of it is a file, not a folder"),

@@ -99,7 +99,7 @@ impl Gate {
             return Ok(());
         }
         let hint = |name: &str| {
-            format!("it is so on purpose; where it may be changed: `armctl robots set {name} read_only=off`")
+            format!("the inventory protects this robot; to allow changes: `armctl robots set {name} read_only=off`")
         };
         Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(
             match &robot.read_only_entry {
@@ -205,7 +205,7 @@ impl Change {
 
 /// Failure because the data changed while the question was open.
 pub fn data_changed(message: impl Into<String>) -> Failure {
-    Failure::new(Kind::Rejected, message).hint("somebody else is at work there: look, then repeat the command")
+    Failure::new(Kind::Rejected, message).hint("another client changed it: check the state, then repeat the command")
 }
 
 /// Failure because a question is needed but not possible.

@@ -17,13 +17,13 @@ fn run(example: &str) -> String {
 #[test]
 fn toyo_reads_and_moves() {
     let point = "T1 PT=001 X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00";
-    let said = format!("servo on: true, host on: false\npoint 1: {point}\naxis 1 stands at 0.01 mm\n");
+    let said = format!("servo on: true, host on: false\npoint 1: {point}\naxis 1 is at 0.01 mm\n");
     assert_eq!(run("toyo"), said);
 }
 
 #[test]
 fn yerc_reads_fetches_and_moves() {
-    assert_eq!(run("yerc"), "servo on: true, alarm: false\nTESTJOB.JBI: 487 bytes\nS stands at 5000 pulses\n");
+    assert_eq!(run("yerc"), "servo on: true, alarm: false\nTESTJOB.JBI: 487 bytes\nS is at 5000 pulses\n");
 }
 
 #[test]

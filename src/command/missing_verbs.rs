@@ -51,7 +51,7 @@ pub const SHARED: &[&str] = &[
 /// What a family lacks: its words behind `armctl`, what it says, and what to use instead.
 #[rustfmt::skip]
 pub const MISSING: &[(&str, &str, &str)] = &[
-    ("yerc counter", "a Yaskawa controller has no counters of its own", "jobs count in variables: `armctl yerc var get B0`"),
+    ("yerc counter", "a Yaskawa controller has no counters", "jobs count in variables: `armctl yerc var get B0`"),
     ("yerc timer", "the protocol does not read timers", "`armctl yerc hours` reads the operating hours"),
     ("yerc param", "the protocol does not read single parameters",
         "`armctl yerc file get '*.PRM'` downloads the parameter files"),
@@ -68,7 +68,7 @@ pub const MISSING: &[(&str, &str, &str)] = &[
         "a job can move to the home position: see `armctl yerc job -h`; the mechanical origin is set at the pendant"),
     ("yerc explain", "codes are explained without a connection", "`armctl explain yerc CODE`"),
 
-    ("yrcx counter", "a YRCX has no counters of its own", "programs count in variables: `armctl yrcx var get SGI0`"),
+    ("yrcx counter", "a YRCX has no counters", "programs count in variables: `armctl yrcx var get SGI0`"),
     ("yrcx timer", "the fieldbus does not read timers", "`armctl yrcx program show` shows the tasks"),
     ("yrcx program list", "the fieldbus does not list programs", "`armctl yrcx program show` shows which one each task runs"),
     ("yrcx program get", "the fieldbus carries no texts of programs", "use the maker's support software"),

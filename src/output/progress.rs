@@ -154,7 +154,7 @@ mod tests {
             (lines[0].as_str(), lines[9].as_str()),
             ("10 %, 20 of 200, 1 min 30 s left", "100 %, 200 of 200, 0 s left")
         );
-        assert_eq!(tenth(200, 200, passed, &mut last, false), None, "no tenth is told twice");
+        assert_eq!(tenth(200, 200, passed, &mut last, false), None, "no tenth is printed twice");
         assert_eq!(tenth(2048, 4096, passed, &mut 0, true).as_deref(), Some("50 %, 2 of 4 KiB, 10 s left"));
         assert_eq!(tenth(1, 2, Duration::from_secs(1), &mut 0, false), None, "what is quick has no lines");
     }

@@ -293,7 +293,7 @@ mod tests {
         assert_eq!(client.model_for(third).await.unwrap(), Model::Dx200);
         assert_eq!(client.totals.exchanges, 1);
         client.remember(Model::Fs100);
-        assert_eq!(client.known_model(), Some(Model::Dx200), "what was told is not forgotten");
+        assert_eq!(client.known_model(), Some(Model::Dx200), "a reported model is kept");
     }
 
     #[tokio::test(start_paused = true)]

@@ -338,8 +338,8 @@ mod tests {
         );
         let error = |words: &[&str]| blocks(words).unwrap_err().message;
         assert_eq!(error(&["mvm", "set", "1", "origin=0"]), "group 1: origin: 0 is out of range (a number, 1 to 999)");
-        assert_eq!(error(&["mvm", "set", "1", "orgin=1"]), "group 1: there is no value 'orgin'; did you mean origin?");
-        assert_eq!(error(&["mvm", "set", "1", "p1=1", "p1=2"]), "group 1: p1 is given twice");
+        assert_eq!(error(&["mvm", "set", "1", "orgin=1"]), "group 1: unknown value 'orgin'; did you mean origin?");
+        assert_eq!(error(&["mvm", "set", "1", "p1=1", "p1=2"]), "group 1: p1 appears twice");
     }
 
     #[test]

@@ -130,7 +130,7 @@ impl Command for Set {
         let names = names::of_robot(robot, screen);
         let mut seen_numbers = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen_numbers.insert(assignment.number)) {
-            return Err(Failure::usage(format!("register {} is given twice", twice.number)).hint("give it one value"));
+            return Err(Failure::usage(format!("register {} appears twice", twice.number)).hint("give it one value"));
         }
         let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
         let steps = link.by_model(|model| plan_register_writes(model, &values)).await?;

@@ -403,7 +403,7 @@ mod tests {
             }
         };
         assert!((4..30).contains(&tries), "{tries}");
-        assert!(now < NOW + TIMEOUT, "not longer than its patience");
+        assert!(now < NOW + TIMEOUT, "not longer than its timeout");
         let trouble = EipError::Encapsulation { what: "RegisterSession", status: NO_ROOM };
         assert_eq!(result, (false, Err(trouble)));
         // Any other refusal, and one without retries, is reported at once.

@@ -472,7 +472,7 @@ mod tests {
         assert!(names(&model).is_empty());
         model.handle_key(NOW, KeyAction::ApplyFilter);
         model.handle_key(NOW, KeyAction::Open);
-        assert!(!model.is_open, "there is none to open");
+        assert!(!model.is_open, "no window can open");
         model.handle_key(NOW, KeyAction::Back);
         assert_eq!((model.visible_robots().len(), model.cursor), (12, 11));
     }

@@ -41,9 +41,8 @@ impl<S: Writable> Command for Copy<S> {
         let Context { robot, link, screen, authority, .. } = context;
         let copy_one = S::WORDS.nouns[0];
         let [from] = self.from.0[..] else {
-            return Err(
-                Failure::usage(format!("a single {copy_one} can be copied")).hint("name one row, then where it goes")
-            );
+            return Err(Failure::usage(format!("only one {copy_one} can be copied at a time"))
+                .hint("type one row, then the rows to write"));
         };
         let name = as_requested(copy_one, &S::name(from));
         let to = Rows::of(&self.to);

@@ -348,7 +348,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
                 Some(at) if column.is_number => match sheet.number(row, *at) {
                     Ok(number) if !number.is_empty() => Some(number.into_owned()),
                     Ok(_) => {
-                        let message = format!("{} is empty; without its column, it stays as it is", column.name);
+                        let message = format!("{} is empty; to keep its value, remove the column", column.name);
                         findings.error(row.place(*at), message, None);
                         None
                     }

@@ -86,10 +86,10 @@ pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S:
             let at = exact.or_else(|| names.iter().position(begins)).ok_or_else(|| {
                 let similar = nearest(name, names.iter().copied());
                 let near = similar.map_or(String::new(), |near| format!("; did you mean {near}?"));
-                invalid(format!("there is no value '{}'{near}", name.escape_debug()))
+                invalid(format!("unknown value '{}'{near}", name.escape_debug()))
             })?;
             if texts[at].replace(value).is_some() {
-                return Err(invalid(format!("{name} is given twice")));
+                return Err(invalid(format!("{name} appears twice")));
             }
         }
     } else if words.len() == fields.len() {

@@ -136,7 +136,7 @@ impl Command for Set {
 }
 
 impl Set {
-    /// Change of each group. A signal that is given twice is an error.
+    /// Change of each group. A signal that appears twice is an error.
     fn changes(&self) -> Result<BTreeMap<u16, Change>, Failure> {
         let mut changes: BTreeMap<u16, Change> = BTreeMap::new();
         let wholes = self.groups.iter().map(|whole| (whole.group, Change { mask: u8::MAX, value: whole.value }));
@@ -147,7 +147,7 @@ impl Set {
             let known = changes.entry(group).or_default();
             if known.mask & change.mask != 0 {
                 let bit = u8::try_from((known.mask & change.mask).trailing_zeros()).unwrap_or_default();
-                return Err(Failure::usage(format!("{} is given twice", signal::name(group, bit)))
+                return Err(Failure::usage(format!("{} appears twice", signal::name(group, bit)))
                     .hint("give each signal one state"));
             }
             *known = Change { mask: known.mask | change.mask, value: known.value | change.value };
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn rejects_repeated_signals() {
-        assert_eq!(set(&["27013=on", "27013=off"], &[]).unwrap_err().message, "#27013 is given twice");
+        assert_eq!(set(&["27013=on", "27013=off"], &[]).unwrap_err().message, "#27013 appears twice");
         assert!(set(&["27013=on"], &["2701=0"]).is_err());
         assert!("27018=on".parse::<Switch>().is_err());
         assert!("27010=yes".parse::<Switch>().unwrap_err().contains("on or off"));

@@ -315,7 +315,7 @@ fn bits(text: &str, count: usize, words: impl Fn(u32) -> Vec<&'static str>) -> R
             return Err(format!("'{word}' is not one of {}", all.join(", ")));
         };
         if given >> bit & 1 == 1 {
-            return Err(format!("'{word}': {}|{} is given twice", clear[bit], set[bit]));
+            return Err(format!("'{word}': {}|{} appears twice", clear[bit], set[bit]));
         }
         given |= 1 << bit;
         value |= u32::from(word.eq_ignore_ascii_case(set[bit])) << bit;
@@ -539,7 +539,7 @@ mod tests {
         assert_eq!(form("front,lower,noflip"), Ok(Form(0b110)));
         assert_eq!(form("noflip+s-ge180"), Ok(Form(0b10_0100)));
         assert_eq!(extended_form("w-ge180,l-lt180"), Ok(ExtendedForm(0b1_0000)));
-        assert!(form("front,back").unwrap_err().contains("front|back is given twice"));
+        assert!(form("front,back").unwrap_err().contains("front|back appears twice"));
         assert!(form("redundant-back").unwrap_err().contains("noflip"), "bits 6 and 7 are reserved in moves");
         assert!(form("").is_err());
     }

@@ -65,7 +65,7 @@ fn rejects_invalid_assignments() {
         format!("{} {}", failure.message, failure.hint.unwrap_or_default())
     };
     assert!(failed(&["var", "set", "I0=1", "B0=256"]).contains("'256' is not a number from 0 to 255"));
-    assert!(failed(&["var", "set", "B0=1", "B0=2"]).contains("B0 is given twice"));
+    assert!(failed(&["var", "set", "B0=1", "B0=2"]).contains("B0 appears twice"));
     assert!(failed(&["var", "set", "S0=123456789012345678901234567890123"]).contains("33 bytes"));
     assert!(failed(&["var", "set", "--s16", "S0=12345678901234567"]).contains("17 bytes"));
     assert!(failed(&["var", "set", "S0=한글"]).contains("shift_jis"));

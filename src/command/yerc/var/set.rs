@@ -175,7 +175,7 @@ impl Set {
     /// The new content of each variable. Words of a position that is written completely are merged into it.
     fn rows(&self, table: &Variables) -> Result<Vec<Row<Variables>>, Failure> {
         let mut rows: Vec<Row<Variables>> = Vec::new();
-        let repeated = |key| Failure::usage(format!("{key} is given twice")).hint("give each variable one value");
+        let repeated = |key| Failure::usage(format!("{key} appears twice")).hint("give each variable one value");
         for Assignment { reference, input } in &self.assignments {
             let row = rows.iter_mut().find(|(key, _)| key == reference).map(|(_, draft)| draft);
             match (input, row) {

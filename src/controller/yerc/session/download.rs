@@ -465,7 +465,7 @@ mod tests {
         assert_eq!(session.linger(&block(2, LAST_BLOCK | 2, &[2; 9])), None);
         assert_eq!(session.linger(b"?"), None);
         let further = (0..100).filter_map(|_| session.linger(&last)).count();
-        assert_eq!(further, 6, "two before: nobody is answered for ever");
+        assert_eq!(further, 6, "no endless answers");
     }
 
     #[test]

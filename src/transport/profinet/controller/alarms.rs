@@ -195,7 +195,7 @@ mod tests {
         let noted = hex("0000 0001 11 11 FFFF FFFF 0016 8002 0012 0100 0001 00000000 0001 0001 A800 00000000");
         assert_eq!(sent, [ack, noted]);
         let (heard, sent) = handle(&mut alarms, &hex(FIRST));
-        assert_eq!((heard, sent.len()), (Heard::Nothing, 1), "acknowledged again, not told again");
+        assert_eq!((heard, sent.len()), (Heard::Nothing, 1), "acknowledged again, not reported again");
         handle(&mut alarms, &hex("0001 0000 13 01 FFFF FFFF 0000"));
         assert_eq!(alarms.wake(), None);
         let second = FIRST.replacen("FFFF FFFE", "0000 FFFF", 1);
