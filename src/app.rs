@@ -149,7 +149,7 @@ fn check_descriptors() -> Result<(), Failure> {
 }
 
 #[cfg(not(unix))]
-fn has_room() -> Result<(), Failure> {
+fn check_descriptors() -> Result<(), Failure> {
     Ok(())
 }
 

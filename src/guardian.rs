@@ -288,18 +288,15 @@ fn kill(guarded: Option<rustix::process::Pid>) -> bool {
 const GUARDED: &str = "ARMCTL_GUARDED";
 
 #[cfg(not(unix))]
-fn guarded() -> Option<u32> {
+fn guarded_process() -> Option<u32> {
     std::env::var(GUARDED).ok()?.parse().ok()
 }
 
 /// Kills the guarded process. Its pipe is open, so its id is still valid.
 #[cfg(not(unix))]
 fn kill(guarded: Option<u32>) -> bool {
-    let Some(guarded) = guarded_process else { return false };
+    let Some(guarded) = guarded else { return false };
     let mut kill = Command::new("taskkill");
-    kill.args(["/F", "/PID", &guarded_process.to_string()])
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
+    kill.args(["/F", "/PID", &guarded.to_string()]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     kill.status().is_ok_and(|status| status.success())
 }

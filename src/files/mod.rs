@@ -105,7 +105,7 @@ fn open_nonblocking(path: &Path) -> io::Result<File> {
 }
 
 #[cfg(not(unix))]
-fn waiting_for_nobody(path: &Path) -> io::Result<File> {
+fn open_nonblocking(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
@@ -238,7 +238,7 @@ fn lock_folder(folder: &Path) -> Option<File> {
 }
 
 #[cfg(not(unix))]
-fn locked_folder(_: &Path) -> Option<File> {
+fn lock_folder(_: &Path) -> Option<File> {
     None
 }
 
@@ -267,7 +267,7 @@ pub fn claim_folder(folder: &Path) -> io::Result<FolderLock> {
 /// # Errors
 /// The folder does not exist.
 #[cfg(not(unix))]
-pub fn claim(folder: &Path) -> io::Result<FolderLock> {
+pub fn claim_folder(folder: &Path) -> io::Result<FolderLock> {
     folder.metadata().map(|_| FolderLock { _folder: None })
 }
 
@@ -294,7 +294,7 @@ fn is_linked(file: &File) -> bool {
 }
 
 #[cfg(not(unix))]
-fn is_there(_: &File) -> bool {
+fn is_linked(_: &File) -> bool {
     true
 }
 

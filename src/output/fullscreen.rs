@@ -167,7 +167,7 @@ fn terminal_exists(within: Duration) -> bool {
 }
 
 #[cfg(not(unix))]
-fn is_terminal_there(within: Duration) -> bool {
+fn terminal_exists(within: Duration) -> bool {
     // Also returns at the first key.
     let _seen = event::poll(within);
     true

@@ -110,7 +110,7 @@ impl Log {
 
     #[cfg(not(unix))]
     fn new(screen: Screen) -> Self {
-        Self { screen, repeats: RefCell::default() }
+        Self { screen, limiter: RefCell::default() }
     }
 
     fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
