@@ -114,12 +114,13 @@ impl Sheet {
     }
 
     /// Appends only the values of a report, separated by tabs: one line, or one per list entry. An entry with a value
-    /// has only that; a position has what can be typed. The outcome fields are omitted.
+    /// has only that; a position has what can be typed, and a list has the values in it. The outcome fields are omitted.
     pub fn values(&self, before: &[&str], data: &Value, out: &mut String) {
         let mut add = |columns: &[Column], entry: &Value| {
             let is_position = columns.iter().any(|column| column.name == "frame");
             let is_value = |column: &&Column| {
-                column.name == VALUE || column.name.starts_with("value_") || (is_position && column.name == "text")
+                let is_inside = column.pointer.strip_prefix("/value").is_some_and(|rest| rest.starts_with('/'));
+                column.name == VALUE || is_inside || (is_position && column.name == "text")
             };
             let is_outcome = |column: &&Column| column.name == "ok" || column.name.starts_with("error_");
             let has_values = columns.iter().any(|column| is_value(&column));
@@ -127,7 +128,10 @@ impl Sheet {
                 columns.iter().filter(|column| if has_values { is_value(column) } else { !is_outcome(column) });
             let cell_text = |column: &Column| entry.pointer(&column.pointer).map_or_else(String::new, plain);
             let before = before.iter().map(|text| escape::line(text).into_owned());
-            let cells: Vec<String> = before.chain(chosen.map(cell_text)).collect();
+            let cells: Vec<String> = match typed_values(&entry[VALUE]) {
+                Some(values) => before.chain(values).collect(),
+                None => before.chain(chosen.map(cell_text)).collect(),
+            };
             out.push_str(cells.join("\t").trim_end_matches('\t'));
             out.push('\n');
         };
@@ -277,6 +281,16 @@ fn cell(value: &Value) -> String {
     neutralize_formula(&text(value))
 }
 
+/// Values of an item whose value is not in columns of its own: a position as it can be typed, or a list of values;
+/// `None` for every other value.
+fn typed_values(value: &Value) -> Option<Vec<String>> {
+    match value {
+        Value::Object(position) => position.get("text").filter(|text| text.is_string()).map(|text| vec![plain(text)]),
+        Value::Array(values) => Some(values.iter().map(|entry| plain(entry.get(VALUE).unwrap_or(entry))).collect()),
+        _ => None,
+    }
+}
+
 /// Value in a tab-separated line.
 fn plain(value: &Value) -> String {
     escape::line(&text(value)).into_owned()
@@ -376,7 +390,8 @@ mod tests {
         #[derive(serde::Serialize, JsonSchema)]
         struct Item {
             name: &'static str,
-            value: i32,
+            value_hex: &'static str,
+            value: Value,
         }
         #[derive(serde::Serialize, JsonSchema)]
         struct Items {
@@ -392,8 +407,13 @@ mod tests {
             Sheet::from_schema(&schema.to_value(), RowsOf::Lists).values(before, &data, &mut out);
             out
         };
-        let items = Items { items: vec![Item { name: "B0", value: -5 }, Item { name: "B1", value: 7 }] };
-        assert_eq!(values(schema_for!(Items), serde_json::to_value(&items).unwrap(), &[]), "-5\n7\n");
+        let item = |name, value| Item { name, value_hex: "0x07", value };
+        let position = json!({ "frame": "base", "x_mm": 1.5, "text": "base:x=1.5" });
+        let list = json!([{ "name": "ax1", "value": 10.0 }, { "name": "ax2", "value": 2 }]);
+        let items =
+            Items { items: vec![item("B0", json!(-5)), item("B1", json!(7)), item("P1", position), item("P01", list)] };
+        let shown = values(schema_for!(Items), serde_json::to_value(&items).unwrap(), &[]);
+        assert_eq!(shown, "-5\n7\nbase:x=1.5\n10.0\t2\n");
         let place = serde_json::to_value(Place { x_mm: 1.5, text: "=a\tb" }).unwrap();
         assert_eq!(values(schema_for!(Place), place, &["cell3"]), "cell3\t1.5\t=a\\tb\n");
     }

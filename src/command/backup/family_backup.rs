@@ -157,13 +157,21 @@ impl<F: Backups> Diff<F> {
 
     /// Two robots that are given instead of folders.
     pub fn robots(&self, inventory: &Inventory) -> Option<[String; 2]> {
-        let named = |path: &Option<PathBuf>| {
-            let name = path.as_ref()?.to_str()?;
-            inventory.robots.iter().find(|robot| robot.name == name).map(|robot| robot.name.clone())
-        };
-        let robots = [named(&self.options.old)?, named(&self.options.new)?];
+        let robots = [named(self.options.old.as_ref(), inventory)?, named(self.options.new.as_ref(), inventory)?];
         (!self.options.names_folder()).then_some(robots)
     }
+
+    /// A single robot that is given instead of a folder, which does not exist.
+    pub fn only_robot(&self, inventory: &Inventory) -> Option<String> {
+        let is_folder = self.options.old.as_ref().is_some_and(|path| path.exists());
+        named(self.options.old.as_ref(), inventory).filter(|_| self.options.new.is_none() && !is_folder)
+    }
+}
+
+/// The robot with this name.
+fn named(path: Option<&PathBuf>, inventory: &Inventory) -> Option<String> {
+    let name = path?.to_str()?;
+    inventory.robots.iter().find(|robot| robot.name == name).map(|robot| robot.name.clone())
 }
 
 impl<F: Backups> Command for Diff<F> {

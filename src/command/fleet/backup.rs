@@ -57,6 +57,10 @@ impl Backup {
 pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
     let are_robots = diff.robots(&run.sources.inventory).is_some();
     let is_plural = run.sources.selection.is_plural() && diff.options().folder().is_err();
+    if let Some(robot) = diff.only_robot(&run.sources.inventory) {
+        let failure = Failure::usage(format!("{robot} is a robot, and no folder has this name"));
+        return Err(failure.hint("compare two robots: `armctl diff ROBOT ROBOT`, or a robot with its backup").into());
+    }
     if !are_robots && !is_plural {
         return run.robots(&diff).await;
     }
@@ -67,7 +71,7 @@ pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
     }
     let robots = run.authorize_robots(&reading).await?;
     let [old, new] = &robots[..] else {
-        let failure = Failure::usage(format!("diff compares two robots, but {} are selected", robots.len()));
+        let failure = Failure::usage(format!("diff compares two robots; selected: {}", robots.len()));
         return Err(failure.hint("select two: `armctl diff ROBOT ROBOT`").into());
     };
     if old.family != new.family {

@@ -122,7 +122,7 @@ impl<'a> Comparison<'a> {
         let (at, sign) =
             COMPARISONS.iter().filter_map(|sign| Some((text.find(sign)?, *sign))).min_by_key(|(at, _)| *at)?;
         let (name, value) = (text[..at].trim(), text[at + sign.len()..].trim());
-        let is_name = name.starts_with(|first: char| first.is_alphabetic() || first == '#')
+        let is_name = name.starts_with(|first: char| first.is_alphanumeric() || first == '#')
             && name.chars().all(|one| one.is_alphanumeric() || "_-()#. ".contains(one));
         if !is_name || value.is_empty() {
             return None;
@@ -294,6 +294,8 @@ mod tests {
         assert!(!holds("cn5<4", &report(false, Value::Null)), "not read");
         assert!(!holds("cn5<4", &json!({ "data": { "items": [] } })));
         assert!(Comparison::parse(".data.x=1").is_none() && Comparison::parse("idle").is_none());
-        assert_eq!(Comparison::parse("#27010=on").unwrap().name, "#27010");
+        for name in ["#27010", "27010"] {
+            assert_eq!(Comparison::parse(&format!("{name}=on")).map(|it| it.name.to_owned()).as_deref(), Some(name));
+        }
     }
 }
