@@ -144,7 +144,7 @@ fn offers_a_choice_for_a_missing_name() {
     select.reads_keys();
     select.press("WAIT\r");
     // The terminal is narrower than the line.
-    select.wait_for_text("the same command without the question: armctl --config robots.toml --sim yerc");
+    select.wait_for_text("question:\n  armctl --config robots.toml --sim yerc");
     select.wait_for_text("WAITIN is selected");
     assert_eq!(select.end().code(), Some(0));
     assert_terminal_restored(&select, "chosen");

@@ -94,7 +94,7 @@ fn ask_value(args: &[OsString], what: &str, found: &[Candidate], has_first: bool
     let line: Vec<OsString> = [args, &[value.into()]].concat();
     let words: Vec<&str> = line.iter().skip(1).filter_map(|word| word.to_str()).collect();
     if let Ok(words) = shlex::try_join(words) {
-        screen.note(&format!("the same command without the question: armctl {words}"));
+        screen.note_command("the same command without the question:", &format!("armctl {words}"));
     }
     Ok(line)
 }

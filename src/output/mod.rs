@@ -218,6 +218,15 @@ impl Screen {
         }
     }
 
+    /// Prints a command line under its description on stderr, unless `--quiet`. The line is not wrapped, because a line
+    /// feed in it would end a pasted command early.
+    pub fn note_command(&self, description: &str, command: &str) {
+        self.note(description);
+        if !self.quiet {
+            Self::stderr(&format!("  {}\n", escape::line(command)));
+        }
+    }
+
     /// Prints once on a terminal that the output is from a simulator.
     pub fn note_simulator(&self) {
         static IS_TOLD: AtomicBool = AtomicBool::new(false);

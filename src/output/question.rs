@@ -71,8 +71,12 @@ impl Screen {
 fn answer_of<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failure> {
     prompt::save();
     ask(&Term::stderr()).map_err(|Error::IO(error)| match error.kind() {
-        io::ErrorKind::Interrupted => remaining(),
-        _ => Failure::new(Kind::Rejected, "no answer").hint("answer the question at a terminal"),
+        // Not a terminal.
+        io::ErrorKind::NotConnected => {
+            Failure::new(Kind::Rejected, "no answer").hint("answer the question at a terminal")
+        }
+        // Ctrl-C, or the terminal closed before the signal that reports it.
+        _ => remaining(),
     })
 }
 

@@ -63,13 +63,14 @@ pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: 
 
 /// Failure with the result of each request; the first `done` were confirmed, the next one failed.
 fn summarize_failure<O: WriteOrder>(failure: Failure, orders: &[O], done: usize) -> Failure {
-    // If the controller refuses or does not answer, nothing was written.
-    let refused = matches!(failure.kind, Kind::Refused | Kind::NoAnswer);
-    if refused && orders.len() == 1 {
+    // The outcome of the failed request is unknown if its answer was lost or damaged, or after Ctrl-C. After every other
+    // failure, it was refused or not sent.
+    let is_unknown = matches!(failure.kind, Kind::OutcomeUnknown | Kind::Malformed | Kind::Interrupted);
+    if !is_unknown && orders.len() == 1 {
         return failure;
     }
     let (written, rest) = orders.split_at(done.min(orders.len()));
-    let unknown = if refused { 0 } else { 1.min(rest.len()) };
+    let unknown = if is_unknown { 1.min(rest.len()) } else { 0 };
     let (unknown, rest) = rest.split_at(unknown);
     let names = |orders: &[O]| O::listed(orders.iter().flat_map(WriteOrder::items).collect());
     let mut parts = vec![failure.message.trim_end_matches('.').to_owned()];
@@ -118,7 +119,14 @@ mod tests {
             message(&lost, 1),
             "no answer; written: register 0..2; written or not: register 10; not written: register 20..21"
         );
-        assert_eq!(summarize_failure(refused.clone(), &orders()[..1], 0), refused);
+        let read_only = Failure::new(Kind::Rejected, "cell3 is read-only").hint("x");
+        assert_eq!(
+            message(&read_only, 0),
+            "cell3 is read-only; nothing was written; not written: register 0..2, 10, 20..21"
+        );
+        for failure in [refused, read_only] {
+            assert_eq!(summarize_failure(failure.clone(), &orders()[..1], 0), failure);
+        }
         assert!(summarize_failure(Failure::new(Kind::Interrupted, "Ctrl-C"), &orders(), 2).hint.is_some());
     }
 }

@@ -65,7 +65,7 @@ async fn choose(run: &Run) -> Result<Option<String>, Failure> {
     let at = ask(screen, move || screen.ask_one_of(question, &options, false)).await?;
     let robot = open.into_iter().nth(at).map(|info| info.robot);
     if let Some(robot) = &robot {
-        screen.note(&format!("the same command without the question: armctl session close {robot}"));
+        screen.note_command("the same command without the question:", &format!("armctl session close {robot}"));
     }
     Ok(robot)
 }

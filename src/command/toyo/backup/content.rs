@@ -97,26 +97,35 @@ impl Controller {
 /// A table of rows.
 pub type Table = Box<dyn TablePart<Toyo>>;
 
-/// The table of a part, to read it; none for a program.
-fn table(part: Part, letters: Letters) -> Option<Table> {
+/// How a part is read.
+enum Source {
+    Table(Table),
+    /// Steps of a task, as text.
+    Program(u8),
+}
+
+/// The source of a part, on a machine with these letters.
+fn source(part: Part, letters: Letters) -> Source {
     // Columns by axis number, where letters would mean other axes to `point restore`.
     let columns = if letters.are_usual() { Letters::USUAL } else { Letters::UNKNOWN };
-    Some(match part {
+    Source::Table(match part {
         Part::Parameters => Box::new(store::Part::new(Parameters, Vec::new())),
         Part::Easy => Box::new(store::Part::new(TableRows::<Numbered>::default(), Vec::new())),
         Part::Palletizing(number) => Box::new(store::Part::new(Records::new(number.into(), columns), Vec::new())),
         Part::Points(task) => Box::new(store::Part::new(Points::with_letters(task, columns), Vec::new())),
-        Part::Program(_) => return None,
+        Part::Program(task) => return Source::Program(task),
     })
 }
 
 /// Reads a part. A dry run notes the requests.
 pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text, Failure> {
-    if let Some(mut table) = table(part, controller.letters()) {
-        let store::Text { text, left_out } = table.read(link, screen).await?;
-        return Ok(Text { text, left_out: left_out.into_iter().map(left_out_row).collect() });
-    }
-    let Part::Program(task) = part else { unreachable!("all other parts are tables") };
+    let task = match source(part, controller.letters()) {
+        Source::Table(mut table) => {
+            let store::Text { text, left_out } = table.read(link, screen).await?;
+            return Ok(Text { text, left_out: left_out.into_iter().map(left_out_row).collect() });
+        }
+        Source::Program(task) => task,
+    };
     tasks::choose(link, Some(task)).await?;
     let room = controller.task_steps[usize::from(task) - 1];
     let read = steps::read_all(link, screen, 1..=room).await?;
