@@ -70,7 +70,7 @@ impl FamilyArguments {
         own.downcast_ref()
     }
 
-    /// See [`OwnArguments::complete`].
+    /// See [`AnyFamilyArguments::complete`].
     pub fn complete(&self, intent: Intent) -> Intent {
         match &self.0 {
             Some(own) => own.complete(intent),
@@ -78,7 +78,7 @@ impl FamilyArguments {
         }
     }
 
-    /// See [`OwnArguments::words`].
+    /// See [`AnyFamilyArguments::words`].
     pub fn words(&self) -> Vec<String> {
         self.0.as_ref().map(|own| own.words()).unwrap_or_default()
     }
@@ -160,8 +160,8 @@ pub trait Family: Sized + 'static {
 pub trait Connection {
     /// See [`Family::halt`].
     fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>>;
-    /// See [`Family::must_halt`].
-    fn must_halt(&self) -> bool;
+    /// See [`Family::needs_halt`].
+    fn needs_halt(&self) -> bool;
     /// See [`Family::planned`].
     fn planned(&mut self) -> Plan;
     /// See [`Family::close`].
@@ -244,7 +244,7 @@ impl<F: Family> Connection for Borrowed<'_, F> {
         F::halt(self.0).boxed_local()
     }
 
-    fn must_halt(&self) -> bool {
+    fn needs_halt(&self) -> bool {
         F::needs_halt(self.0)
     }
 
@@ -270,7 +270,7 @@ impl<F: Family> Connection for Connected<F> {
         F::halt(&mut self.0).boxed_local()
     }
 
-    fn must_halt(&self) -> bool {
+    fn needs_halt(&self) -> bool {
         F::needs_halt(&self.0)
     }
 

@@ -18,7 +18,7 @@ use tokio::task::coop::unconstrained;
 use crate::failure::{Failure, Kind};
 use crate::output::{busy_work, immediate_exit};
 
-/// Reason of the termination request, once received. It stays set, so that nothing new starts, until [`again`].
+/// Reason of the termination request, once received. It stays set, so that nothing new starts, until [`clear_interrupt`].
 type TerminationRequest = watch::Sender<Option<&'static str>>;
 
 const KEYS: &str = "Ctrl-C";

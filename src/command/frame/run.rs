@@ -470,7 +470,7 @@ impl Run {
         let context = self.context(command, robot, link, (&self.screen, grant));
         match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,
-            Err(_) if risk == Risk::Motion && (self.gate.on_interrupt == OnInterrupt::Stop || link.must_halt()) => {
+            Err(_) if risk == Risk::Motion && (self.gate.on_interrupt == OnInterrupt::Stop || link.needs_halt()) => {
                 Err(match link.halt().await {
                     Ok(done) => Failure::new(Kind::Interrupted, done),
                     Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))

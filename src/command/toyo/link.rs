@@ -265,21 +265,21 @@ impl Link {
         let stopped = self.client.stop(moving).await;
         let mut observer = lock_writer(&self.observer);
         observer.printed = printed;
-        observer.trace.release();
+        observer.trace.resume();
         stopped.map_err(|error| self.failure(error))
     }
 
     /// Stops a motion that the controller refused before it began. The stop is sent once.
     pub async fn stop_refused_motion(&mut self, moving: Moving) {
         self.client.stop_refused_motion(moving).await;
-        lock_writer(&self.observer).trace.release();
+        lock_writer(&self.observer).trace.resume();
     }
 
     /// Detects a lost connection early, and buffers trace text until [`Link::stop`]. Neither long timeouts nor a
     /// blocked terminal must delay the stop.
     pub fn use_short_timeouts(&mut self) {
         self.client.use_short_timeouts();
-        lock_writer(&self.observer).trace.hold();
+        lock_writer(&self.observer).trace.pause();
     }
 
     /// Records that the user chose the present state of the host.

@@ -238,8 +238,8 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
         Vec::new()
     }
 
-    /// See [`Writable::afterwards`].
-    fn afterwards(&self, _written: &[Self::Key]) -> Option<String> {
+    /// See [`Writable::follow_up_note`].
+    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
         None
     }
 }
@@ -291,7 +291,7 @@ impl<T: EepromRow> Writable for T {
     }
 
     fn follow_up_note(&self, written: &[T::Key]) -> Option<String> {
-        EepromRow::afterwards(self, written)
+        EepromRow::follow_up_note(self, written)
     }
 
     fn is_restored(key: T::Key) -> bool {

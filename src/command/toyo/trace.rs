@@ -49,13 +49,13 @@ impl Trace {
         }
     }
 
-    /// See [`trace::Trace::hold`].
-    pub fn hold(&mut self) {
+    /// See [`trace::Trace::pause`].
+    pub fn pause(&mut self) {
         self.record.pause();
     }
 
-    /// See [`trace::Trace::release`].
-    pub fn release(&mut self) {
+    /// See [`trace::Trace::resume`].
+    pub fn resume(&mut self) {
         self.record.resume();
     }
 

@@ -42,7 +42,7 @@ impl PollRequest {
 pub(super) struct MergedRequests {
     /// Polling interval.
     pub every: Duration,
-    /// See [`Wish::longest_pause`].
+    /// See [`PollRequest::longest_pause`].
     pub longest_pause: Duration,
     detail: Detail,
     whole: Vec<RobotId>,

@@ -77,9 +77,8 @@ use crate::settings::duration;
                   with exit code 4 if there is no broker. See docs/monitoring/mqtt.md."
 )]
 pub struct Publish {
-    /// mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS
-    // Not read by the parser, which would show what is wrong: there may be a password in it.
-    #[arg(value_name = "URL")]
+    // Not parsed by clap, whose message would show the password in a wrong URL.
+    #[arg(value_name = "URL", help = "mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS")]
     broker: String,
     #[command(flatten)]
     login: Login,

@@ -353,7 +353,7 @@ impl EepromRow for Parameters {
         warnings.chain(machine).collect()
     }
 
-    fn afterwards(&self, written: &[Key]) -> Option<String> {
+    fn follow_up_note(&self, written: &[Key]) -> Option<String> {
         written.iter().any(|key| key.parameter.group() == Group::Machine).then(|| POWER_CYCLE.to_owned())
     }
 }

@@ -125,7 +125,7 @@ pub fn check(text: &[u8], room: usize) -> Checked {
     check_named(text, room, None, &Names::default())
 }
 
-/// Parses a whole [`listing`]. Steps that are marked as not in the manual are kept and never sent.
+/// Parses a whole [`listing()`]. Steps that are marked as not in the manual are kept and never sent.
 pub fn check_kept(text: &[u8], room: usize) -> Checked {
     let mut kept = BTreeMap::new();
     let mut lines = Vec::new();
