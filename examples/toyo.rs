@@ -6,10 +6,10 @@
 use std::error::Error;
 use std::time::Duration;
 
-use armctl::client::toyo::{Client, Endpoint, Moving, Options, jog};
-use armctl::controller::Risk;
-use armctl::controller::toyo::request::Request;
-use armctl::controller::toyo::table::Parameter;
+use armctl_client::toyo::{Client, Endpoint, Moving, Options, jog};
+use armctl_controller::Risk;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table::Parameter;
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> Result<(), Box<dyn Error>> {

@@ -6,13 +6,13 @@
 use std::time::Duration;
 
 use anyhow::Context as _;
-use armctl::client::yerc::{Client, Endpoint, Options};
-use armctl::controller::Risk;
-use armctl::controller::yerc::Model::Dx200;
-use armctl::controller::yerc::files::FileName;
-use armctl::controller::yerc::group::Group;
-use armctl::controller::yerc::payload::{PulseMove, SpeedClass};
-use armctl::controller::yerc::query::{Coordinates, MoveKind, MovePulse, ReadPosition, ReadStatus, Servo};
+use armctl_client::yerc::{Client, Endpoint, Options};
+use armctl_controller::Risk;
+use armctl_controller::yerc::Model::Dx200;
+use armctl_controller::yerc::files::FileName;
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::payload::{PulseMove, SpeedClass};
+use armctl_controller::yerc::query::{Coordinates, MoveKind, MovePulse, ReadPosition, ReadStatus, Servo};
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> anyhow::Result<()> {

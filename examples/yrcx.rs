@@ -5,12 +5,12 @@
 
 use std::error::Error;
 
-use armctl::client::yrcx::{Client, Options};
-use armctl::controller::Risk;
-use armctl::controller::yrcx::signal::output;
-use armctl::controller::yrcx::simulator::Start;
-use armctl::controller::yrcx::table::Command;
-use armctl::controller::yrcx::value::Key;
+use armctl_client::yrcx::{Client, Options};
+use armctl_controller::Risk;
+use armctl_controller::yrcx::signal::output;
+use armctl_controller::yrcx::simulator::Start;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::Key;
 
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> Result<(), Box<dyn Error>> {

@@ -27,15 +27,16 @@ use clap::builder::StyledStr;
 
 use self::parser::{Parser, Refusal};
 use self::prepare::{Invocation, PreparedCommand};
-use crate::cli::{Cli, Globals, Words};
-use crate::command::frame::interrupt::catch_interrupts;
-use crate::command::frame::run::RunError;
-use crate::failure::{Failure, Kind};
-use crate::files;
-use crate::guardian;
-use crate::output::envelope::Envelope;
-use crate::output::{ColorChoice, Format, Screen, jq};
-use crate::settings::target::Family;
+use crate::cli::{Cli, Words};
+use armctl_files as files;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::flags::Globals;
+use armctl_frame::guardian;
+use armctl_frame::interrupt::catch_interrupts;
+use armctl_frame::output::envelope::Envelope;
+use armctl_frame::output::{ColorChoice, Format, Screen, jq};
+use armctl_frame::run::RunError;
+use armctl_frame::settings::target::Family;
 
 /// Runs a command line, including the program name. Returns the exit code.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {

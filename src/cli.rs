@@ -1,22 +1,17 @@
 //! Command line: global flags and the first word.
 
 use std::fmt;
-use std::path::PathBuf;
-use std::time::Duration;
 
-use clap::{ArgMatches, Args, Command, FromArgMatches, Parser, Subcommand};
+use clap::{ArgMatches, Command, FromArgMatches, Parser, Subcommand};
 
-use crate::command::face::family_command::FamilyLine;
+use crate::command::common;
 use crate::command::families::{self, FAMILIES};
 use crate::command::fleet::teach::Teach;
-use crate::command::frame::batch::Batch;
-use crate::command::frame::repl::Repl;
-use crate::command::{ValueKind, common};
-use crate::controller::text::Encoding;
-use crate::gate::OnInterrupt;
-use crate::output::{ColorChoice, Format};
-use crate::settings::duration;
-use crate::settings::target::{Family, TargetArgument};
+use armctl_frame::batch::Batch;
+use armctl_frame::face::family_command::FamilyLine;
+use armctl_frame::flags::Globals;
+use armctl_frame::repl::Repl;
+use armctl_frame::settings::target::Family;
 
 /// Output of `-V`.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -115,209 +110,5 @@ impl FromArgMatches for FamilyWord {
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
         *self = Self::from_arg_matches(matches)?;
         Ok(())
-    }
-}
-
-/// Flags that every command takes, at any place of the line.
-#[derive(Debug, Clone, Args)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
-pub struct Globals {
-    /// Use the built-in simulator, in this process
-    #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]
-    pub sim: bool,
-    /// Controller by URL, such as udp://192.168.1.31, or by 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
-    #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
-    pub target: Option<TargetArgument>,
-    /// Robots of the inventory: names or patterns with commas (ARMCTL_ROBOT)
-    #[arg(short, long, global = true, value_name = "NAME", value_delimiter = ',', add = ValueKind::Robot, help_heading = "Which robot")]
-    pub robot: Vec<String>,
-    /// All robots of the inventory
-    #[arg(long, global = true, hide_short_help = true, help_heading = "Which robot")]
-    pub all: bool,
-    /// Robots of the inventory with this tag (repeatable)
-    #[arg(long, global = true, hide_short_help = true, value_name = "TAG", add = ValueKind::Tag, help_heading = "Which robot")]
-    pub tag: Vec<String>,
-    /// The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)
-    #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Which robot")]
-    pub config: Option<PathBuf>,
-
-    /// Output format (ARMCTL_OUTPUT)
-    #[arg(
-        short = 'o',
-        long = "output",
-        alias = "format",
-        global = true,
-        hide_short_help = true,
-        value_name = "FORMAT",
-        help_heading = "Output"
-    )]
-    pub format: Option<Format>,
-    /// Print JSON (the same as -o json)
-    #[arg(long, global = true, help_heading = "Output", conflicts_with = "format", overrides_with = "json")]
-    pub json: bool,
-    /// Print the result of a jq filter over the JSON
-    #[arg(
-        long,
-        global = true,
-        hide_short_help = true,
-        allow_hyphen_values = true,
-        value_name = "FILTER",
-        help_heading = "Output"
-    )]
-    pub jq: Option<String>,
-    /// Ask nothing: what would be asked is refused
-    #[arg(long, global = true, hide_short_help = true, help_heading = "Safety")]
-    pub no_input: bool,
-    /// Only errors and questions on stderr
-    #[arg(short, long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "verbose")]
-    pub quiet: bool,
-    /// Increase verbosity: -v a summary, -vv frames, -vvv bytes
-    #[arg(short, long, global = true, hide_short_help = true, action = clap::ArgAction::Count, help_heading = "Output")]
-    pub verbose: u8,
-    /// Colour
-    #[arg(
-        long,
-        global = true,
-        hide_short_help = true,
-        value_name = "WHEN",
-        default_value = "auto",
-        help_heading = "Output"
-    )]
-    pub color: ColorChoice,
-    /// No colour (the same as --color never)
-    #[arg(long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "color")]
-    pub no_color: bool,
-    /// Print long texts without the pager (PAGER)
-    #[arg(long, global = true, hide_short_help = true, help_heading = "Output")]
-    pub no_pager: bool,
-    /// Record the traffic: a .pcapng file for Wireshark, or - for text on stderr
-    #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Output")]
-    pub trace: Option<PathBuf>,
-
-    /// Confirm commands that move, delete or overwrite
-    #[arg(long, global = true, help_heading = "Safety")]
-    pub yes: bool,
-    /// Send nothing; print what would be sent
-    #[arg(long, global = true, help_heading = "Safety")]
-    pub dry_run: bool,
-    /// Effect of Ctrl-C during a motion
-    #[arg(
-        long,
-        global = true,
-        hide_short_help = true,
-        value_name = "WHAT",
-        default_value = "stop",
-        help_heading = "Safety"
-    )]
-    pub on_interrupt: OnInterrupt,
-
-    /// Longest wait of each try for its answer: 3s, for toyo 1.5s (ARMCTL_TIMEOUT)
-    #[arg(long, global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse_some, help_heading = "Link")]
-    pub timeout: Option<Duration>,
-    /// Further tries of a read after silence: 3; a read takes at most TIME × (N + 1), a change has one try
-    /// (ARMCTL_RETRIES)
-    #[arg(long, global = true, hide_short_help = true, value_name = "N", help_heading = "Link")]
-    pub retries: Option<u32>,
-    /// Encoding of names and texts on the controller (ARMCTL_ENCODING)
-    #[arg(long, global = true, hide_short_help = true, value_name = "NAME", help_heading = "Link")]
-    pub encoding: Option<Encoding>,
-    /// Go to the robot directly, although a session holds its link
-    #[arg(long, global = true, hide_short_help = true, help_heading = "Link")]
-    pub no_session: bool,
-
-    /// Repeat a read, every second or every INTERVAL
-    #[arg(long, global = true, hide_short_help = true, value_name = "INTERVAL", num_args = 0..=1, default_missing_value = "1s", value_parser = duration::parse_some, help_heading = "Repeat")]
-    pub watch: Option<Duration>,
-    /// Stop after N reads
-    #[arg(long, global = true, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Repeat")]
-    pub count: Option<u64>,
-    /// Repeat a read until this holds: idle, NAME=VALUE, or a jq filter over its JSON
-    #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", help_heading = "Repeat")]
-    pub until: Option<String>,
-    /// Read once, and end with exit code 8 unless this holds: idle, NAME=VALUE, or a jq filter over the JSON
-    #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", conflicts_with_all = ["watch", "count", "until"], help_heading = "Repeat")]
-    pub check: Option<String>,
-    /// How long --until waits before it gives up with exit code 8
-    #[arg(long = "for", global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, requires = "until", help_heading = "Repeat")]
-    pub within: Option<Duration>,
-}
-
-impl Globals {
-    /// Flags of one line, completed with the flags for all lines. A flag of the line for the robot, the format or the
-    /// verbosity replaces all flags of that group.
-    #[must_use]
-    pub fn within(self, all: &Self) -> Self {
-        let names_robot = self.names_robot();
-        let says_how_much = self.quiet || self.verbose > 0;
-        let (robot, format, how_much) = (
-            if names_robot { self.clone() } else { all.clone() },
-            if self.says_format() { self.clone() } else { all.clone() },
-            if says_how_much { &self } else { all },
-        );
-        let (quiet, verbose) = (how_much.quiet, how_much.verbose);
-        Self {
-            sim: robot.sim,
-            target: robot.target,
-            robot: robot.robot,
-            all: robot.all,
-            tag: robot.tag,
-            config: self.config.or_else(|| all.config.clone()),
-            format: format.format,
-            json: format.json,
-            jq: format.jq,
-            quiet,
-            verbose,
-            no_color: self.no_color || (all.no_color && self.color == ColorChoice::Auto),
-            color: if self.color == ColorChoice::Auto { all.color } else { self.color },
-            no_pager: self.no_pager || all.no_pager,
-            trace: self.trace.or_else(|| all.trace.clone()),
-            no_input: self.no_input || all.no_input,
-            yes: self.yes || all.yes,
-            dry_run: self.dry_run || all.dry_run,
-            on_interrupt: if self.on_interrupt == OnInterrupt::Stop { all.on_interrupt } else { self.on_interrupt },
-            timeout: self.timeout.or(all.timeout),
-            retries: self.retries.or(all.retries),
-            encoding: self.encoding.or(all.encoding),
-            no_session: self.no_session || all.no_session,
-            watch: self.watch,
-            count: self.count,
-            until: self.until,
-            check: self.check,
-            within: self.within,
-        }
-    }
-
-    /// Whether a flag selects a robot.
-    pub fn names_robot(&self) -> bool {
-        self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty()
-    }
-
-    /// The flags without a robot, for commands about the inventory.
-    #[must_use]
-    pub fn without_robot(self) -> Self {
-        Self { sim: false, target: None, robot: Vec::new(), all: false, tag: Vec::new(), ..self }
-    }
-
-    /// Use of color.
-    pub fn color(&self) -> ColorChoice {
-        if self.no_color { ColorChoice::Never } else { self.color }
-    }
-
-    /// Whether a flag sets the output format.
-    pub fn says_format(&self) -> bool {
-        self.format.is_some() || self.json || self.jq.is_some()
-    }
-
-    /// Robot flags as words of a command line.
-    pub fn robot_words(&self) -> Vec<String> {
-        let flag_words = |flag: &str, value: String| vec![flag.to_owned(), value];
-        let mut words = Vec::new();
-        words.extend(self.sim.then(|| "--sim".to_owned()));
-        words.extend(self.all.then(|| "--all".to_owned()));
-        words.extend(self.target.iter().flat_map(|target| flag_words("--target", target.to_string())));
-        words.extend(self.robot.iter().flat_map(|robot| flag_words("--robot", robot.clone())));
-        words.extend(self.tag.iter().flat_map(|tag| flag_words("--tag", tag.clone())));
-        words.extend(self.config.iter().flat_map(|path| flag_words("--config", path.display().to_string())));
-        words
     }
 }

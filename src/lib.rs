@@ -43,13 +43,13 @@
 pub mod app;
 pub mod cli;
 pub mod command;
-pub mod failure;
-pub mod gate;
-pub mod guardian;
-pub mod output;
-pub mod settings;
 
 pub use armctl_client as client;
 pub use armctl_controller as controller;
 pub use armctl_files as files;
+pub use armctl_frame as frame;
+pub use armctl_frame::{failure, gate, output, settings};
+pub use armctl_toyo as toyo;
 pub use armctl_transport as transport;
+pub use armctl_yerc as yerc;
+pub use armctl_yrcx as yrcx;

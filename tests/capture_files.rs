@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use armctl::transport::capture::{Carrier, OpenError, read};
+use armctl_transport::capture::{Carrier, OpenError, read};
 use proptest::prelude::*;
 
 const FILES: [&str; 3] = ["vlan.pcap", "lines.pcapng", "speed.pcapng"];

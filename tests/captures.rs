@@ -9,19 +9,19 @@
 use std::net::{SocketAddr, UdpSocket};
 use std::time::Duration;
 
-use armctl::client::yerc::{Client, Endpoint, Options};
-use armctl::controller::yerc::Model::{self, Yrc1000};
-use armctl::controller::yerc::describe::{Sender, describe};
-use armctl::controller::yerc::group::Group;
-use armctl::controller::yerc::payload::PositionKind;
-use armctl::controller::yerc::query::{
+use armctl_client::yerc::{Client, Endpoint, Options};
+use armctl_controller::yerc::Model::{self, Yrc1000};
+use armctl_controller::yerc::describe::{Sender, describe};
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::payload::PositionKind;
+use armctl_controller::yerc::query::{
     AlarmClass, Coordinates, Query, ReadAlarm, ReadAlarmHistory, ReadAxes, ReadJob, ReadManagementTime, ReadPosition,
     ReadStatus, ReadSystemInfo, ReadTorque, SystemPart, TimeCounter,
 };
-use armctl::controller::yerc::request::Request;
-use armctl::controller::yerc::simulator::{Simulator, Start};
-use armctl::controller::yerc::variables::VariableKind;
-use armctl::controller::yerc::wire::{AnswerFrame, Division, RequestFrame, Status};
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::simulator::{Simulator, Start};
+use armctl_controller::yerc::variables::VariableKind;
+use armctl_controller::yerc::wire::{AnswerFrame, Division, RequestFrame, Status};
 
 const SKIPPED: &str = "skipped: ARMCTL_YERC_CAPTURES does not name the file of captured pairs";
 

@@ -6,14 +6,14 @@
 
 use std::time::Duration;
 
-use armctl::controller::yerc::Model;
-use armctl::controller::yerc::files;
-use armctl::controller::yerc::query::{Query, ReadStatus};
-use armctl::controller::yerc::session::{Download, Exchange, Ids, Policy, Upload};
-use armctl::controller::yerc::simulator::{Outgoing, Simulator, Start};
-use armctl::controller::yerc::table::{BATCH_BACKUP_PATH, ROWS, service};
-use armctl::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
-use armctl::controller::{Now, Session, Step};
+use armctl_controller::yerc::Model;
+use armctl_controller::yerc::files;
+use armctl_controller::yerc::query::{Query, ReadStatus};
+use armctl_controller::yerc::session::{Download, Exchange, Ids, Policy, Upload};
+use armctl_controller::yerc::simulator::{Outgoing, Simulator, Start};
+use armctl_controller::yerc::table::{BATCH_BACKUP_PATH, ROWS, service};
+use armctl_controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
+use armctl_controller::{Now, Session, Step};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};

@@ -8,26 +8,26 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use armctl::controller::units;
-use armctl::controller::yerc::Model::{self, Dx200, Fs100};
-use armctl::controller::yerc::describe::{Sender, describe, summary};
-use armctl::controller::yerc::files::{self, FileName, FileType};
-use armctl::controller::yerc::group::Group;
-use armctl::controller::yerc::payload::{
+use armctl_controller::units;
+use armctl_controller::yerc::Model::{self, Dx200, Fs100};
+use armctl_controller::yerc::describe::{Sender, describe, summary};
+use armctl_controller::yerc::files::{self, FileName, FileType};
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::payload::{
     Alarm, AlarmKind, AlarmTexts, Axes, AxisNames, BasePosition, CartesianMove, ControllerStatus, CycleMode,
     ExtendedForm, ExternalPosition, Form, ManagementTime, MoveLayout, Position, PositionKind, PulseMove, SpeedClass,
     StatusBit, SystemInfo, Text,
 };
-use armctl::controller::yerc::query::{
+use armctl_controller::yerc::query::{
     CancelError, Coordinates, Hold, MoveCartesian, MoveKind, MovePulse, Query, ReadAlarm, ReadAxes, ReadField, ReadIo,
     ReadIoGroups, ReadManagementTime, ReadPosition, ReadPositionError, ReadStatus, ReadSystemInfo, ReadTorque,
     ReadVariable, ReadVariables, ResetAlarm, Say, SelectJob, Selection, Servo, SetCycle, SystemPart, TimeCounter,
     WriteField, WriteIo, WriteIoGroups, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
 };
-use armctl::controller::yerc::request::{Request, RequestError};
-use armctl::controller::yerc::table::service;
-use armctl::controller::yerc::variables::{Value, VariableKind};
-use armctl::controller::yerc::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status, WireError};
+use armctl_controller::yerc::request::{Request, RequestError};
+use armctl_controller::yerc::table::service;
+use armctl_controller::yerc::variables::{Value, VariableKind};
+use armctl_controller::yerc::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status, WireError};
 use serde_json::Value as Json;
 
 const COUNT: usize = 109;

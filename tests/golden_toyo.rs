@@ -3,7 +3,7 @@
 //! For a misprint (`flags` has `typo`), the file has the reason and the corrected text. If a test fails, do not change the
 //! test.
 
-use armctl::controller::toyo::request::{Answer, Request};
+use armctl_controller::toyo::request::{Answer, Request};
 use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]

@@ -2,23 +2,23 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-use armctl::controller::units;
-use armctl::controller::yerc::Model;
-use armctl::controller::yerc::describe::{Sender, describe, summary};
-use armctl::controller::yerc::files;
-use armctl::controller::yerc::payload::{
+use armctl_controller::units;
+use armctl_controller::yerc::Model;
+use armctl_controller::yerc::describe::{Sender, describe, summary};
+use armctl_controller::yerc::files;
+use armctl_controller::yerc::payload::{
     Alarm, AlarmKind, AlarmTexts, Axes, AxisNames, BasePosition, CartesianMove, ControllerStatus, ExtendedForm,
     ExternalPosition, Form, JobInfo, ManagementTime, MoveLayout, Position, PositionKind, PulseMove, SpeedClass,
     SystemInfo, Text, elapsed_seconds,
 };
-use armctl::controller::yerc::query::{Query, WriteVariable};
-use armctl::controller::yerc::request::Request;
-use armctl::controller::yerc::table::{ROWS, service};
-use armctl::controller::yerc::variables::{
+use armctl_controller::yerc::query::{Query, WriteVariable};
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::table::{ROWS, service};
+use armctl_controller::yerc::variables::{
     PlannedRead as _, Reference, Value, VariableKind, parse_references, plan_io_reads, plan_reads, plan_register_reads,
     plan_writes,
 };
-use armctl::controller::yerc::wire::{AnswerFrame, Division, RequestFrame, Status};
+use armctl_controller::yerc::wire::{AnswerFrame, Division, RequestFrame, Status};
 use proptest::collection::vec;
 use proptest::prelude::*;
 

@@ -9,13 +9,13 @@
 use std::collections::HashMap;
 use std::time::Duration;
 
-use armctl::controller::toyo::field::Value;
-use armctl::controller::toyo::request::{Answer, Request};
-use armctl::controller::toyo::session::{ExchangeResult, Framed, Framer, LineSession, Policy};
-use armctl::controller::toyo::table::Command;
-use armctl::controller::{Session as _, Step};
-use armctl::transport::line::{InProcessLine, Pace};
-use armctl::transport::sim::Peer;
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::request::{Answer, Request};
+use armctl_controller::toyo::session::{ExchangeResult, Framed, Framer, LineSession, Policy};
+use armctl_controller::toyo::table::Command;
+use armctl_controller::{Session as _, Step};
+use armctl_transport::line::{InProcessLine, Pace};
+use armctl_transport::sim::Peer;
 use tokio::time::Instant;
 
 /// 9600 baud, 8 data bits, even parity, one stop bit.

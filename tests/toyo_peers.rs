@@ -12,8 +12,8 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc;
 
-use armctl::command::toyo::simulated::{self, Simulated};
-use armctl::transport::stream_server::StreamServer;
+use armctl_toyo::simulated::{self, Simulated};
+use armctl_transport::stream_server::StreamServer;
 use serde_json::Value;
 
 /// A process that ends with the test.

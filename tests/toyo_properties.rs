@@ -3,16 +3,16 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-use armctl::controller::toyo::describe::{Sender, describe, summary};
-use armctl::controller::toyo::field::{Field, Form, Mask, Value};
-use armctl::controller::toyo::layout::{Layout, Record};
-use armctl::controller::toyo::program;
-use armctl::controller::toyo::request::{MOST, Request, instruction};
-use armctl::controller::toyo::table::commands::ROWS;
-use armctl::controller::toyo::table::instructions::INSTRUCTIONS;
-use armctl::controller::toyo::table::palletizing::RECORDS;
-use armctl::controller::toyo::table::parameters::PARAMETERS;
-use armctl::controller::toyo::table::{Op, Parameter};
+use armctl_controller::toyo::describe::{Sender, describe, summary};
+use armctl_controller::toyo::field::{Field, Form, Mask, Value};
+use armctl_controller::toyo::layout::{Layout, Record};
+use armctl_controller::toyo::program;
+use armctl_controller::toyo::request::{MOST, Request, instruction};
+use armctl_controller::toyo::table::commands::ROWS;
+use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
+use armctl_controller::toyo::table::palletizing::RECORDS;
+use armctl_controller::toyo::table::parameters::PARAMETERS;
+use armctl_controller::toyo::table::{Op, Parameter};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
@@ -216,7 +216,7 @@ proptest! {
             let again = Request::parse(&request.text());
             prop_assert!(again.is_ok() || request.text().len() + 2 > MOST, "{}", request.text());
             for block in [&other, &text] {
-                if let Ok(armctl::controller::toyo::request::Answer::Data(record)) = request.answer(block) {
+                if let Ok(armctl_controller::toyo::request::Answer::Data(record)) = request.answer(block) {
                     let _ = request.answered(&record);
                 }
             }

@@ -3,15 +3,15 @@
 
 use std::collections::BTreeSet;
 
-use armctl::controller::toyo::errors;
-use armctl::controller::toyo::field::{Field, Form, Number};
-use armctl::controller::toyo::layout::Layout;
-use armctl::controller::toyo::request::Request;
-use armctl::controller::toyo::status;
-use armctl::controller::toyo::table::commands::{ROWS, Row};
-use armctl::controller::toyo::table::instructions::INSTRUCTIONS;
-use armctl::controller::toyo::table::palletizing::RECORDS;
-use armctl::controller::toyo::table::parameters::PARAMETERS;
+use armctl_controller::toyo::errors;
+use armctl_controller::toyo::field::{Field, Form, Number};
+use armctl_controller::toyo::layout::Layout;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::status;
+use armctl_controller::toyo::table::commands::{ROWS, Row};
+use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
+use armctl_controller::toyo::table::palletizing::RECORDS;
+use armctl_controller::toyo::table::parameters::PARAMETERS;
 use serde::Deserialize;
 
 /// Intended differences, each with the ambiguity of the manual or the reason. `any` means that the manual has no value.

@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use armctl::controller::yerc::simulator::{Simulator, Start};
-use armctl::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, LAST_BLOCK, RequestFrame, Status};
+use armctl_controller::yerc::simulator::{Simulator, Start};
+use armctl_controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, LAST_BLOCK, RequestFrame, Status};
 use serde_json::{Value, json};
 
 /// Reaction to a request instead of the simulated answer.

@@ -9,14 +9,14 @@
 
 use std::collections::BTreeMap;
 
-use armctl::controller::Risk;
-use armctl::controller::yrcx::alarm::Alarm;
-use armctl::controller::yrcx::answer::{self, Answer};
-use armctl::controller::yrcx::describe;
-use armctl::controller::yrcx::image::Words;
-use armctl::controller::yrcx::order::{Draft, Order};
-use armctl::controller::yrcx::table::{Command, Field, Form, ROWS, Row, Show};
-use armctl::controller::yrcx::value::{Key, Value, Values};
+use armctl_controller::Risk;
+use armctl_controller::yrcx::alarm::Alarm;
+use armctl_controller::yrcx::answer::{self, Answer};
+use armctl_controller::yrcx::describe;
+use armctl_controller::yrcx::image::Words;
+use armctl_controller::yrcx::order::{Draft, Order};
+use armctl_controller::yrcx::table::{Command, Field, Form, ROWS, Row, Show};
+use armctl_controller::yrcx::value::{Key, Value, Values};
 use serde_json::Value as Json;
 
 #[test]

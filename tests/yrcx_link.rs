@@ -7,11 +7,11 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::process::{Child, ChildStdin, Command, Output, Stdio};
 use std::time::Duration;
 
-use armctl::controller::yrcx::image::{COMMAND_WORDS, Image};
-use armctl::controller::yrcx::signal::output;
-use armctl::transport::eip::adapter::server::{Listen, Server};
-use armctl::transport::eip::adapter::{Application, Event, Setup};
-use armctl::transport::eip::wire::{Identity, Revision};
+use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
+use armctl_controller::yrcx::signal::output;
+use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::{Application, Event, Setup};
+use armctl_transport::eip::wire::{Identity, Revision};
 use serde_json::{Value, json};
 
 fn armctl() -> Command {

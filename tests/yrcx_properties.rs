@@ -5,17 +5,17 @@
 
 use std::time::Duration;
 
-use armctl::controller::yrcx::answer::Answer;
-use armctl::controller::yrcx::describe;
-use armctl::controller::yrcx::image::{Image, Output, Words};
-use armctl::controller::yrcx::order::Order;
-use armctl::controller::yrcx::procedure::Procedure;
-use armctl::controller::yrcx::sequence::Sequence;
-use armctl::controller::yrcx::session::{Ended, Exchange, ImageSession, Next, Policy};
-use armctl::controller::yrcx::signal::{Side, Signal, input, resting};
-use armctl::controller::yrcx::table::parameter::Parameter;
-use armctl::controller::yrcx::table::{Charset, Field, Form, ROWS, Row, Show};
-use armctl::controller::yrcx::value::{Key, Value, Values};
+use armctl_controller::yrcx::answer::Answer;
+use armctl_controller::yrcx::describe;
+use armctl_controller::yrcx::image::{Image, Output, Words};
+use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::procedure::Procedure;
+use armctl_controller::yrcx::sequence::Sequence;
+use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession, Next, Policy};
+use armctl_controller::yrcx::signal::{Side, Signal, input, resting};
+use armctl_controller::yrcx::table::parameter::Parameter;
+use armctl_controller::yrcx::table::{Charset, Field, Form, ROWS, Row, Show};
+use armctl_controller::yrcx::value::{Key, Value, Values};
 use proptest::prelude::*;
 
 /// Words of a command that mostly begin with a code.

@@ -5,13 +5,15 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::mpsc;
 
 use anyhow::ensure;
-use armctl::command::{toyo, yerc, yrcx};
-use armctl::controller::{toyo as toyo_controller, yerc as yerc_controller, yrcx as yrcx_controller};
-use armctl::transport::eip::adapter::server::Listen;
-use armctl::transport::fault::{Faults, SimulatorFaults};
-use armctl::transport::line::Pace;
-use armctl::transport::server::Server;
-use armctl::transport::stream_server::StreamServer;
+use armctl_controller::{toyo as toyo_controller, yerc as yerc_controller, yrcx as yrcx_controller};
+use armctl_toyo as toyo;
+use armctl_transport::eip::adapter::server::Listen;
+use armctl_transport::fault::{Faults, SimulatorFaults};
+use armctl_transport::line::Pace;
+use armctl_transport::server::Server;
+use armctl_transport::stream_server::StreamServer;
+use armctl_yerc as yerc;
+use armctl_yrcx as yrcx;
 use tokio::task::LocalSet;
 
 use super::runtime;

@@ -8,10 +8,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
-use armctl::transport::image::tap::Tap;
-use armctl::transport::profinet::layout::Layout;
-use armctl::transport::profinet::network::Network;
-use armctl::transport::profinet::settings::{Settings, Station};
+use armctl_transport::image::tap::Tap;
+use armctl_transport::profinet::layout::Layout;
+use armctl_transport::profinet::network::Network;
+use armctl_transport::profinet::settings::{Settings, Station};
 
 use super::common::runtime;
 use super::common::table::{Row, Table};

@@ -3,18 +3,18 @@
 use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
-use armctl::transport::devicenet::can::bus::Bus;
-use armctl::transport::devicenet::can::{Bitrate, Frame};
-use armctl::transport::devicenet::device::{Application, Device, Setup as NodeSetup};
-use armctl::transport::devicenet::scanner::{Identity, Scanner, State as LinkState};
-use armctl::transport::devicenet::settings::{Images, Profile, Purpose, Settings as NodeSettings};
-use armctl::transport::devicenet::wire::Mac;
-use armctl::transport::image::ImagePeer;
-use armctl::transport::line::Wire;
-use armctl::transport::profibus::master::Master;
-use armctl::transport::profibus::rates::Rate;
-use armctl::transport::profibus::settings::Settings;
-use armctl::transport::profibus::slave::{Setup, Slave};
+use armctl_transport::devicenet::can::bus::Bus;
+use armctl_transport::devicenet::can::{Bitrate, Frame};
+use armctl_transport::devicenet::device::{Application, Device, Setup as NodeSetup};
+use armctl_transport::devicenet::scanner::{Identity, Scanner, State as LinkState};
+use armctl_transport::devicenet::settings::{Images, Profile, Purpose, Settings as NodeSettings};
+use armctl_transport::devicenet::wire::Mac;
+use armctl_transport::image::ImagePeer;
+use armctl_transport::line::Wire;
+use armctl_transport::profibus::master::Master;
+use armctl_transport::profibus::rates::Rate;
+use armctl_transport::profibus::settings::Settings;
+use armctl_transport::profibus::slave::{Setup, Slave};
 
 use super::Effort;
 use super::common::table::{Goal, Row, Table};

@@ -18,9 +18,9 @@ use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
 use anyhow::ensure;
-use armctl::command::yerc;
-use armctl::controller::yerc as yerc_controller;
-use armctl::transport::server::Server;
+use armctl_controller::yerc as yerc_controller;
+use armctl_transport::server::Server;
+use armctl_yerc as yerc;
 use tokio::task::LocalSet;
 use tokio::time::interval_at;
 

@@ -4,8 +4,8 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::time::Duration;
 
-use armctl::controller::yerc::files::FileName;
-use armctl::controller::yerc::wire::{HEADER_LEN, LAST_BLOCK, MAX_FRAME};
+use armctl_controller::yerc::files::FileName;
+use armctl_controller::yerc::wire::{HEADER_LEN, LAST_BLOCK, MAX_FRAME};
 
 use crate::peers::{ACK, BLOCK, STATUS_ANSWER, STATUS_REQUEST, block};
 

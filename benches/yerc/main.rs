@@ -16,14 +16,14 @@ mod peers;
 mod process;
 
 use anyhow::{Context as _, ensure};
-use armctl::command::yerc::link::{Link, Yerc};
-use armctl::command::{Access, ConnectMode, Family as _};
-use armctl::controller::yerc::files::FileName;
-use armctl::controller::yerc::query::ReadStatus;
-use armctl::controller::yerc::session::DownloadEnd;
-use armctl::output::{ColorChoice, Format, Screen};
-use armctl::settings::target::Family;
-use armctl::settings::{Selection, Sources};
+use armctl_controller::yerc::files::FileName;
+use armctl_controller::yerc::query::ReadStatus;
+use armctl_controller::yerc::session::DownloadEnd;
+use armctl_frame::output::{ColorChoice, Format, Screen};
+use armctl_frame::settings::target::Family;
+use armctl_frame::settings::{Selection, Sources};
+use armctl_frame::{Access, ConnectMode, Family as _};
+use armctl_yerc::link::{Link, Yerc};
 use moto_hses_client::HsesClient;
 use tokio::runtime::Runtime;
 

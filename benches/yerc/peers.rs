@@ -4,7 +4,7 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::thread;
 
-use armctl::controller::yerc::wire::{AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
+use armctl_controller::yerc::wire::{AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
 
 /// Size of the largest frame.
 const BUFFER: usize = 2048;

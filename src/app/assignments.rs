@@ -6,7 +6,7 @@ use std::ffi::OsString;
 use clap::Command;
 
 use super::typed_line::TypedLine;
-use crate::command::frame::setting::Pair;
+use armctl_frame::setting::Pair;
 
 /// The line in the form that its command expects; `None` if no conversion is necessary.
 pub fn split_assignments(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {

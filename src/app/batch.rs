@@ -15,16 +15,17 @@ use serde_json::Value;
 use super::parser::Parser;
 use super::prepare::{Invocation, PreparedCommand};
 use super::{line_words, name_lookup, screen};
-use crate::cli::{Globals, Words};
+use crate::cli::Words;
 use crate::command::fleet::session::host;
-use crate::command::frame::batch::Batch;
-use crate::command::frame::interrupt::catch_interrupts;
-use crate::command::frame::run::{RunError, begin_trace};
-use crate::command::frame::script_line::{Line, Origin};
-use crate::command::frame::session_manager::SessionManager;
-use crate::failure::{Failure, Kind};
-use crate::files;
-use crate::output::{Format, Screen};
+use armctl_files as files;
+use armctl_frame::batch::Batch;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::flags::Globals;
+use armctl_frame::interrupt::catch_interrupts;
+use armctl_frame::output::{Format, Screen};
+use armctl_frame::run::{RunError, begin_trace};
+use armctl_frame::script_line::{Line, Origin};
+use armctl_frame::session_manager::SessionManager;
 
 /// Envelopes that are written together at the end.
 type Results = Rc<RefCell<Vec<Value>>>;

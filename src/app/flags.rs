@@ -1,11 +1,11 @@
 //! Check for global flags that have no effect on a command; they are errors.
 
 use super::prepare::Task;
-use crate::cli::Globals;
 use crate::command::common::Common;
 use crate::command::fleet::robots::Robots;
-use crate::failure::Failure;
-use crate::gate::OnInterrupt;
+use armctl_frame::failure::Failure;
+use armctl_frame::flags::Globals;
+use armctl_frame::gate::OnInterrupt;
 
 /// Groups of global flags that a command uses, in addition to output flags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,19 +10,19 @@ use crate::app::line_words;
 use crate::app::prepare::{Invocation, Task};
 use crate::app::suggestions;
 use crate::cli::Cli;
-use crate::command::AnyCommand;
 use crate::command::common::Common;
 use crate::command::example_lines::{all, robot_lines};
 use crate::command::fleet::common;
-use crate::command::frame::run::Run;
-use crate::controller::Risk::{Destroy, Motion, Read, Write};
-use crate::failure::{Failure, Kind};
-use crate::gate::Intent;
-use crate::output::redraw::Redraw;
-use crate::output::{ColorChoice, Format, Screen};
-use crate::settings::inventory::Inventory;
-use crate::settings::target::Family;
-use crate::settings::{Selection, Sources};
+use armctl_controller::Risk::{Destroy, Motion, Read, Write};
+use armctl_frame::AnyCommand;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::gate::Intent;
+use armctl_frame::output::redraw::Redraw;
+use armctl_frame::output::{ColorChoice, Format, Screen};
+use armctl_frame::run::Run;
+use armctl_frame::settings::inventory::Inventory;
+use armctl_frame::settings::target::Family;
+use armctl_frame::settings::{Selection, Sources};
 
 const STOPS: [&str; 7] =
     ["stop", "yerc stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
@@ -58,13 +58,13 @@ fn run(selection: Selection) -> Run {
     Run {
         screen: Screen::new(Format::Json, ColorChoice::Never, true, 0),
         sources: Sources { selection, inventory, ..Sources::default() },
-        gate: crate::gate::Gate::default(),
-        repeat: crate::command::frame::run::Repeat::default(),
+        gate: armctl_frame::gate::Gate::default(),
+        repeat: armctl_frame::run::Repeat::default(),
         filter: None,
         trace: None,
         line: None,
         redraw: Redraw::default(),
-        own: crate::command::FamilyArguments::default(),
+        own: armctl_frame::FamilyArguments::default(),
     }
 }
 
@@ -124,7 +124,7 @@ fn gate_checks_every_command() {
         let is_stop = STOPS.iter().any(|stop| line.starts_with(stop));
         let refused =
             |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Rejected);
-        let is_when_known = intent.confirmation == crate::gate::Confirmation::WhenKnown;
+        let is_when_known = intent.confirmation == armctl_frame::gate::Confirmation::WhenKnown;
         let is_asked = *risk == Motion || *risk == Destroy && !is_when_known;
         for (what, is_right) in [
             ("its risk", intent.risk == *risk),
@@ -132,7 +132,7 @@ fn gate_checks_every_command() {
             (
                 "a question",
                 *risk < Destroy
-                    || intent.confirmation != crate::gate::Confirmation::Question
+                    || intent.confirmation != armctl_frame::gate::Confirmation::Question
                     || !intent.text.is_empty(),
             ),
             ("nobody to ask", refused(&alone) == is_asked),

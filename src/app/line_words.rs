@@ -1,6 +1,6 @@
 //! Splitting of a line into words, as a shell does.
 
-use crate::command::frame::batch::is_name;
+use armctl_frame::batch::is_name;
 
 /// Splits a line: quotes, backslashes and `#` as in a shell. Empty for an empty line or a comment.
 pub fn split(line: &str) -> Result<Vec<String>, String> {

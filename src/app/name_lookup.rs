@@ -4,8 +4,9 @@ use std::ffi::OsString;
 
 use super::parser::{Parser, Refusal};
 use super::prepare::{Need, sources};
-use crate::cli::{Cli, Globals, Top};
-use crate::command::frame::names;
+use crate::cli::{Cli, Top};
+use armctl_frame::flags::Globals;
+use armctl_frame::names;
 
 /// Parses a line that can contain names for addresses. `all`: global flags for all lines, if there are several.
 /// `among`: other lines run in this process, where simulators live on.

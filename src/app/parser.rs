@@ -13,8 +13,8 @@ use crate::command::about::help;
 use crate::command::about::page::page;
 use crate::command::common::Common;
 use crate::command::{families, missing_verbs};
-use crate::failure::Failure;
-use crate::settings::target::Family;
+use armctl_frame::failure::Failure;
+use armctl_frame::settings::target::Family;
 
 /// Version text, if the line only asks for it. This avoids building the commands.
 pub fn version(args: &[OsString]) -> Option<String> {

@@ -10,13 +10,13 @@ use super::parser::Refusal;
 use super::typed_line::TypedLine;
 use super::{complete, on_this_thread, wants_json};
 use crate::cli::Cli;
-use crate::command::Candidate;
 use crate::command::example_lines::preselects;
-use crate::command::frame::interrupt::catch_interrupts;
-use crate::command::frame::prompt::ask;
-use crate::command::frame::run::RunError;
-use crate::failure::Failure;
-use crate::output::{ColorChoice, Format, Screen};
+use armctl_frame::Candidate;
+use armctl_frame::failure::Failure;
+use armctl_frame::interrupt::catch_interrupts;
+use armctl_frame::output::{ColorChoice, Format, Screen};
+use armctl_frame::prompt::ask;
+use armctl_frame::run::RunError;
 
 /// Time limit for the list of a controller.
 const LIST_TIMEOUT: Duration = Duration::from_secs(3);

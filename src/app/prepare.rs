@@ -5,27 +5,28 @@ use std::path::{Path, PathBuf};
 use clap::{CommandFactory as _, ValueEnum as _};
 
 use super::{flags, screen};
-use crate::cli::{Cli, FamilyWord, Globals, Top};
+use crate::cli::{Cli, FamilyWord, Top};
 use crate::command::common::Common;
-use crate::command::face::family_command::{FamilyLine, ParsedCommand};
 use crate::command::fleet::common;
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
 use crate::command::fleet::teach::Teach;
-use crate::command::frame::batch::Batch;
-use crate::command::frame::condition::Condition;
-use crate::command::frame::run::{Repeat, Run, RunError};
-use crate::command::frame::script_line::Line;
-use crate::command::{AnyCommand, FamilyArguments};
-use crate::failure::Failure;
-use crate::gate::Gate;
-use crate::output::Format;
-use crate::output::jq::Filter;
-use crate::output::redraw::Redraw;
-use crate::settings::duration;
-use crate::settings::inventory::{Inventory, Location, Options};
-use crate::settings::target::TargetArgument;
-use crate::settings::{Selection, Sessions, Sources};
+use armctl_frame::batch::Batch;
+use armctl_frame::condition::Condition;
+use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
+use armctl_frame::failure::Failure;
+use armctl_frame::flags::Globals;
+use armctl_frame::gate::Gate;
+use armctl_frame::output::Format;
+use armctl_frame::output::jq::Filter;
+use armctl_frame::output::redraw::Redraw;
+use armctl_frame::run::{Repeat, Run, RunError};
+use armctl_frame::script_line::Line;
+use armctl_frame::settings::duration;
+use armctl_frame::settings::inventory::{Inventory, Location, Options};
+use armctl_frame::settings::target::TargetArgument;
+use armctl_frame::settings::{Selection, Sessions, Sources};
+use armctl_frame::{AnyCommand, FamilyArguments};
 
 /// Meaning of a command line.
 pub enum Invocation {

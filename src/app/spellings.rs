@@ -7,9 +7,9 @@ use std::ffi::OsString;
 use clap::Command;
 
 use super::typed_line::TypedLine;
-use crate::command::face::Face;
 use crate::command::families::FAMILIES;
-use crate::settings::target::Family;
+use armctl_frame::face::Face;
+use armctl_frame::settings::target::Family;
 
 /// Word for the current position of the robot.
 const HERE: &str = "here";

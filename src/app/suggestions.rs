@@ -12,10 +12,10 @@ use clap::{Arg, Command};
 use super::spellings::families_with;
 use super::typed_line::TypedLine;
 use crate::command::example_lines::{self, is_dangerous};
-use crate::controller::Risk;
-use crate::controller::nearest::nearest;
-use crate::failure::decimal_point;
-use crate::settings::target::Family;
+use armctl_controller::Risk;
+use armctl_controller::nearest::nearest;
+use armctl_frame::failure::decimal_point;
+use armctl_frame::settings::target::Family;
 
 /// Limit of suggestions.
 const MAX_SUGGESTIONS: usize = 4;

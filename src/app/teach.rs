@@ -11,20 +11,21 @@ use super::batch::refuse_repetition;
 use super::parser::Parser;
 use super::prepare::{Invocation, Need, PreparedCommand, sources};
 use super::screen;
-use crate::cli::{Globals, Words};
+use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host;
 use crate::command::fleet::teach::{CommandRunner, Teach, show};
-use crate::command::frame::authority;
-use crate::command::frame::interrupt::catch_interrupts;
-use crate::command::frame::run::{RunError, begin_trace};
-use crate::command::frame::script_line::Line;
-use crate::command::frame::session_manager::SessionManager;
-use crate::command::{ConnectMode, Entry};
-use crate::failure::Failure;
-use crate::gate::{Gate, Intent};
-use crate::output::Format;
-use crate::settings::Robot;
+use armctl_frame::authority;
+use armctl_frame::failure::Failure;
+use armctl_frame::flags::Globals;
+use armctl_frame::gate::{Gate, Intent};
+use armctl_frame::interrupt::catch_interrupts;
+use armctl_frame::output::Format;
+use armctl_frame::run::{RunError, begin_trace};
+use armctl_frame::script_line::Line;
+use armctl_frame::session_manager::SessionManager;
+use armctl_frame::settings::Robot;
+use armctl_frame::{ConnectMode, Entry};
 
 /// Shows the panel until the user leaves.
 pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
@@ -63,7 +64,7 @@ fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     }
 }
 
-fn check_globals(globals: &Globals, screen: &crate::output::Screen) -> Result<(), Failure> {
+fn check_globals(globals: &Globals, screen: &armctl_frame::output::Screen) -> Result<(), Failure> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("teach {what}")).hint(hint));
     if globals.dry_run {
         return wrong(

@@ -9,7 +9,7 @@ use super::fleet::wait::Wait;
 use super::fleet::{backup, names, robots, session, setup, tools, top};
 #[cfg(feature = "plant")]
 use super::fleet::{publish, serve};
-use super::frame::run::{Run, RunError};
+use armctl_frame::run::{Run, RunError};
 
 /// Commands that every family shares.
 #[derive(Debug, Subcommand)]

@@ -6,7 +6,7 @@ mod without_robot;
 mod yerc;
 mod yrcx;
 
-use crate::controller::Risk::{self, Destroy, Read, Write};
+use armctl_controller::Risk::{self, Destroy, Read, Write};
 
 /// A line, and what it does at most. What stops the robot is marked by its own test.
 pub type ExampleLine = (&'static str, Risk);

@@ -3,12 +3,12 @@
 use clap::ArgMatches;
 use clap::error::ErrorKind;
 
-use super::face::Face;
-use super::face::registration::Registered;
-use super::toyo::link::Toyo;
-use super::yerc::link::Yerc;
-use super::yrcx::link::Yrcx;
-use crate::settings::target::Family;
+use armctl_frame::face::Face;
+use armctl_frame::face::registration::Registered;
+use armctl_frame::settings::target::Family;
+use armctl_toyo::link::Toyo;
+use armctl_yerc::link::Yerc;
+use armctl_yrcx::link::Yrcx;
 
 /// Every family, in the order help texts list them.
 pub static FAMILIES: [&dyn Face; 3] = [&Registered::<Yerc>::FACE, &Registered::<Yrcx>::FACE, &Registered::<Toyo>::FACE];

@@ -1,6 +1,6 @@
 //! The nouns and verbs that all families share, and what a family says that lacks one.
 
-use crate::failure::Failure;
+use armctl_frame::failure::Failure;
 
 /// Verbs of every family. Where a controller cannot do one, [`MISSING`] has a sentence for it.
 pub const SHARED: &[&str] = &[
@@ -150,7 +150,7 @@ mod tests {
 
     use super::*;
     use crate::cli::Cli;
-    use crate::settings::target::Family;
+    use armctl_frame::settings::target::Family;
 
     /// Whether words lead to a command, by its own name or another.
     fn exists(line: &str) -> bool {

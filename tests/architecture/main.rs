@@ -11,8 +11,8 @@ mod source;
 
 use source::{Source, committed, has_word, root, sources};
 
-use armctl::settings::target::BUSES;
-use armctl::settings::target::bus::Scheme;
+use armctl_frame::settings::target::BUSES;
+use armctl_frame::settings::target::bus::Scheme;
 
 /// A part of `src/` (a folder or a file) and its forbidden paths.
 const BORDERS: [(&str, &[&str]); 7] = [

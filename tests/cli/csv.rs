@@ -4,8 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 use armctl::command::example_lines::robot_lines;
-use armctl::controller::Risk;
-use armctl::output::csv::{RowsOf, Sheet};
+use armctl_controller::Risk;
+use armctl_frame::output::csv::{RowsOf, Sheet};
 use serde_json::Value;
 
 /// Commands that write files, wait, or need another target than a simulator.

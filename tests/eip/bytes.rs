@@ -4,9 +4,9 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::Arc;
 use std::time::Duration;
 
-use armctl::transport::eip::adapter::Adapter;
-use armctl::transport::eip::originator::{Numbers, Originator};
-use armctl::transport::eip::wire::{
+use armctl_transport::eip::adapter::Adapter;
+use armctl_transport::eip::originator::{Numbers, Originator};
+use armctl_transport::eip::wire::{
     Close, Closed, Command, Cyclic, Flow, Frame, Frames, Identity, Item, Key, Net, Open, Opened, Path, Refused, Reply,
     Request, RrData, Segment, Services, Status, Triad,
 };

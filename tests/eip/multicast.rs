@@ -9,12 +9,12 @@ mod world;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
-use armctl::transport::eip::IO_PORT;
-use armctl::transport::eip::adapter::server::{Listen, Server};
-use armctl::transport::eip::discovery::list_identity;
-use armctl::transport::eip::scanner::Scanner;
-use armctl::transport::eip::settings::{Role, Settings};
-use armctl::transport::eip::tap::Tap;
+use armctl_transport::eip::IO_PORT;
+use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::discovery::list_identity;
+use armctl_transport::eip::scanner::Scanner;
+use armctl_transport::eip::settings::{Role, Settings};
+use armctl_transport::eip::tap::Tap;
 
 use world::{Mirror, setup, with_long_timeout};
 

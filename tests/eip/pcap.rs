@@ -1,6 +1,6 @@
 //! A capture file of the exchanged packets, with synthetic IP, UDP and TCP headers (link type RAW).
 
-use armctl::transport::eip::tap::Passed;
+use armctl_transport::eip::tap::Passed;
 use std::collections::HashMap;
 use std::net::SocketAddrV4;
 

@@ -10,15 +10,15 @@ use std::process::Command;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use armctl::transport::eip::adapter::server::{Listen, Server};
-use armctl::transport::eip::client::Client;
-use armctl::transport::eip::discovery::list_identity;
-use armctl::transport::eip::explicit::Message;
-use armctl::transport::eip::probe::{Instances, probe};
-use armctl::transport::eip::scanner::Scanner;
-use armctl::transport::eip::settings::{Role, Settings};
-use armctl::transport::eip::tap::Tap;
-use armctl::transport::eip::{IO_PORT, PORT};
+use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::client::Client;
+use armctl_transport::eip::discovery::list_identity;
+use armctl_transport::eip::explicit::Message;
+use armctl_transport::eip::probe::{Instances, probe};
+use armctl_transport::eip::scanner::Scanner;
+use armctl_transport::eip::settings::{Role, Settings};
+use armctl_transport::eip::tap::Tap;
+use armctl_transport::eip::{IO_PORT, PORT};
 use ciplink::adapter::{Adapter, AdapterConfig, Assembly, Event};
 
 use super::pcap;

@@ -4,20 +4,20 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use armctl::transport::eip::adapter::server::{Listen, Server};
-use armctl::transport::eip::adapter::{AdapterFault, Setup};
-use armctl::transport::eip::client::Client;
-use armctl::transport::eip::discovery::list_identity;
-use armctl::transport::eip::error::EipError;
-use armctl::transport::eip::explicit::{Answer, Message};
-use armctl::transport::eip::originator::State;
-use armctl::transport::eip::probe::{self, Connectable, Instances, Presence, probe};
-use armctl::transport::eip::reader::{Assembly, Reader, Reading};
-use armctl::transport::eip::scanner::Scanner;
-use armctl::transport::eip::settings::{Multiplier, Settings};
-use armctl::transport::eip::tap::Tap;
-use armctl::transport::eip::wire::Status;
-use armctl::transport::fault::{FaultSpec, Faults};
+use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::{AdapterFault, Setup};
+use armctl_transport::eip::client::Client;
+use armctl_transport::eip::discovery::list_identity;
+use armctl_transport::eip::error::EipError;
+use armctl_transport::eip::explicit::{Answer, Message};
+use armctl_transport::eip::originator::State;
+use armctl_transport::eip::probe::{self, Connectable, Instances, Presence, probe};
+use armctl_transport::eip::reader::{Assembly, Reader, Reading};
+use armctl_transport::eip::scanner::Scanner;
+use armctl_transport::eip::settings::{Multiplier, Settings};
+use armctl_transport::eip::tap::Tap;
+use armctl_transport::eip::wire::Status;
+use armctl_transport::fault::{FaultSpec, Faults};
 
 use super::world::{MS, Mirror, identity, resting, setup, with_long_timeout};
 
@@ -207,7 +207,7 @@ async fn reports_a_reset_and_uses_a_new_connection() {
 #[tokio::test]
 async fn reads_the_identity_over_tcp_and_udp() {
     let server = serve(setup());
-    let expected = armctl::transport::eip::wire::Identity { address: server.address(), status: 0x30, ..identity() };
+    let expected = armctl_transport::eip::wire::Identity { address: server.address(), status: 0x30, ..identity() };
     let mut client = Client::new(server.address(), Duration::from_secs(3), Tap::default());
     assert_eq!(client.identity().await.unwrap(), Some(expected.clone()));
     assert_eq!(client.services().await.unwrap().unwrap().name, "Communications");

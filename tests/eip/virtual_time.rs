@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use armctl::transport::eip::adapter::{Adapter, AdapterFault, Assembly, Event, Output, Purpose, Setup};
-use armctl::transport::eip::error::EipError;
-use armctl::transport::eip::explicit::{Answer, Message};
-use armctl::transport::eip::originator::State;
-use armctl::transport::eip::settings::{Multiplier, Role, Settings};
-use armctl::transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
+use armctl_transport::eip::adapter::{Adapter, AdapterFault, Assembly, Event, Output, Purpose, Setup};
+use armctl_transport::eip::error::EipError;
+use armctl_transport::eip::explicit::{Answer, Message};
+use armctl_transport::eip::originator::State;
+use armctl_transport::eip::settings::{Multiplier, Role, Settings};
+use armctl_transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
 
 use super::world::{MS, Mirror, ORIGINATOR_ADDRESS, World, identity, resting, settings, setup};
 
@@ -373,7 +373,7 @@ fn second(world: &mut World, settings: &Settings, serial: u16) -> Status {
     let open = Open {
         o_t_id: 0,
         t_o_id: 0x9999,
-        triad: armctl::transport::eip::wire::Triad { serial, vendor: 2, originator: 3 },
+        triad: armctl_transport::eip::wire::Triad { serial, vendor: 2, originator: 3 },
         multiplier: 7,
         o_t: settings.o_t(),
         t_o: settings.t_o(),

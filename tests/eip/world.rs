@@ -6,14 +6,14 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::Arc;
 use std::time::Duration;
 
-use armctl::transport::eip::adapter::{Adapter, Application, Event, Output, Setup};
-use armctl::transport::eip::error::EipError;
-use armctl::transport::eip::originator::{Action, Numbers, Originator, State, View};
-use armctl::transport::eip::session::{Ask, Token};
-use armctl::transport::eip::settings::{Multiplier, Settings};
-use armctl::transport::eip::wire::{Command, Cyclic, Identity, Revision};
-use armctl::transport::eip::{IO_PORT, Now, PORT};
-use armctl::transport::fault::{FaultSpec, Faults};
+use armctl_transport::eip::adapter::{Adapter, Application, Event, Output, Setup};
+use armctl_transport::eip::error::EipError;
+use armctl_transport::eip::originator::{Action, Numbers, Originator, State, View};
+use armctl_transport::eip::session::{Ask, Token};
+use armctl_transport::eip::settings::{Multiplier, Settings};
+use armctl_transport::eip::wire::{Command, Cyclic, Identity, Revision};
+use armctl_transport::eip::{IO_PORT, Now, PORT};
+use armctl_transport::fault::{FaultSpec, Faults};
 
 pub const MS: Duration = Duration::from_millis(1);
 /// Transit time of TCP.

@@ -4,10 +4,10 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Duration;
 
-use armctl::controller::yerc::request::Request;
-use armctl::controller::yerc::wire::Status;
-use armctl::controller::{Now, Session, Step};
-use armctl::transport::fault::{FaultSpec, Faults};
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::wire::Status;
+use armctl_controller::{Now, Session, Step};
+use armctl_transport::fault::{FaultSpec, Faults};
 
 /// Answer time of a controller.
 const SERVICE_TIME: Duration = Duration::from_millis(8);

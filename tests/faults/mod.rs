@@ -11,11 +11,11 @@ mod simulator;
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use armctl::controller::yerc::session::{
+use armctl_controller::yerc::session::{
     Download, DownloadEnd, Ended, Exchange, Ids, Policy, Upload, UploadEnd, is_busy,
 };
-use armctl::controller::yerc::wire::{Division, RequestFrame};
-use armctl::transport::fault::{FaultSpec, Share};
+use armctl_controller::yerc::wire::{Division, RequestFrame};
+use armctl_transport::fault::{FaultSpec, Share};
 
 use link::{Class, Controller, Link, Run, TransferKind};
 use model::{ControllerKind, Model};

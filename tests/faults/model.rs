@@ -1,8 +1,8 @@
 //! A minimal controller with its own byte handling, independent of the code under test.
 
-use armctl::controller::Now;
-use armctl::controller::yerc::request::Request;
-use armctl::controller::yerc::wire::Status;
+use armctl_controller::Now;
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::wire::Status;
 
 use super::link::{Class, Controller, TransferKind};
 

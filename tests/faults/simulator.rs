@@ -4,20 +4,20 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use armctl::controller::Now;
-use armctl::controller::yerc::Model::{self, Dx200, Fs100};
-use armctl::controller::yerc::files::batch_backup;
-use armctl::controller::yerc::group::Group;
-use armctl::controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, SpeedClass};
-use armctl::controller::yerc::query::{
+use armctl_controller::Now;
+use armctl_controller::yerc::Model::{self, Dx200, Fs100};
+use armctl_controller::yerc::files::batch_backup;
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, SpeedClass};
+use armctl_controller::yerc::query::{
     Coordinates, MoveCartesian, MoveKind, Query, ReadPosition, ReadStatus, ReadVariable, StartJob, WriteVariable,
 };
-use armctl::controller::yerc::request::Request;
-use armctl::controller::yerc::session::{Download, DownloadEnd, Ids, Policy};
-use armctl::controller::yerc::simulator::{Simulator, Start};
-use armctl::controller::yerc::variables::{Value, VariableKind};
-use armctl::controller::yerc::wire::{AnswerFrame, Division, Status};
-use armctl::transport::fault::FaultSpec;
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::session::{Download, DownloadEnd, Ids, Policy};
+use armctl_controller::yerc::simulator::{Simulator, Start};
+use armctl_controller::yerc::variables::{Value, VariableKind};
+use armctl_controller::yerc::wire::{AnswerFrame, Division, Status};
+use armctl_transport::fault::FaultSpec;
 
 use super::link::{Class, Controller, Link, TransferKind};
 use super::{

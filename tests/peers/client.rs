@@ -3,20 +3,20 @@
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use armctl::command::yerc::link::Link;
-use armctl::command::yerc::simulator_start::Simulated;
-use armctl::controller::yerc::Model::{self, Dx200, Fs100};
-use armctl::controller::yerc::files::FileName;
-use armctl::controller::yerc::group::Group;
-use armctl::controller::yerc::payload::{ControllerStatus, Position, StatusBit, Text};
-use armctl::controller::yerc::query::{
+use armctl_controller::yerc::Model::{self, Dx200, Fs100};
+use armctl_controller::yerc::files::FileName;
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::payload::{ControllerStatus, Position, StatusBit, Text};
+use armctl_controller::yerc::query::{
     Coordinates, Query, ReadIo, ReadIoGroups, ReadJob, ReadPosition, ReadRegister, ReadRegisters, ReadStatus,
     ReadVariable, ReadVariables, WriteIo, WriteRegister, WriteVariable,
 };
-use armctl::controller::yerc::session::DownloadEnd;
-use armctl::controller::yerc::simulator::{Simulator, Start};
-use armctl::controller::yerc::variables::{Value, VariableKind};
-use armctl::transport::server::Server;
+use armctl_controller::yerc::session::DownloadEnd;
+use armctl_controller::yerc::simulator::{Simulator, Start};
+use armctl_controller::yerc::variables::{Value, VariableKind};
+use armctl_transport::server::Server;
+use armctl_yerc::link::Link;
+use armctl_yerc::simulator_start::Simulated;
 use encoding_rs::SHIFT_JIS;
 use moto_hses_client::{ClientConfig, HsesClient, TextEncoding};
 use moto_hses_proto::commands::JobSelectType;

@@ -3,19 +3,19 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use armctl::command::yerc::link::Link;
-use armctl::controller::yerc::Model::Dx200;
-use armctl::controller::yerc::files::{self, FileName, FileType};
-use armctl::controller::yerc::group::Group;
-use armctl::controller::yerc::payload::{Axes, CycleMode, ExtendedForm, Form, Position, PositionKind, StatusBit, Text};
-use armctl::controller::yerc::query::{
+use armctl_controller::yerc::Model::Dx200;
+use armctl_controller::yerc::files::{self, FileName, FileType};
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::payload::{Axes, CycleMode, ExtendedForm, Form, Position, PositionKind, StatusBit, Text};
+use armctl_controller::yerc::query::{
     AlarmClass, CancelError, Coordinates, Hlock, Hold, Query, ReadAlarm, ReadAlarmHistory, ReadField, ReadIo,
     ReadIoGroups, ReadJob, ReadManagementTime, ReadPosition, ReadPositionError, ReadRegister, ReadRegisters,
     ReadStatus, ReadTorque, ReadVariable, ReadVariables, ResetAlarm, Say, SelectJob, Selection, Servo, SetCycle,
     StartJob, TimeCounter, WriteIo, WriteIoGroups, WriteRegister, WriteRegisters, WriteVariable, WriteVariables,
 };
-use armctl::controller::yerc::session::{DownloadEnd, UploadEnd};
-use armctl::controller::yerc::variables::{Value, VariableKind};
+use armctl_controller::yerc::session::{DownloadEnd, UploadEnd};
+use armctl_controller::yerc::variables::{Value, VariableKind};
+use armctl_yerc::link::Link;
 use moto_hses_mock::server::MockServerBuilder;
 use moto_hses_mock::{MockServer, VariableType};
 use moto_hses_proto as proto;
@@ -342,7 +342,7 @@ async fn lists_fetches_and_deletes_files() {
     assert_eq!(peer.mock.state().read().await.files.len(), 2);
 }
 
-async fn fetch(link: &mut Link, request: &armctl::controller::yerc::request::Request) -> (Vec<u8>, DownloadEnd) {
+async fn fetch(link: &mut Link, request: &armctl_controller::yerc::request::Request) -> (Vec<u8>, DownloadEnd) {
     let mut fetched = Vec::new();
     let end = link
         .download(request, 1 << 20, None, |piece| {

@@ -12,13 +12,13 @@ mod mock;
 
 use std::net::SocketAddr;
 
-use armctl::command::yerc::link::{Link, Yerc};
-use armctl::command::{Access, ConnectMode, Family as _};
-use armctl::controller::Risk;
-use armctl::controller::yerc::Model;
-use armctl::output::{ColorChoice, Format, Screen};
-use armctl::settings::target::Family;
-use armctl::settings::{Selection, Sources};
+use armctl_controller::Risk;
+use armctl_controller::yerc::Model;
+use armctl_frame::output::{ColorChoice, Format, Screen};
+use armctl_frame::settings::target::Family;
+use armctl_frame::settings::{Selection, Sources};
+use armctl_frame::{Access, ConnectMode, Family as _};
+use armctl_yerc::link::{Link, Yerc};
 
 /// The client of this project, for a controller at these local ports.
 async fn connect(model: Model, robot: SocketAddr, file: SocketAddr) -> Link {
@@ -30,7 +30,8 @@ async fn connect_with(url: &str, timeout: Option<std::time::Duration>) -> Link {
     let mut sources = Sources { selection, ..Sources::default() };
     sources.flags.timeout = timeout;
     let robots = sources.robots(Some(Family::Yerc)).unwrap();
-    let access = Access { grant: armctl::gate::Grant::up_to(Risk::Motion), ..Access::reading(ConnectMode::Control) };
+    let access =
+        Access { grant: armctl_frame::gate::Grant::up_to(Risk::Motion), ..Access::reading(ConnectMode::Control) };
     let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
     Yerc::connect(&robots[0], access, &screen).await.unwrap()
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
-use armctl::failure::Kind;
+use armctl_frame::failure::Kind;
 use jsonschema::Validator;
 use serde_json::Value;
 

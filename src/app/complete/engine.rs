@@ -7,20 +7,17 @@ use std::ffi::{OsStr, OsString};
 use std::sync::Arc;
 use std::time::Duration;
 
-use clap::builder::ArgExt;
 use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
 use clap_complete::engine::{ArgValueCompleter, CompletionCandidate};
 
 use super::values::{self, Context};
 use crate::cli::Cli;
-use crate::command::{Candidate, ValueKind};
+use armctl_frame::{Candidate, ValueKind};
 
 /// Tag of candidates that need more text.
 const INCOMPLETE_TAG: &str = "begun";
 
 /// Allows `#[arg(add = ValueKind::Robot)]`.
-impl ArgExt for ValueKind {}
-
 /// Candidates after `before` for the typed `current`; `None` if the line cannot be parsed. `is_among`: other lines run
 /// in this process. `connects`: a connection to a robot is allowed.
 pub(super) fn complete(

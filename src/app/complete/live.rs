@@ -14,12 +14,12 @@ use tokio::time::timeout;
 
 use crate::app::parser::Parser;
 use crate::app::prepare::{Invocation, Task};
-use crate::command::frame::authority::Authority;
-use crate::command::frame::kind::{Ask, Question};
-use crate::command::{Access, AnyContext, Candidate, Entry};
-use crate::output::{ColorChoice, Format, Screen, escape};
-use crate::settings::target::Family;
-use crate::settings::{Robot, Sessions, Setting, Sources};
+use armctl_frame::authority::Authority;
+use armctl_frame::kind::{Ask, Question};
+use armctl_frame::output::{ColorChoice, Format, Screen, escape};
+use armctl_frame::settings::target::Family;
+use armctl_frame::settings::{Robot, Sessions, Setting, Sources};
+use armctl_frame::{Access, AnyContext, Candidate, Entry};
 
 /// Longest wait.
 pub(super) const ASK_TIMEOUT: Duration = Duration::from_millis(300);

@@ -12,7 +12,7 @@
 //! `values.rs`, those of a family in `command/FAMILY/complete.rs`. `live.rs` asks a robot for values that only it has.
 //! `engine.rs` contains the unstable library for words and flags.
 //!
-//! [`ValueKind`]: crate::command::ValueKind
+//! [`ValueKind`]: armctl_frame::ValueKind
 
 mod engine;
 mod live;
@@ -25,7 +25,7 @@ use std::time::Duration;
 pub use shell::answer;
 
 use super::with_family;
-use crate::command::Candidate;
+use armctl_frame::Candidate;
 
 /// Candidates for `words[index]`, best first. `is_among`: other lines run in this process, as at the prompt, where
 /// simulators live on.

@@ -9,8 +9,8 @@ use std::ffi::OsString;
 use clap::ValueEnum as _;
 
 use super::complete;
-use crate::command::Candidate;
 use crate::command::about::completions::Shell;
+use armctl_frame::Candidate;
 
 /// Variable that requests a completion.
 const SHELL_VARIABLE: &str = "ARMCTL_COMPLETE";

@@ -10,16 +10,16 @@ use clap::{ArgMatches, Args as _, Command, FromArgMatches as _};
 
 use super::live;
 use crate::app::prepare::{Need, sources};
-use crate::cli::Globals;
 use crate::command::about::{help, schema};
-use crate::command::backup::manifest;
 use crate::command::families::{self, FAMILIES};
-use crate::command::frame::kind::Named;
-use crate::command::frame::names;
-use crate::command::{Candidate, ValueKind};
-use crate::settings::Sources;
-use crate::settings::inventory::{Inventory, Location};
-use crate::transport::session::location::{SessionFolder, SessionPath};
+use armctl_frame::backup::manifest;
+use armctl_frame::flags::Globals;
+use armctl_frame::kind::Named;
+use armctl_frame::names;
+use armctl_frame::settings::Sources;
+use armctl_frame::settings::inventory::{Inventory, Location};
+use armctl_frame::{Candidate, ValueKind};
+use armctl_transport::session::location::{SessionFolder, SessionPath};
 
 /// Robots and settings from the rest of the line.
 #[derive(Debug)]

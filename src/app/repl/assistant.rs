@@ -13,7 +13,7 @@ use rustyline::{Context, Helper};
 use super::line_parser::LineParser;
 use crate::app::complete::complete;
 use crate::app::{line_words, screen};
-use crate::cli::Globals;
+use armctl_frame::flags::Globals;
 
 /// Helper of the line editor.
 pub struct Assistant {

@@ -13,9 +13,9 @@ use tokio::sync::mpsc;
 
 use super::assistant::Assistant;
 use super::prompt::Prompt;
-use crate::command::frame::local_names::state_folder;
-use crate::failure::Failure;
-use crate::output::{Screen, escape};
+use armctl_frame::failure::Failure;
+use armctl_frame::local_names::state_folder;
+use armctl_frame::output::{Screen, escape};
 
 /// Limit of the history.
 const HISTORY_SIZE: usize = 2000;

@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 
 use crate::app::parser::{Owner, Parser};
-use crate::settings::target::Family;
+use armctl_frame::settings::target::Family;
 
 /// Inserts the family before its commands.
 #[derive(Debug, Default)]

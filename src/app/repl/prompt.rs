@@ -4,13 +4,13 @@ use std::time::Duration;
 
 use tokio::time::timeout;
 
-use crate::command::face::overview::{LeftOver, OverviewReport};
 use crate::command::fleet::status;
-use crate::command::frame::script_line::Line;
-use crate::output::render::with_color;
-use crate::output::view::{Cell, Tone};
-use crate::output::{Screen, escape};
-use crate::settings::Robot;
+use armctl_frame::face::overview::{LeftOver, OverviewReport};
+use armctl_frame::output::render::with_color;
+use armctl_frame::output::view::{Cell, Tone};
+use armctl_frame::output::{Screen, escape};
+use armctl_frame::script_line::Line;
+use armctl_frame::settings::Robot;
 
 /// Time limit for the state of the robot.
 const STATE_TIMEOUT: Duration = Duration::from_millis(500);
@@ -92,9 +92,9 @@ fn states(robot: &Robot, seen: &RobotState) -> Vec<Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::robot::state::{Fault, State};
-    use crate::settings::target::Family;
-    use crate::settings::{Selection, Sources};
+    use armctl_frame::robot::state::{Fault, State};
+    use armctl_frame::settings::target::Family;
+    use armctl_frame::settings::{Selection, Sources};
 
     fn simulated() -> Robot {
         let selection = Selection { sim: true, ..Selection::default() };

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use tokio::time::sleep;
 
-use crate::output::prompt;
+use armctl_frame::output::prompt;
 
 /// Attempts and interval of the check whether the editor has the terminal.
 const TRIES: u32 = 40;

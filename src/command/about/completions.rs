@@ -2,8 +2,8 @@
 
 use clap::{Args, ValueEnum};
 
-use crate::command::frame::run::Run;
-use crate::failure::Failure;
+use armctl_frame::failure::Failure;
+use armctl_frame::run::Run;
 
 /// Print a completion script.
 #[derive(Debug, Args)]

@@ -4,12 +4,12 @@ use clap::builder::StyledStr;
 use clap::{Args, Command};
 
 use super::{environment, page};
-use crate::command::ValueKind;
-use crate::command::face::Face;
 use crate::command::families::FAMILIES;
-use crate::command::frame::run::Run;
-use crate::controller::nearest::nearest;
-use crate::failure::{Failure, Kind};
+use armctl_controller::nearest::nearest;
+use armctl_frame::ValueKind;
+use armctl_frame::face::Face;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::run::Run;
 
 /// Show the help of a topic or a command.
 #[derive(Debug, Args)]

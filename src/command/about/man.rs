@@ -8,8 +8,8 @@ use clap::{Args, Command};
 
 use super::{environment, page};
 use crate::command::example_lines;
-use crate::command::frame::run::Run;
-use crate::failure::{Failure, Kind};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::run::Run;
 
 /// Write the man pages into a folder, or print the man page of `armctl`.
 #[derive(Debug, Args)]

@@ -7,8 +7,8 @@ use clap::builder::StyledStr;
 use clap::{Arg, Command};
 
 use crate::command::example_lines;
-use crate::command::face::family_command::Headings;
-use crate::command::frame::setting::Pair;
+use armctl_frame::face::family_command::Headings;
+use armctl_frame::setting::Pair;
 
 /// Line that replaces the options of every command.
 const GLOBAL_NOTE: &str = "Options of every command (-r, -t, --sim, --json …): `armctl help options`.";

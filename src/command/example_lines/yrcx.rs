@@ -1,7 +1,7 @@
 //! Lines of the commands of `yrcx`.
 
 use super::ExampleLine;
-use crate::controller::Risk::{Destroy, Motion, Read, Write};
+use armctl_controller::Risk::{Destroy, Motion, Read, Write};
 
 #[rustfmt::skip]
 pub const LINES: &[ExampleLine] = &[

@@ -5,18 +5,18 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 
-use crate::command::backup::check::Checked;
-use crate::command::backup::family_backup::{self, Backups};
-use crate::command::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
-use crate::command::face::Face;
 use crate::command::families;
 use crate::command::fleet::status::{Fleet, Link};
-use crate::command::frame::local_names::private_folder;
-use crate::command::frame::run::{Run, RunError};
-use crate::command::{AnyContext, Command, Context};
-use crate::controller::Risk;
-use crate::failure::Failure;
-use crate::settings::Robot;
+use armctl_controller::Risk;
+use armctl_frame::backup::check::Checked;
+use armctl_frame::backup::family_backup::{self, Backups};
+use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use armctl_frame::face::Face;
+use armctl_frame::failure::Failure;
+use armctl_frame::local_names::private_folder;
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::Robot;
+use armctl_frame::{AnyContext, Command, Context};
 
 /// Arguments of `armctl restore`.
 pub type Restore = family_backup::Restore<Fleet>;

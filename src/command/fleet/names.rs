@@ -3,11 +3,11 @@
 use clap::{Args, Subcommand};
 
 use super::robots::entry::{self, check_known};
-use crate::command::SchemaEntry;
-use crate::command::frame::names::{Listing, list};
-use crate::command::frame::run::{Run, RunError};
-use crate::failure::Failure;
-use crate::settings::Robot;
+use armctl_frame::SchemaEntry;
+use armctl_frame::failure::Failure;
+use armctl_frame::names::{Listing, list};
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::Robot;
 
 /// What can be done with the names of a robot.
 #[derive(Debug, Subcommand)]

@@ -13,14 +13,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use self::entry::check_known;
-use crate::command::Report;
-use crate::command::ValueKind;
-use crate::command::frame::run::{Run, RunError};
-use crate::failure::Failure;
-use crate::output::view::{Table, View};
-use crate::settings::inventory::{Entry, matches_pattern};
-use crate::settings::model::ModelCache;
-use crate::settings::{Origin, Robot, Setting, duration};
+use armctl_frame::Report;
+use armctl_frame::ValueKind;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Table, View};
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::inventory::{Entry, matches_pattern};
+use armctl_frame::settings::model::ModelCache;
+use armctl_frame::settings::{Origin, Robot, Setting, duration};
 
 /// Commands for the inventory.
 #[derive(Debug, Subcommand)]
@@ -75,7 +75,7 @@ impl Robots {
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         let inventory = &run.sources.inventory;
         if let Some(path) = &inventory.path {
-            crate::files::sweep(&crate::files::folder_of(path));
+            armctl_files::sweep(&armctl_files::folder_of(path));
         }
         match self {
             Self::List => run.local("robots.list", &List::of(run)?),

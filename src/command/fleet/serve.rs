@@ -3,7 +3,7 @@
 use clap::Subcommand;
 
 use super::metrics::Metrics;
-use crate::command::frame::run::{Run, RunError};
+use armctl_frame::run::{Run, RunError};
 
 /// Servers.
 #[derive(Debug, Subcommand)]

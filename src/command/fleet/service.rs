@@ -10,16 +10,16 @@ use std::time::{Duration, Instant};
 use tokio::time::sleep;
 
 use super::poll::{Event, RobotId};
-use crate::command::frame::repeat_limiter::{Line, RepeatLimiter};
-use crate::failure::Failure;
-use crate::output::Screen;
-use crate::output::log::Level;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::output::log::Level;
 #[cfg(unix)]
-use crate::output::{escape, log};
-use crate::settings::Robot;
+use armctl_frame::output::{escape, log};
+use armctl_frame::repeat_limiter::{Line, RepeatLimiter};
+use armctl_frame::settings::Robot;
 #[cfg(unix)]
-use crate::transport::journal::{Journal, PLACE};
-use crate::transport::supervisor::Supervisor;
+use armctl_transport::journal::{Journal, PLACE};
+use armctl_transport::supervisor::Supervisor;
 
 /// Time limit for a service to stop.
 pub const END_TIMEOUT: Duration = Duration::from_millis(800);

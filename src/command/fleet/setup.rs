@@ -5,16 +5,16 @@ use clap::Args;
 use super::robots::discover::Discover;
 use super::robots::entry::{NewRobot, check_new};
 use super::robots::file;
-use crate::command::face::layers;
 use crate::command::families::{self, FAMILIES};
-use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::prompt::ask;
-use crate::command::frame::run::{Run, RunError};
-use crate::command::{Access, ConnectMode};
-use crate::failure::{Failure, Kind};
-use crate::output::render;
-use crate::output::view::View;
-use crate::settings::target::{Family, Target, TargetArgument};
+use armctl_frame::face::layers;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::interrupt::{catch_interrupts, interruptible};
+use armctl_frame::output::render;
+use armctl_frame::output::view::View;
+use armctl_frame::prompt::ask;
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::target::{Family, Target, TargetArgument};
+use armctl_frame::{Access, ConnectMode};
 
 /// Asks for address, name and access rights, checks the connection, and writes robots.toml.
 #[derive(Debug, Args)]

@@ -2,18 +2,18 @@
 
 use clap::Args;
 
-use crate::command::face::Face;
-use crate::command::face::overview::OverviewReport;
 use crate::command::families;
-use crate::command::frame::authority::Authority;
-use crate::command::frame::dry_run::Plan;
-use crate::command::frame::script_line::Line;
-use crate::command::frame::share::{can_share, open_shared_session};
-use crate::command::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
-use crate::failure::{Failure, Kind};
-use crate::output::Screen;
-use crate::output::envelope::Envelope;
-use crate::settings::{Robot, target};
+use armctl_frame::authority::Authority;
+use armctl_frame::dry_run::Plan;
+use armctl_frame::face::Face;
+use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::Screen;
+use armctl_frame::output::envelope::Envelope;
+use armctl_frame::script_line::Line;
+use armctl_frame::settings::{Robot, target};
+use armctl_frame::share::{can_share, open_shared_session};
+use armctl_frame::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
 
 /// Robots of any family, for commands that all families support.
 #[derive(Debug)]

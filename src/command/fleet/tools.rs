@@ -7,12 +7,12 @@ use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::face::tool::{Tool, ToolKind, ToolTask};
 use crate::command::families::{self, FAMILIES};
-use crate::command::frame::run::{Run, RunError};
-use crate::command::{Report, SchemaEntry};
-use crate::output::view::{Cell, Table, View};
-use crate::settings::target::Family;
+use armctl_frame::face::tool::{Tool, ToolKind, ToolTask};
+use armctl_frame::output::view::{Cell, Table, View};
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::target::Family;
+use armctl_frame::{Report, SchemaEntry};
 
 /// Arguments of `armctl decode FAMILY`.
 pub type Decode = FamilyTool<Decoding>;

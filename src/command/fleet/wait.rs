@@ -6,12 +6,12 @@ use clap::Args;
 
 use super::common::line::{Reading, SharedLine};
 use super::status::Overview;
-use crate::command::face::overview::OverviewReport;
-use crate::command::frame::condition::{Comparison, Condition};
-use crate::command::frame::run::{Repeat, as_value};
-use crate::command::{AnyCommand, SchemaEntry};
-use crate::failure::Failure;
-use crate::settings::duration;
+use armctl_frame::condition::{Comparison, Condition};
+use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::failure::Failure;
+use armctl_frame::run::{Repeat, as_value};
+use armctl_frame::settings::duration;
+use armctl_frame::{AnyCommand, SchemaEntry};
 
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);
 /// Nouns whose values have names, in the order in which a name is looked for.

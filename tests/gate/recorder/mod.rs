@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use armctl::command::example_lines::robot_lines;
-use armctl::controller::Risk;
+use armctl_controller::Risk;
 
 use super::desk::{CommandResult, Workspace, result_of};
 use crate::support::terminal::Terminal;

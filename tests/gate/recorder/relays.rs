@@ -5,7 +5,7 @@ use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-use armctl::controller::{toyo, yerc};
+use armctl_controller::{toyo, yerc};
 
 use super::{Bench, Effect, Recorder};
 use crate::support::simulator::Simulator;

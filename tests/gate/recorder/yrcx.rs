@@ -3,11 +3,11 @@
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStderr, Command, Stdio};
 
-use armctl::controller::Risk;
-use armctl::controller::yrcx::image::{COMMAND_WORDS, Image};
-use armctl::controller::yrcx::signal::{Side, Signal, resting};
-use armctl::controller::yrcx::table::Row;
-use armctl::settings::target::bus::simulators;
+use armctl_controller::Risk;
+use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
+use armctl_controller::yrcx::signal::{Side, Signal, resting};
+use armctl_controller::yrcx::table::Row;
+use armctl_frame::settings::target::bus::simulators;
 
 use super::{Bench, Effect, Recorder};
 

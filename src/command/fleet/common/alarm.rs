@@ -8,16 +8,16 @@ use serde::Serialize;
 
 use super::Shared;
 use super::line::SharedLine;
-use crate::command::face::shared_commands::SharedVerb;
 use crate::command::fleet::status::{Fleet, Link};
-use crate::command::frame::settings_report::Done;
-use crate::command::frame::watch::Changes;
-use crate::command::robot::alarm::AllAlarms;
-use crate::command::{AnyCommand, Command, ConnectMode, Context, Report, SchemaEntry};
-use crate::failure::Failure;
-use crate::output::envelope::Envelope;
-use crate::output::view::View;
-use crate::settings::{alarms, duration};
+use armctl_frame::face::shared_commands::SharedVerb;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::envelope::Envelope;
+use armctl_frame::output::view::View;
+use armctl_frame::robot::alarm::AllAlarms;
+use armctl_frame::settings::{alarms, duration};
+use armctl_frame::settings_report::Done;
+use armctl_frame::watch::Changes;
+use armctl_frame::{AnyCommand, Command, ConnectMode, Context, Report, SchemaEntry};
 
 /// Alarms of all robots.
 #[derive(Debug, Subcommand)]

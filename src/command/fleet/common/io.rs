@@ -5,11 +5,11 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 
 use super::line::SharedLine;
-use crate::command::frame::watch::Changes;
-use crate::command::robot::io::{Filter, Signals};
-use crate::command::{AnyCommand, SchemaEntry};
-use crate::failure::Failure;
-use crate::settings::duration;
+use armctl_frame::failure::Failure;
+use armctl_frame::robot::io::{Filter, Signals};
+use armctl_frame::settings::duration;
+use armctl_frame::watch::Changes;
+use armctl_frame::{AnyCommand, SchemaEntry};
 
 /// Signals of all robots.
 #[derive(Debug, Subcommand)]

@@ -13,20 +13,20 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::PerRobot;
-use crate::command::face::family_command::{FamilyLine, ParsedCommand};
 use crate::command::families;
-use crate::command::frame::command::AnyContext;
-use crate::command::frame::items::ItemError;
-use crate::command::frame::names;
-use crate::command::frame::report::sheet_of;
-use crate::command::{AnyCommand, AnyReport, ConnectMode, Driver, Outcome, Report};
-use crate::controller::Risk;
-use crate::failure::Failure;
-use crate::gate::{Confirmation, Intent};
-use crate::output::csv::Sheet;
-use crate::output::view::View;
-use crate::settings::Robot;
-use crate::settings::target::Family;
+use armctl_controller::Risk;
+use armctl_frame::command::AnyContext;
+use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
+use armctl_frame::failure::Failure;
+use armctl_frame::gate::{Confirmation, Intent};
+use armctl_frame::items::ItemError;
+use armctl_frame::names;
+use armctl_frame::output::csv::Sheet;
+use armctl_frame::output::view::View;
+use armctl_frame::report::sheet_of;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::Family;
+use armctl_frame::{AnyCommand, AnyReport, ConnectMode, Driver, Outcome, Report};
 
 /// A parsed command, or the error.
 type Parsed = Result<Box<dyn AnyCommand>, Failure>;

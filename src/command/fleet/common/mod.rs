@@ -6,18 +6,18 @@ pub mod line;
 
 use futures_util::future::LocalBoxFuture;
 
-use crate::command::face::shared_commands::SharedVerb;
 use crate::command::families::{self, FAMILIES};
-use crate::command::frame::command::AnyContext;
-use crate::command::frame::settings_report::Done;
-use crate::command::robot::position::AllPositions;
-use crate::command::{Access, AnyCommand, ConnectMode, Connection, Driver, Entry, Outcome, SchemaEntry};
-use crate::failure::Failure;
-use crate::gate::Intent;
-use crate::output::Screen;
-use crate::output::csv::Sheet;
-use crate::settings::Robot;
-use crate::settings::target::{Address, Family};
+use armctl_frame::command::AnyContext;
+use armctl_frame::face::shared_commands::SharedVerb;
+use armctl_frame::failure::Failure;
+use armctl_frame::gate::Intent;
+use armctl_frame::output::Screen;
+use armctl_frame::output::csv::Sheet;
+use armctl_frame::robot::position::AllPositions;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::{Address, Family};
+use armctl_frame::settings_report::Done;
+use armctl_frame::{Access, AnyCommand, ConnectMode, Connection, Driver, Entry, Outcome, SchemaEntry};
 
 /// A verb with the command of each family.
 pub struct Shared {

@@ -3,7 +3,7 @@
 
 use super::board::{Board, RobotMetrics};
 use super::page::{Form, Kind, Page, Samples, labels};
-use crate::controller::units::{DEGREE, MILLIMETRE, PULSE};
+use armctl_controller::units::{DEGREE, MILLIMETRE, PULSE};
 
 /// A metric.
 pub struct Metric {

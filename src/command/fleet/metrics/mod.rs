@@ -26,14 +26,14 @@ use self::board::Board;
 use self::page::Form;
 use super::poll::{Poll, PollRequest, Subscription};
 use super::service::{END_TIMEOUT, Service};
-use crate::command::Report;
-use crate::command::face::sample::Detail;
-use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::run::{Run, RunError};
-use crate::failure::{Failure, Kind, plain};
-use crate::output::log::Level;
-use crate::output::view::View;
-use crate::transport::http::{Answer, Request, Server, Status};
+use armctl_frame::Report;
+use armctl_frame::face::sample::Detail;
+use armctl_frame::failure::{Failure, Kind, plain};
+use armctl_frame::interrupt::{catch_interrupts, interruptible};
+use armctl_frame::output::log::Level;
+use armctl_frame::output::view::View;
+use armctl_frame::run::{Run, RunError};
+use armctl_transport::http::{Answer, Request, Server, Status};
 
 /// Serves metrics of all robots, or of the selected ones, until Ctrl-C or SIGTERM.
 #[derive(Debug, Args)]

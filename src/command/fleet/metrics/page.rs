@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Write as _};
 
-use crate::output::escape;
+use armctl_frame::output::escape;
 
 /// Exposition format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,12 +6,12 @@ use std::time::Duration;
 use super::board::Board;
 use super::catalogue::{METRICS, page};
 use super::page::{Form, Kind};
-use crate::command::face::sample::{Sample, Traffic};
 use crate::command::fleet::poll::{Event, PollResult};
 use crate::command::fleet::top::testing::{fail, fleet, sample, with_alarm};
-use crate::command::robot::alarm::Alarm;
-use crate::command::robot::state::Fault;
-use crate::settings::Robot;
+use armctl_frame::face::sample::{Sample, Traffic};
+use armctl_frame::robot::alarm::Alarm;
+use armctl_frame::robot::state::Fault;
+use armctl_frame::settings::Robot;
 
 fn poll_event(robot: &Arc<Robot>, sample: Sample) -> Event {
     let traffic = Traffic { sent: 5, received: 4, disturbances: 1 };

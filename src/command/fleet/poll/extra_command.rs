@@ -9,14 +9,14 @@ use std::sync::Arc;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches};
 
-use crate::command::AnyCommand;
-use crate::command::face::family_command::{FamilyLine, ParsedCommand};
 use crate::command::families;
-use crate::command::frame::names;
-use crate::controller::Risk;
-use crate::failure::Failure;
-use crate::settings::Robot;
-use crate::settings::target::Family;
+use armctl_controller::Risk;
+use armctl_frame::AnyCommand;
+use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
+use armctl_frame::failure::Failure;
+use armctl_frame::names;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::Family;
 
 /// An extra command. Two with the same text are the same.
 pub struct Extra {

@@ -10,7 +10,7 @@
 //! | `poll_request` | needs of the consumers, and their sum |
 //! | `extra_command` | extra read commands with each poll |
 //!
-//! The poller only reads, through links in [`ConnectMode::Monitor`](crate::command::ConnectMode). It opens no control
+//! The poller only reads, through links in [`ConnectMode::Monitor`](armctl_frame::ConnectMode). It opens no control
 //! connection to a YRCX. If a session has the link, it polls through the session.
 
 mod extra_command;
@@ -39,11 +39,11 @@ use self::poll_request::MergedRequests;
 pub use self::poll_request::PollRequest;
 use self::robot_loop::{RobotTask, follow};
 use self::roster::Roster;
-use crate::command::face::sample::{Sample, Traffic};
-use crate::failure::Failure;
-use crate::output::Screen;
-use crate::settings::target::Family;
-use crate::settings::{Robot, Sources};
+use armctl_frame::face::sample::{Sample, Traffic};
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::settings::target::Family;
+use armctl_frame::settings::{Robot, Sources};
 
 /// Unique id of a polled robot. The name is not enough: simulators of several families have the same name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -6,7 +6,7 @@ use std::time::Duration;
 use tokio::sync::watch;
 
 use super::{Extra, RobotId};
-use crate::command::face::sample::Detail;
+use armctl_frame::face::sample::Detail;
 
 /// Needs of one consumer, for all robots.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,15 +11,15 @@ use tokio::time::{Instant, sleep_until, timeout};
 use super::extra_command::Read;
 use super::poll_request::MergedRequests;
 use super::{CLOSE_TIMEOUT, Event, EventSender, Extra, PollResult, RobotId, wait_for_stop};
-use crate::command::face::Watch;
-use crate::command::face::sample::Traffic;
 use crate::command::families;
-use crate::command::frame::attach::is_held;
-use crate::command::frame::share::open_shared_session;
-use crate::command::{Access, ConnectMode, Entry};
-use crate::failure::{Failure, Kind};
-use crate::output::Screen;
-use crate::settings::Robot;
+use armctl_frame::attach::is_held;
+use armctl_frame::face::Watch;
+use armctl_frame::face::sample::Traffic;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::Screen;
+use armctl_frame::settings::Robot;
+use armctl_frame::share::open_shared_session;
+use armctl_frame::{Access, ConnectMode, Entry};
 
 /// Polling task of one robot.
 pub(super) struct RobotTask {

@@ -7,10 +7,10 @@ use std::time::{Duration, SystemTime};
 use tokio::time::{Instant, sleep_until};
 
 use crate::command::families;
-use crate::command::frame::attach::identify;
-use crate::failure::Failure;
-use crate::settings::inventory::{Inventory, Location};
-use crate::settings::{Robot, Sources};
+use armctl_frame::attach::identify;
+use armctl_frame::failure::Failure;
+use armctl_frame::settings::inventory::{Inventory, Location};
+use armctl_frame::settings::{Robot, Sources};
 
 /// Interval of the file check. A changed file is read after two equal checks, so that it is complete.
 const CHECK_INTERVAL: Duration = Duration::from_secs(1);

@@ -11,11 +11,11 @@ use tempfile::TempDir;
 use tokio::time::Instant;
 
 use super::{Event, Extra, Poll, PollRequest, RobotId, Subscription};
-use crate::command::face::sample::{Detail, Sample, Traffic};
-use crate::failure::{Failure, Kind};
-use crate::output::Screen;
-use crate::settings::inventory::{Inventory, Location};
-use crate::settings::{Selection, Sources};
+use armctl_frame::face::sample::{Detail, Sample, Traffic};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::Screen;
+use armctl_frame::settings::inventory::{Inventory, Location};
+use armctl_frame::settings::{Selection, Sources};
 
 const EVERY: Duration = Duration::from_millis(100);
 

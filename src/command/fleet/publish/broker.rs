@@ -12,8 +12,8 @@ use clap::{Args, ValueEnum};
 
 use super::error_text;
 use super::uplink::{Endpoint, Hello, Identity, Tls, Trust, Version, Will};
-use crate::failure::Failure;
-use crate::files;
+use armctl_files as files;
+use armctl_frame::failure::Failure;
 
 /// Keepalive interval of the connection.
 const KEEP_ALIVE: Duration = Duration::from_secs(30);

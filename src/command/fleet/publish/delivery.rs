@@ -19,9 +19,9 @@ use super::outbox::{Outbox, Ticket};
 use super::uplink::{Event, Loss, Message, Refusal, SendError, Will};
 use crate::command::fleet::poll::Event as Found;
 use crate::command::fleet::service::END_TIMEOUT;
-use crate::failure::{Failure, Kind, plain};
-use crate::output::log::Level;
-use crate::settings::duration;
+use armctl_frame::failure::{Failure, Kind, plain};
+use armctl_frame::output::log::Level;
+use armctl_frame::settings::duration;
 
 /// Limits of messages in transit: with and without acknowledgement.
 const WINDOW: usize = 64;

@@ -2,7 +2,7 @@
 
 use super::broker::Url;
 use super::uplink::{Loss, Refusal, TlsError, Version};
-use crate::failure::{Failure, Kind};
+use armctl_frame::failure::{Failure, Kind};
 
 /// Return codes of MQTT 3.1.1, section 3.2.2.3: meaning, hint, and whether it concerns a setting.
 const RETURN_CODES: [(u8, &str, &str, bool); 5] = [

@@ -5,8 +5,8 @@ use std::rc::Rc;
 use super::Kind;
 use super::topic;
 use crate::command::fleet::poll::Extra;
-use crate::failure::Failure;
-use crate::settings::target::Family;
+use armctl_frame::failure::Failure;
+use armctl_frame::settings::target::Family;
 
 /// An extra command and its topic level.
 #[derive(Debug)]

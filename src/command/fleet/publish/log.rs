@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::delivery::Listener;
 use crate::command::fleet::service::Service;
-use crate::output::log::Level;
+use armctl_frame::output::log::Level;
 
 /// Logs broker events with a journal field, and keeps the connection state.
 pub struct BrokerLog<'a> {

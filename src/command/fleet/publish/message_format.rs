@@ -4,7 +4,7 @@
 
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::Event;
-use crate::output::log::Level;
+use armctl_frame::output::log::Level;
 
 use super::outbox::Record;
 

@@ -56,15 +56,15 @@ use self::spool::Spool;
 use self::topic::Levels;
 use crate::command::fleet::poll::{Event, Poll, PollRequest, RobotId, Subscription};
 use crate::command::fleet::service::{END_TIMEOUT, Service};
-use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::local_names::state_folder;
-use crate::command::frame::run::{Run, RunError};
-use crate::command::{Report, SchemaEntry};
-use crate::failure::Failure;
-use crate::files;
-use crate::output::log::Level;
-use crate::output::view::{Cell, Tone, View};
-use crate::settings::duration;
+use armctl_files as files;
+use armctl_frame::failure::Failure;
+use armctl_frame::interrupt::{catch_interrupts, interruptible};
+use armctl_frame::local_names::state_folder;
+use armctl_frame::output::log::Level;
+use armctl_frame::output::view::{Cell, Tone, View};
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::duration;
+use armctl_frame::{Report, SchemaEntry};
 
 /// Publish changes of robots to an MQTT broker.
 #[derive(Debug, Args)]

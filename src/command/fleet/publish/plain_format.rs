@@ -17,14 +17,14 @@ use super::message_format::{MessageFormat, Reaction};
 use super::outbox::Record;
 use super::topic::Levels;
 use super::uplink::{Message, Will};
-use crate::command::face::overview::OverviewReport;
 use crate::command::fleet::poll::{Event, PollResult, RobotId};
-use crate::command::robot::alarm::Alarm;
-use crate::command::robot::state::PositionMm;
-use crate::failure::Failure;
-use crate::output::envelope::Envelope;
-use crate::output::log::Level;
-use crate::settings::Robot;
+use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::envelope::Envelope;
+use armctl_frame::output::log::Level;
+use armctl_frame::robot::alarm::Alarm;
+use armctl_frame::robot::state::PositionMm;
+use armctl_frame::settings::Robot;
 
 /// The alarms and errors of a robot.
 #[derive(Debug, Clone, Serialize, JsonSchema)]

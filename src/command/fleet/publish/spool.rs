@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest as _, Sha256};
 
 use super::outbox::Record;
-use crate::files;
+use armctl_files as files;
 
 /// Size limit of a record in bytes.
 const LARGEST: usize = 1 << 20;

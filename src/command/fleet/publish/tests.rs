@@ -18,16 +18,16 @@ use super::spool::Spool;
 use super::topic::Levels;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
 use super::{ExtraTopic, Kind, MessageFormat};
-use crate::command::face::overview::OverviewReport;
-use crate::command::face::sample::{Sample, Traffic};
 use crate::command::fleet::poll::{Event as Found, PollResult};
 use crate::command::fleet::service::END_TIMEOUT;
-use crate::command::robot::alarm::Alarm;
-use crate::command::robot::state::{Mode, PositionMm, State};
-use crate::failure::{self, Failure};
-use crate::output::log::Level;
-use crate::settings::inventory::Inventory;
-use crate::settings::{Robot, Selection, Sources};
+use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::face::sample::{Sample, Traffic};
+use armctl_frame::failure::{self, Failure};
+use armctl_frame::output::log::Level;
+use armctl_frame::robot::alarm::Alarm;
+use armctl_frame::robot::state::{Mode, PositionMm, State};
+use armctl_frame::settings::inventory::Inventory;
+use armctl_frame::settings::{Robot, Selection, Sources};
 
 /// A robot with this name.
 pub fn robot(name: &str) -> Arc<Robot> {

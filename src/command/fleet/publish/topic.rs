@@ -6,8 +6,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::failure::Failure;
-use crate::settings::Robot;
+use armctl_frame::failure::Failure;
+use armctl_frame::settings::Robot;
 
 /// Topic levels of robots. If several robots have the same name, as simulators do, the family is appended.
 #[derive(Debug, Clone, Default)]

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::broker::Broker;
 use super::delivery;
-use crate::transport::mqtt::Client;
-pub use crate::transport::mqtt::{
+use armctl_transport::mqtt::Client;
+pub use armctl_transport::mqtt::{
     Endpoint, Event, Hello, Identity, Loss, Message, Refusal, SendError, Tls, TlsError, Trust, Version, Will,
 };
 

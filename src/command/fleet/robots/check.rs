@@ -4,16 +4,16 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::ValueKind;
-use crate::command::face::layers;
-use crate::command::face::layers::Layer;
 use crate::command::families;
-use crate::command::frame::dry_run::Plan;
-use crate::command::{Access, Command, ConnectMode, Context, Family, Report};
-use crate::failure::{Failure, Kind};
-use crate::output::Screen;
-use crate::output::view::View;
-use crate::settings::{Robot, target};
+use armctl_frame::ValueKind;
+use armctl_frame::dry_run::Plan;
+use armctl_frame::face::layers;
+use armctl_frame::face::layers::Layer;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::Screen;
+use armctl_frame::output::view::View;
+use armctl_frame::settings::{Robot, target};
+use armctl_frame::{Access, Command, ConnectMode, Context, Family, Report};
 
 /// Checks each layer of the connection between this computer and the robot, and says what to set. Changes nothing. Exit
 /// code 8 if a layer failed.

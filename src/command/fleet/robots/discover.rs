@@ -6,15 +6,15 @@ use clap::{Args, FromArgMatches as _};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::frame::run::{Run, RunError};
-use crate::command::toyo::ports::{self, Port};
-use crate::command::yrcx::buses::Searches;
-use crate::command::yrcx::discover::{self, FoundDevice};
-use crate::command::yrcx::fieldbus::Scope;
-use crate::command::{Access, ConnectMode, Report};
-use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
-use crate::settings::duration;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Table, View};
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::duration;
+use armctl_frame::{Access, ConnectMode, Report};
+use armctl_toyo::ports::{self, Port};
+use armctl_yrcx::buses::Searches;
+use armctl_yrcx::discover::{self, FoundDevice};
+use armctl_yrcx::fieldbus::Scope;
 
 /// Searches for controllers (ListIdentity), and lists serial ports without opening them.
 #[derive(Debug, Args)]

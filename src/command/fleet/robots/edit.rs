@@ -7,13 +7,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::file;
-use crate::command::Report;
-use crate::command::frame::editor_session::open_editor;
-use crate::command::frame::run::{Run, RunError};
-use crate::failure::Failure;
-use crate::files;
-use crate::output::view::View;
-use crate::settings::inventory::Inventory;
+use armctl_files as files;
+use armctl_frame::Report;
+use armctl_frame::editor_session::open_editor;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::View;
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::inventory::Inventory;
 
 /// Content of a new file.
 const TEMPLATE: &str = "# The robots of this site. `armctl help inventory` describes this file.\n";

@@ -6,18 +6,18 @@ use serde::Serialize;
 use toml_edit::{Array, Table, Value, value};
 
 use super::file::change;
-use crate::command::frame::run::{Run, RunError};
-use crate::command::{Candidate, Report, ValueKind};
-use crate::controller::nearest::nearest;
-use crate::controller::text::Encoding;
-use crate::controller::yerc::Model;
-use crate::failure::Failure;
-use crate::output::jq::failure_after_change;
-use crate::output::view::{self, Cell, View};
-use crate::settings::duration;
-use crate::settings::inventory::{Entry, Inventory, is_name, named};
-use crate::settings::model::ModelSetting;
-use crate::settings::target::{Family, Target, TargetArgument};
+use armctl_controller::nearest::nearest;
+use armctl_controller::text::Encoding;
+use armctl_controller::yerc::Model;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::jq::failure_after_change;
+use armctl_frame::output::view::{self, Cell, View};
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::duration;
+use armctl_frame::settings::inventory::{Entry, Inventory, is_name, named};
+use armctl_frame::settings::model::ModelSetting;
+use armctl_frame::settings::target::{Family, Target, TargetArgument};
+use armctl_frame::{Candidate, Report, ValueKind};
 
 /// Arguments of `robots add`.
 #[derive(Debug, Args)]

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use anyhow::Context as _;
 
-use crate::command::frame::run::Run;
-use crate::failure::{Failure, Kind};
-use crate::files;
-use crate::output::busy_work::register;
-use crate::settings::document::{Document, DocumentError};
-use crate::settings::inventory::Inventory;
+use armctl_files as files;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::busy_work::register;
+use armctl_frame::run::Run;
+use armctl_frame::settings::document::{Document, DocumentError};
+use armctl_frame::settings::inventory::Inventory;
 
 /// Path of the inventory file, whether it exists or not.
 pub fn path(run: &Run) -> Result<&Path, Failure> {

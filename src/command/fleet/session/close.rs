@@ -5,21 +5,21 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::list::locations;
-use crate::command::Report;
-use crate::command::ValueKind;
 use crate::command::families;
-use crate::command::frame::attach::{attach_failure, folder_failure, identify};
-use crate::command::frame::interrupt::catch_interrupts;
-use crate::command::frame::prompt::ask;
-use crate::command::frame::run::{Run, RunError};
-use crate::controller::nearest::nearest;
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Table, View};
-use crate::settings::Robot;
-use crate::settings::target::Target;
-use crate::transport::session::client::{AttachError, close};
-use crate::transport::session::location::SessionPath;
-use crate::transport::session::wire::Info;
+use armctl_controller::nearest::nearest;
+use armctl_frame::Report;
+use armctl_frame::ValueKind;
+use armctl_frame::attach::{attach_failure, folder_failure, identify};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::interrupt::catch_interrupts;
+use armctl_frame::output::view::{Table, View};
+use armctl_frame::prompt::ask;
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::Target;
+use armctl_transport::session::client::{AttachError, close};
+use armctl_transport::session::location::SessionPath;
+use armctl_transport::session::wire::Info;
 
 /// Arguments of `session close`.
 #[derive(Debug, Args)]

@@ -12,17 +12,17 @@ use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::{JoinSet, LocalSet};
 
 use super::watched_entry::WatchedEntry;
-use crate::command::Access;
-use crate::command::face::HeldLink;
 use crate::command::families;
-use crate::command::frame::attach::{folder_failure, in_use, info, session_key};
-use crate::command::frame::session_manager::{HeldBy, ManagerRequest, SessionManager};
-use crate::failure::Failure;
-use crate::guardian::{self, SessionGuardian};
-use crate::output::Screen;
-use crate::settings::Robot;
-use crate::transport::session::host::{EndReason, Host};
-use crate::transport::session::location::{LockResult, SessionFolder};
+use armctl_frame::Access;
+use armctl_frame::attach::{folder_failure, in_use, info, session_key};
+use armctl_frame::face::HeldLink;
+use armctl_frame::failure::Failure;
+use armctl_frame::guardian::{self, SessionGuardian};
+use armctl_frame::output::Screen;
+use armctl_frame::session_manager::{HeldBy, ManagerRequest, SessionManager};
+use armctl_frame::settings::Robot;
+use armctl_transport::session::host::{EndReason, Host};
+use armctl_transport::session::location::{LockResult, SessionFolder};
 
 /// A link that this process holds, with clients.
 pub struct SessionHost {

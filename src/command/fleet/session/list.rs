@@ -7,14 +7,14 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::Report;
-use crate::command::frame::attach::folder_failure;
-use crate::command::frame::run::{Run, RunError};
-use crate::failure::Failure;
-use crate::output::view::{Cell, Table, Tone, View};
-use crate::transport::session::client::{AttachError, status};
-use crate::transport::session::location::{SessionFolder, SessionPath};
-use crate::transport::session::wire::{Leftover, Peer, Status, VERSION};
+use armctl_frame::Report;
+use armctl_frame::attach::folder_failure;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Table, Tone, View};
+use armctl_frame::run::{Run, RunError};
+use armctl_transport::session::client::{AttachError, status};
+use armctl_transport::session::location::{SessionFolder, SessionPath};
+use armctl_transport::session::wire::{Leftover, Peer, Status, VERSION};
 
 /// Arguments of `session list`.
 #[derive(Debug, Args)]

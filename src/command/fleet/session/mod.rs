@@ -11,7 +11,7 @@ use clap::Subcommand;
 pub use close::Closed;
 pub use list::Sessions;
 
-use crate::command::frame::run::{Run, RunError};
+use armctl_frame::run::{Run, RunError};
 
 /// Commands for sessions.
 #[derive(Debug, Subcommand)]

@@ -11,23 +11,23 @@ use clap::Args;
 use jiff::Timestamp;
 
 use super::host::{OpenResult, SessionHost};
-use crate::command::ValueKind;
 use crate::command::families;
-use crate::command::frame::attach::{folder_failure, format_since, identify, session_key};
-use crate::command::frame::background::{self, Opened, Start};
-use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::repeat_limiter::{Line, RepeatLimiter};
-use crate::command::frame::run::{Run, RunError};
-use crate::command::{Access, ConnectMode};
-use crate::failure::{Failure, Kind};
-use crate::output::Screen;
-use crate::output::log::Level;
-use crate::settings::target::Family;
-use crate::settings::{Robot, duration};
-use crate::transport::session::client::status;
-use crate::transport::session::host::EndReason;
-use crate::transport::session::leave_terminal;
-use crate::transport::session::location::{SessionFolder, SessionPath};
+use armctl_frame::ValueKind;
+use armctl_frame::attach::{folder_failure, format_since, identify, session_key};
+use armctl_frame::background::{self, Opened, Start};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::interrupt::{catch_interrupts, interruptible};
+use armctl_frame::output::Screen;
+use armctl_frame::output::log::Level;
+use armctl_frame::repeat_limiter::{Line, RepeatLimiter};
+use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::target::Family;
+use armctl_frame::settings::{Robot, duration};
+use armctl_frame::{Access, ConnectMode};
+use armctl_transport::session::client::status;
+use armctl_transport::session::host::EndReason;
+use armctl_transport::session::leave_terminal;
+use armctl_transport::session::location::{SessionFolder, SessionPath};
 
 /// Arguments of `session open`.
 #[derive(Debug, Args)]

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::time::SystemTime;
 
-use crate::settings::inventory::{Inventory, Location};
-use crate::settings::{Robot, Sources};
+use armctl_frame::settings::inventory::{Inventory, Location};
+use armctl_frame::settings::{Robot, Sources};
 
 /// Inventory entry that is read again after each change of the file. Once the robot is read-only, it stays so.
 pub struct WatchedEntry {

@@ -17,10 +17,10 @@ mod view;
 use clap::Args;
 
 pub use self::screen_loop::show;
-use crate::controller::Risk;
-use crate::failure::Failure;
-use crate::gate::{Confirmation, Intent};
-use crate::settings::target::Family;
+use armctl_controller::Risk;
+use armctl_frame::failure::Failure;
+use armctl_frame::gate::{Confirmation, Intent};
+use armctl_frame::settings::target::Family;
 
 /// Arguments of `teach`; `crate::app` runs it.
 #[derive(Debug, Args)]

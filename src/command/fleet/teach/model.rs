@@ -6,8 +6,8 @@ use std::collections::VecDeque;
 use serde_json::Value;
 
 use super::keys::KeyAction;
-use crate::command::face::teach_panel::{Panel, System};
-use crate::failure::{Failure, Kind};
+use armctl_frame::face::teach_panel::{Panel, System};
+use armctl_frame::failure::{Failure, Kind};
 
 /// Number of past commands kept.
 const MAX_HISTORY: usize = 20;

@@ -13,15 +13,15 @@ use super::keys::action;
 use super::model::{Model, PanelCommand};
 use super::view::{Robot as Shown, draw};
 use super::{CommandRunner, Teach};
-use crate::command::face::teach_panel::{Panel, SmallStep, Step};
 use crate::command::fleet::poll::{Poll, PollRequest as Looks, RobotId, Subscription};
 use crate::command::fleet::top;
-use crate::command::frame::interrupt::termination_request;
-use crate::failure::{Failure, Kind};
-use crate::output::Screen;
-use crate::output::fullscreen::{Event, Fullscreen, Keys};
-use crate::output::painter::Palette;
-use crate::settings::Robot;
+use armctl_frame::face::teach_panel::{Panel, SmallStep, Step};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::interrupt::termination_request;
+use armctl_frame::output::Screen;
+use armctl_frame::output::fullscreen::{Event, Fullscreen, Keys};
+use armctl_frame::output::painter::Palette;
+use armctl_frame::settings::Robot;
 
 /// Polling interval, and interval of screen updates.
 const POLL_INTERVAL: Duration = Duration::from_millis(250);

@@ -14,9 +14,9 @@ use super::view::{Robot, render};
 use crate::command::families;
 use crate::command::fleet::top;
 use crate::command::fleet::top::testing::{fleet, sample};
-use crate::failure::{Failure, Kind};
-use crate::output::painter::Palette;
-use crate::settings::target::Family;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::painter::Palette;
+use armctl_frame::settings::target::Family;
 
 fn model(family: Family) -> Model {
     Model::new(families::of(family).panel(), 10.0, 10)

@@ -8,8 +8,8 @@ use ratatui::style::{Modifier, Style};
 use super::keys::KEYS;
 use super::model::{HistoryEntry, Model, PointUse, Prompt};
 use crate::command::fleet::top;
-use crate::output::painter::{Painter, Palette, line_of, rest_after, to_ascii, wrap};
-use crate::output::view::Tone;
+use armctl_frame::output::painter::{Painter, Palette, line_of, rest_after, to_ascii, wrap};
+use armctl_frame::output::view::Tone;
 
 /// Lines of the panel, and the limit of lines for past commands.
 const PANEL: u16 = 3;

@@ -1,7 +1,7 @@
 //! Key bindings of `top`. No key sends anything to a robot.
 
-use crate::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use crate::output::painter::Explained;
+use armctl_frame::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use armctl_frame::output::painter::Explained;
 
 /// Action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

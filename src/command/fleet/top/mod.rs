@@ -25,11 +25,11 @@ pub use self::model::Model;
 use self::view::Palette;
 pub use self::view::robot;
 use crate::command::fleet::poll::{self, Poll, PollRequest, RobotId, Subscription};
-use crate::command::frame::interrupt::{catch_interrupts, interruptible};
-use crate::command::frame::run::{Run, RunError};
-use crate::failure::{Failure, Kind};
-use crate::output::Format;
-use crate::output::fullscreen::{Event, Fullscreen, Keys};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::interrupt::{catch_interrupts, interruptible};
+use armctl_frame::output::Format;
+use armctl_frame::output::fullscreen::{Event, Fullscreen, Keys};
+use armctl_frame::run::{Run, RunError};
 
 /// Full-screen live monitor of one or all robots.
 #[derive(Debug, Args)]

@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use super::keys::KeyAction;
 use super::track::Track;
-use crate::command::face::sample::Sample;
 use crate::command::fleet::poll::{Event, RobotId};
-use crate::failure::{Failure, Kind};
-use crate::output::view::Tone;
-use crate::settings::{Robot, target};
+use armctl_frame::face::sample::Sample;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::view::Tone;
+use armctl_frame::settings::{Robot, target};
 
 /// Time since the view started.
 pub type Moment = Duration;
@@ -437,7 +437,7 @@ fn nearest(every: Duration, faster: bool) -> Duration {
 mod tests {
     use super::super::testing::{fail, fleet, sample};
     use super::*;
-    use crate::command::robot::state::Fault;
+    use armctl_frame::robot::state::Fault;
 
     const NOW: Moment = Duration::from_secs(10);
     const EVERY: Duration = Duration::from_millis(500);

@@ -1,13 +1,13 @@
 //! Robots and samples for tests.
 
-use crate::command::face::overview::OverviewReport;
-use crate::command::face::sample::{Axis, Bank, Indicator, Sample, SignalByte, Whole};
-use crate::command::robot::alarm::Alarm;
-use crate::command::robot::state::{Fault, Mode, PositionMm, State};
-use crate::failure::{Failure, Kind};
-use crate::output::view::Tone;
-use crate::settings::inventory::Inventory;
-use crate::settings::{Robot, Selection, Sources};
+use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::face::sample::{Axis, Bank, Indicator, Sample, SignalByte, Whole};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::view::Tone;
+use armctl_frame::robot::alarm::Alarm;
+use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
+use armctl_frame::settings::inventory::Inventory;
+use armctl_frame::settings::{Robot, Selection, Sources};
 
 use std::time::Duration;
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::model::Moment;
-use crate::command::face::sample::Axis;
+use armctl_frame::face::sample::Axis;
 
 /// Limit of stored points.
 const POINTS: usize = 600;

@@ -8,7 +8,7 @@ use srad_types::payload::{DataType, Metric, PropertySet, PropertyValue};
 use super::super::Kind;
 use super::super::extra_topic::ExtraTopic;
 use crate::command::fleet::poll::PollResult;
-use crate::command::robot::state::Mode;
+use armctl_frame::robot::state::Mode;
 
 /// Limit of metrics per extra command.
 const MAX_METRICS: usize = 2000;

@@ -24,8 +24,8 @@ use super::outbox::Record;
 use super::topic::Levels;
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::{Event, PollResult};
-use crate::output::log::Level;
-use crate::settings::Robot;
+use armctl_frame::output::log::Level;
+use armctl_frame::settings::Robot;
 
 /// Minimum time between two births at the request of a host.
 const BIRTHS_MS: u64 = 1000;

@@ -12,8 +12,8 @@ use ratatui::widgets::canvas::{Canvas, Line};
 use super::whole;
 use crate::command::fleet::top::model::Moment;
 use crate::command::fleet::top::track::window;
-use crate::output::painter::{Painter, line_of, rest_after, width};
-use crate::output::view::Tone;
+use armctl_frame::output::painter::{Painter, line_of, rest_after, width};
+use armctl_frame::output::view::Tone;
 
 /// Data of a chart.
 #[derive(Debug)]

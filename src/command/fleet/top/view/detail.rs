@@ -5,12 +5,12 @@ use ratatui::style::{Modifier, Style};
 
 use super::chart::{self, Chart};
 use super::{answer, format_interval};
-use crate::command::face::sample::{Axis, Bank, Indicator, Sample, Whole};
 use crate::command::fleet::top::model::{Contact, Model, Moment, RobotRow};
 use crate::command::fleet::top::track::Track;
-use crate::command::robot::alarm::Alarm;
-use crate::output::painter::{Painter, line_of, rest_after, width, wrap};
-use crate::output::view::Tone;
+use armctl_frame::face::sample::{Axis, Bank, Indicator, Sample, Whole};
+use armctl_frame::output::painter::{Painter, line_of, rest_after, width, wrap};
+use armctl_frame::output::view::Tone;
+use armctl_frame::robot::alarm::Alarm;
 
 /// Width of the axes next to a chart, and minimum width of a chart.
 const AXES: u16 = 46;
@@ -285,7 +285,7 @@ mod tests {
     #[test]
     fn computes_the_lines_of_signals() {
         let bank =
-            |groups| Bank { name: "inputs", groups: vec![crate::command::face::sample::SignalByte::default(); groups] };
+            |groups| Bank { name: "inputs", groups: vec![armctl_frame::face::sample::SignalByte::default(); groups] };
         assert_eq!(signal_lines(&[bank(4), bank(4)], 80), 3);
         assert_eq!(signal_lines(&[bank(4), bank(4)], 50), 5);
         assert_eq!(signal_lines(&[bank(0)], 80), 0);

@@ -5,8 +5,8 @@ use ratatui::style::{Modifier, Style};
 
 use super::{answer, format_interval};
 use crate::command::fleet::top::model::{Contact, Model, Moment, RobotRow, Severity, Sort};
-use crate::output::painter::{self, Painter, line_of, rest_after, width};
-use crate::output::view::Tone;
+use armctl_frame::output::painter::{self, Painter, line_of, rest_after, width};
+use armctl_frame::output::view::Tone;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Column {

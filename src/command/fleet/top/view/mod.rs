@@ -13,9 +13,9 @@ use ratatui::style::{Modifier, Style};
 
 use super::keys::KEYS;
 use super::model::{Model, Moment, RobotRow};
-pub use crate::output::painter::Palette;
-use crate::output::painter::{Painter, line_of, rest_after, to_ascii};
-use crate::output::view::Tone;
+pub use armctl_frame::output::painter::Palette;
+use armctl_frame::output::painter::{Painter, line_of, rest_after, to_ascii};
+use armctl_frame::output::view::Tone;
 
 /// Draws the screen.
 pub fn draw(frame: &mut Frame<'_>, model: &Model, now: Moment, palette: Palette) {

@@ -27,7 +27,7 @@ fn picture(model: &Model, now: Moment, columns: u16, lines: u16, palette: Palett
         for cell in row {
             if hidden == 0 {
                 text.push_str(cell.symbol());
-                hidden = crate::output::painter::width(cell.symbol());
+                hidden = armctl_frame::output::painter::width(cell.symbol());
             }
             hidden = hidden.saturating_sub(1);
         }

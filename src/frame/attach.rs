@@ -1,0 +1,297 @@
+//! Client side of sessions: detection of a session that holds the link of a robot, and connection to it.
+
+use std::path::Path;
+use std::time::Duration;
+
+use jiff::Timestamp;
+use jiff::tz::TimeZone;
+use tokio::time::timeout;
+
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::target::{self, Address, Family, Target};
+use crate::settings::{Robot, Sessions, Sources};
+use crate::{Access, Driver};
+use armctl_transport::session::client::{self, AttachError, AttachResult, Attached, SessionBusy};
+use armctl_transport::session::location::{self, Claim, LocationError, SessionFolder, SessionPath, key};
+use armctl_transport::session::process;
+use armctl_transport::session::wire::{Info, Peer, Purpose};
+
+/// Session of the robot, if one is open and `--no-session` is not set.
+pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+    let attached = find_session(robot, access, screen).await?;
+    if attached.is_none() && robot.sessions == Sessions::Only {
+        let failure = Failure::new(Kind::NoAnswer, format!("{}: no session is open", robot.label()));
+        return Err(failure.hint("open a session with `armctl session open`"));
+    }
+    Ok(attached)
+}
+
+/// Access to a controller that accepts one client.
+pub enum LockResult {
+    /// Through its session.
+    Session(Box<Attached>),
+    /// With an own link; the claim keeps other processes of this computer from opening one.
+    Own(Option<Claim>),
+}
+
+/// Session of a link that accepts one client, or the claim to open the link. Waits a short time for another command
+/// that has the claim.
+pub async fn lock_soon(robot: &Robot, access: &Access, screen: &Screen) -> Result<LockResult, Failure> {
+    loop {
+        if let Some(attached) = attach(robot, access, screen).await? {
+            return Ok(LockResult::Session(attached));
+        }
+        // A stop does not wait, and a simulator in this process has no other clients.
+        let is_alone = robot.target.value.is_simulated() || robot.sessions == Sessions::None || access.is_stop;
+        // Without a session folder, processes cannot coordinate.
+        let Some(place) = (if is_alone { None } else { SessionFolder::create().ok() }) else {
+            return Ok(LockResult::Own(None));
+        };
+        let location = place.location(&session_key(robot));
+        match location.lock_soon(&info(robot, access)).await {
+            Ok(location::LockResult::Locked(claim)) => return Ok(LockResult::Own(Some(claim))),
+            Ok(location::LockResult::Session) => {}
+            Ok(location::LockResult::Busy) => return Err(in_use(robot, &location)),
+            Err(_) => return Ok(LockResult::Own(None)),
+        }
+    }
+}
+
+/// Information about this process for other processes that wait for its link.
+pub fn info(robot: &Robot, access: &Access) -> Info {
+    Info::own(&robot.name, robot.family.name(), robot.target.value.url(), &command_line(access))
+}
+
+/// Failure for a link that another command uses.
+pub fn in_use(robot: &Robot, location: &SessionPath) -> Failure {
+    let process = location.owner().map_or_else(
+        || "another process".to_owned(),
+        |Info { pid, command, .. }| format!("process {pid} (`{command}`)"),
+    );
+    Failure::new(
+        Kind::NoAnswer,
+        format!("{}: the controller accepts one client, and {process} is connected", robot.label()),
+    )
+    .hint("wait until it ends, or use `armctl session open` first so that commands share the connection")
+}
+
+async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
+    if robot.sessions == Sessions::None || access.dry_run {
+        return Ok(None);
+    }
+    let bypasses_session = access.is_stop && matches!(robot.target.value.place, target::Place::Udp(_));
+    let limit = if bypasses_session { STOP_TIMEOUT } else { Duration::MAX };
+    let purpose = match access {
+        Access { is_stop: true, .. } => Purpose::Stop,
+        Access { leaves_motion: true, .. } => Purpose::LeavesMotion,
+        _ => Purpose::Any,
+    };
+    let (key, typed) = (session_key(robot), command_line(access));
+    let attaching = client::attach(&key, &typed, purpose);
+    let attached = match timeout(limit, attaching).await.unwrap_or(Err(AttachError::Silent)) {
+        Ok(AttachResult::Session(attached)) => attached,
+        Ok(AttachResult::Nothing) => return Ok(None),
+        Ok(AttachResult::Dead) => {
+            let open = "`armctl session open` opens a new session, `armctl session close` removes the old one";
+            screen.note(&format!(
+                "{}: the session process has ended, so the command runs without it; {open}",
+                robot.label()
+            ));
+            return Ok(None);
+        }
+        // A folder of another user is not used: there is no session, but the user may expect one.
+        Err(AttachError::Location(error @ LocationError::Unsafe { .. })) => {
+            screen.note(&format!("warning: sessions are not used: {error}"));
+            return Ok(None);
+        }
+        // A controller on UDP accepts a stop from any client.
+        Err(AttachError::Silent) if bypasses_session => {
+            screen.note(&format!(
+                "{}: {} does not respond, so the stop is sent directly",
+                robot.label(),
+                holder(robot)
+            ));
+            return Ok(None);
+        }
+        Err(AttachError::Silent) => return Err(unresponsive_session(robot)),
+        Err(error) => return Err(attach_failure(&robot.label(), &error)),
+    };
+    let welcome = &attached.welcome;
+    if screen.verbosity > 0 {
+        // Computing the local time takes longer than the rest of a status command, so it is done only for `-v`.
+        let since = format_since(welcome.for_ms);
+        let through = format!("through the session of process {}, open since {since}", welcome.pid);
+        screen.detail(1, &format!("{}: {through}", robot.label()));
+    }
+    if let Some(leftover) = welcome.leftover.as_ref().filter(|leftover| leftover.died) {
+        let peer = peer(&leftover.by);
+        screen.note(&format!("{}: a client ended and left a command running: {peer}", robot.label()));
+    }
+    if let Some(why) = &welcome.down {
+        screen.note(&format!("{}: the session has lost its connection: {why}; reconnecting", robot.label()));
+    }
+    if access.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
+        let missing = "the session itself records packets and addresses (yrcx: `armctl session open --trace FILE`)";
+        screen.note(&format!("{}: --trace records the messages of the session; {missing}", robot.label()));
+    }
+    Ok(Some(attached))
+}
+
+/// Time that a stop waits for a session. A running session answers within milliseconds.
+const STOP_TIMEOUT: Duration = Duration::from_millis(300);
+
+/// Process that holds the link of a robot.
+fn owner(robot: &Robot) -> Option<Info> {
+    SessionFolder::find().ok().flatten()?.location(&session_key(robot)).owner()
+}
+
+fn holder(robot: &Robot) -> String {
+    owner(robot).map_or_else(|| "its session".to_owned(), |owner| format!("its session (process {})", owner.pid))
+}
+
+/// Failure for a session that holds the only link and does not respond.
+fn unresponsive_session(robot: &Robot) -> Failure {
+    let failure = Failure::new(Kind::NoAnswer, format!("{}: {} does not respond", robot.label(), holder(robot)));
+    let Some(Info { pid, .. }) = owner(robot) else { return failure };
+    failure.hint(format!(
+        "the process may be suspended: `kill -CONT {pid}` continues it, `kill -KILL {pid}` ends it and frees the \
+         connection"
+    ))
+}
+
+/// Whether a session holds the robot's link and commands can use it.
+pub fn is_held(robot: &Robot) -> bool {
+    robot.sessions != Sessions::None
+        && SessionFolder::find()
+            .is_ok_and(|place| place.is_some_and(|place| place.location(&session_key(robot)).is_open()))
+}
+
+/// Whether a session of another process holds the robot's link and commands can use it.
+pub fn is_held_by_other_process(robot: &Robot) -> bool {
+    is_held(robot) && owner(robot).is_some_and(|owner| owner.pid != process())
+}
+
+/// Session key of the robot: its address, or the alias address that its session was opened with.
+pub fn session_key(robot: &Robot) -> String {
+    let own = own_key(robot);
+    let Ok(Some(place)) = SessionFolder::find() else { return own };
+    if robot.target.value.is_simulated() || place.location(&own).socket().exists() {
+        return own;
+    }
+    let mut others = sessions(&place, robot.family).into_iter();
+    others.find(|(_, address)| robot.has_address(address)).map_or(own, |(location, _)| location.key())
+}
+
+/// Sessions of a family, each with the address that it was opened with.
+fn sessions(place: &SessionFolder, family: Family) -> Vec<(SessionPath, Address)> {
+    // An unreadable folder counts as empty; opening a session there reports the error.
+    let locations = place.locations().unwrap_or_default().into_iter();
+    let owned = locations
+        .filter_map(|location| Some((location.owner().filter(|owner| owner.family == family.name())?, location)));
+    owned.filter_map(|(owner, location)| Some((location, owner.target.parse::<Target>().ok()?.address()))).collect()
+}
+
+/// Resolves all addresses of a robot from its network, if one of them may belong to a session, or to a read-only
+/// robot that is to be changed. In that case, it is the same robot.
+///
+/// # Errors
+/// If the robot does not answer, so that its identity is unknown.
+pub fn identify(sources: &Sources, driver: &dyn Driver, robot: &mut Robot, changes: bool) -> Result<(), Failure> {
+    let own = robot.target.value.address();
+    let is_bound = changes && sources.read_only(robot.family).any(|(address, _)| own.may_match(&address));
+    if is_bound || may_be_held(robot, &own) {
+        robot.aliases = driver.addresses(robot)?;
+        sources.apply_read_only(robot);
+    }
+    Ok(())
+}
+
+/// Whether a session under another address may hold the robot's link.
+fn may_be_held(robot: &Robot, own: &Address) -> bool {
+    let place = if robot.sessions == Sessions::None { None } else { SessionFolder::find().ok().flatten() };
+    place.is_some_and(|place| {
+        !place.location(&own_key(robot)).socket().exists()
+            && sessions(&place, robot.family).iter().any(|(_, address)| own.may_match(address))
+    })
+}
+
+fn own_key(robot: &Robot) -> String {
+    let (family, url) = (robot.family.name(), robot.target.value.url());
+    if let Some(address) = robot.target.value.address().key() {
+        return key(family, &address);
+    }
+    if robot.sessions == Sessions::OwnSimulators && robot.target.value.is_simulated() {
+        return key(family, &format!("{url} as {} in process {}", robot.name, process()));
+    }
+    key(family, url)
+}
+
+/// Command line for other clients that wait for the robot.
+fn command_line(access: &Access) -> String {
+    if let Some(typed) = &access.typed {
+        return typed.to_string();
+    }
+    let mut words = std::env::args_os();
+    let program = words.next().unwrap_or_default();
+    let program = Path::new(&program).file_name().unwrap_or(&program).to_string_lossy().into_owned();
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    std::iter::once(program).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// Failure: the session folder cannot be used.
+pub fn folder_failure(error: &LocationError) -> Failure {
+    let failure = Failure::new(Kind::Local, format!("sessions: {error}"));
+    match error {
+        LocationError::Unsafe { path, .. } => {
+            failure.hint(format!("remove {}, or set XDG_RUNTIME_DIR to your own folder", path.display()))
+        }
+        LocationError::Io { .. } => failure.hint("set XDG_RUNTIME_DIR to the folder for sessions"),
+    }
+}
+
+/// Failure for a session that exists but cannot be used.
+pub fn attach_failure(label: &str, error: &AttachError) -> Failure {
+    let hint = "list sessions with `armctl session list`, or bypass the session with --no-session";
+    let kind = match error {
+        AttachError::Location(_) | AttachError::Io(_) => Kind::Local,
+        AttachError::Silent | AttachError::Refused(_) => Kind::NoAnswer,
+        AttachError::WrongVersion => Kind::Malformed,
+    };
+    Failure::new(kind, format!("{label}: {error}")).hint(hint)
+}
+
+/// Failure for a busy session.
+pub fn session_busy(label: &str, busy: &SessionBusy) -> Failure {
+    match busy {
+        SessionBusy::Ended(why) => Failure::new(Kind::NoAnswer, format!("{label}: {why}"))
+            .hint("check the robot; `armctl session open` opens a new session"),
+        SessionBusy::Busy(holder) => {
+            let who = holder.as_ref().map_or_else(|| "another client".to_owned(), peer);
+            Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}"))
+                .hint("wait until it ends; you can always stop: `yrcx stop`, `toyo stop`, `yerc hold on`")
+        }
+        SessionBusy::ReadOnly => {
+            Failure::new(Kind::Rejected, format!("{label} is read-only: the session sent nothing")).hint(
+                "to allow changes, use `armctl robots set NAME read_only=off`, then close the session and open it \
+                 again",
+            )
+        }
+        SessionBusy::Moved(holder) => {
+            let message = format!("{label}: another client is moving the robot: {}; nothing was sent", peer(holder));
+            Failure::new(Kind::Rejected, message)
+                .hint("wait until it ends; you can always stop: `yrcx stop`, `toyo stop`, `yerc hold on`")
+        }
+    }
+}
+
+/// Client and start time.
+pub fn peer(peer: &Peer) -> String {
+    format!("process {} (`{}`), since {}", peer.pid, peer.command, format_since(peer.for_ms))
+}
+
+/// Local time that was `for_ms` ago.
+pub fn format_since(for_ms: u64) -> String {
+    let then = Timestamp::now().checked_sub(Duration::from_millis(for_ms)).unwrap_or(Timestamp::MIN);
+    then.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string()
+}

@@ -1,0 +1,119 @@
+//! Confirmation questions, before a command starts and while it runs.
+
+use std::sync::{Mutex, PoisonError};
+
+use super::interrupt::{catch_interrupts, interruptible};
+use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation, Gate, Grant, Intent, not_confirmed};
+use crate::output::Screen;
+use crate::settings::Robot;
+use armctl_controller::Risk;
+
+/// Authorizes a command for `robot`, with a question if the risk requires it, before anything is sent.
+pub async fn confirm_intent(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
+    if !gate.must_ask(screen, robot, intent)? {
+        return Ok(());
+    }
+    let question = match intent.confirmation {
+        Confirmation::Word(word) => Question::Word(format!("This will {}.", intent.text), word),
+        Confirmation::Question => Question::Yes(format!("This will {}. Continue?", intent.text)),
+        Confirmation::WhenKnown => return Ok(()),
+    };
+    ask(screen, robot, Vec::new(), question, "nothing was sent").await
+}
+
+/// Authority of a running command to confirm changes.
+#[derive(Debug, Clone)]
+pub struct Authority<'a> {
+    gate: Gate,
+    screen: &'a Screen,
+    robot: &'a Robot,
+    /// Maximum risk that the command declared.
+    granted: Risk,
+    grant: Grant,
+}
+
+impl<'a> Authority<'a> {
+    /// Authority for a command with this maximum risk.
+    pub fn new(gate: Gate, screen: &'a Screen, robot: &'a Robot, granted: Risk, grant: Grant) -> Self {
+        Self { gate, screen, robot, granted, grant }
+    }
+
+    /// Authority for a read-only command.
+    pub fn reading(screen: &'a Screen, robot: &'a Robot) -> Self {
+        Self::new(Gate::default(), screen, robot, Risk::Read, Grant::up_to(Risk::Read))
+    }
+
+    /// Authority for a part of the work on another screen.
+    #[must_use]
+    pub fn clone_for<'b>(&self, screen: &'b Screen, robot: &'b Robot) -> Authority<'b> {
+        Authority { gate: self.gate, screen, robot, granted: self.granted, grant: self.grant.clone() }
+    }
+
+    /// Whether a person is asked before a change. In that time, other clients may change data.
+    pub fn asks(&self) -> bool {
+        self.gate.needs_yes(self.robot, self.granted) && self.grant.get() < self.granted
+    }
+
+    /// Confirms `change`. Nothing has been changed so far. A change that overwrites no user data needs no question.
+    pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
+        let risk = self.granted;
+        if !change.is_empty() && self.asks() {
+            let text = change.format_line();
+            if !self.screen.can_ask() {
+                return Err(not_confirmed(self.robot, risk, &text));
+            }
+            let question = Question::Yes("Continue?".to_owned());
+            ask(self.screen, self.robot, change.lines(), question, "nothing was changed").await?;
+        }
+        self.grant.raise(risk);
+        Ok(())
+    }
+}
+
+/// Question to the user.
+enum Question {
+    Yes(String),
+    /// Description and the word to type.
+    Word(String, &'static str),
+}
+
+/// Serializes questions.
+static QUESTION_LOCK: Mutex<()> = Mutex::new(());
+
+/// Asks in a separate thread, so that Ctrl-C is handled. `otherwise` describes the state after a no.
+async fn ask(
+    screen: &Screen,
+    robot: &Robot,
+    lines: Vec<String>,
+    question: Question,
+    otherwise: &str,
+) -> Result<(), Failure> {
+    // From here on, Ctrl-C (also at the question) ends with a message and an exit code instead of killing the
+    // process.
+    catch_interrupts();
+    let screen = *screen;
+    let who = format!("{} ({}, {})", robot.name, robot.family, robot.target.value.url());
+    let asked = tokio::task::spawn_blocking(move || {
+        // Questions for several robots are asked one after the other.
+        let _turn = QUESTION_LOCK.lock().unwrap_or_else(PoisonError::into_inner);
+        screen.ask_title("REAL CONTROLLER:", &who);
+        for line in &lines {
+            screen.ask_note(line);
+        }
+        match question {
+            Question::Yes(question) => screen.confirm(&question),
+            Question::Word(what, word) => screen.confirm_word(&what, word),
+        }
+    });
+    match interruptible(asked).await {
+        Ok(Ok(Ok(true))) => Ok(()),
+        Ok(Ok(Ok(false))) => Err(Failure::new(Kind::Rejected, format!("not confirmed; {otherwise}"))),
+        Ok(Ok(Err(failure))) => Err(failure),
+        Ok(Err(error)) => Err(Failure::local(format!("confirmation prompt failed: {error}"))),
+        Err(failure) => {
+            screen.ask_note("");
+            Err(Failure { message: format!("{}; {otherwise}", failure.message), ..failure })
+        }
+    }
+}

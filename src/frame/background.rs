@@ -1,0 +1,103 @@
+//! Sessions in a background process.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use anyhow::Context as _;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use tokio::task::spawn_blocking;
+
+use super::attach::{folder_failure, session_key};
+use super::interrupt::interruptible;
+use super::report::Report;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::View;
+use crate::settings::Robot;
+use armctl_transport::session::location::SessionFolder;
+use armctl_transport::session::{detach, process, terminate};
+
+/// Result of opening a session.
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+pub struct Opened {
+    robot: String,
+    family: String,
+    target: String,
+    /// Process that holds the link.
+    pid: u32,
+    /// Whether it runs in the background.
+    background: bool,
+    /// Log file of a background session.
+    log: Option<String>,
+}
+
+impl Opened {
+    /// Session in this process.
+    pub fn here(robot: &Robot, background: bool, log: Option<&Path>) -> Self {
+        Self {
+            robot: robot.name.clone(),
+            family: robot.family.name().to_owned(),
+            target: robot.target.value.url().to_owned(),
+            pid: process(),
+            background,
+            log: log.map(|log| log.display().to_string()),
+        }
+    }
+}
+
+/// Start message from the background process, one line.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// The link is up.
+    Opened(Opened),
+    /// The link could not be opened.
+    Failed(Failure),
+}
+
+impl Report for Opened {
+    fn view(&self) -> View {
+        let log = self.log.as_ref().map(|log| format!("; log: {log}")).unwrap_or_default();
+        View::text(format!("{} ({}): held by process {}{log}", self.robot, self.target, self.pid))
+    }
+}
+
+/// Opens a background session for a robot whose inventory entry has `hold = true`.
+pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
+    let mut words: Vec<OsString> = Vec::new();
+    if let Some(path) = inventory {
+        words.extend(["--config".into(), path.into()]);
+    }
+    words.extend(["-r", &robot.name, "session", "open", "--detached"].map(OsString::from));
+    let opened = start(robot, words.into_iter()).await?;
+    screen.note(&format!(
+        "{}: session opened (process {}); `armctl session close {}` closes it",
+        robot.label(),
+        opened.pid,
+        robot.name
+    ));
+    Ok(())
+}
+
+/// Starts this program in the background with these arguments, and waits until its link is up.
+pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
+    let folder = SessionFolder::create().map_err(|error| folder_failure(&error))?;
+    let log = folder.location(&session_key(robot)).log();
+    let mut child = detach(words, &log).context("this program, in the background")?;
+    let pid = child.pid();
+    let line = match interruptible(spawn_blocking(move || child.line())).await {
+        Ok(line) => line.map_err(|error| Failure::local(format!("the background: {error}")))?,
+        Err(interrupt) => {
+            terminate(pid);
+            return Err(interrupt);
+        }
+    };
+    let line = line.context("the background")?;
+    match serde_json::from_str(&line) {
+        Ok(Start::Opened(opened)) => Ok(opened),
+        Ok(Start::Failed(failure)) => Err(failure),
+        Err(_) => Err(Failure::local(format!("{}: the session process failed", robot.label()))
+            .hint(format!("see {} for the reason", log.display()))),
+    }
+}

@@ -1,0 +1,216 @@
+//! `backup`, `restore` and `diff` commands, for robots of any family and for each family.
+
+use std::marker::PhantomData;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde_json::Value;
+
+use super::arguments::{BackupOptions, RestoreOptions};
+use super::compare::Differences;
+use super::diff::DiffOptions;
+use super::manifest;
+use super::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use crate::failure::Failure;
+use crate::gate::Confirmation;
+use crate::local_names::private_folder;
+use crate::settings::inventory::Inventory;
+use crate::settings::{Robot, target};
+use crate::{Command, Context, Family};
+use armctl_controller::Risk;
+
+/// A family with backups.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Backups: Family {
+    /// Names of `backup`, `restore` and `diff` in envelopes and schemas.
+    const IDS: [&'static str; 3];
+
+    /// Maximum risk of reading all of a robot.
+    const BACKUP_RISK: Risk = Risk::Read;
+
+    /// Risk of reading all of this robot.
+    fn backup_risk(_robot: &Robot) -> Risk {
+        Self::BACKUP_RISK
+    }
+    /// Makes a backup.
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure>;
+    /// Restores a backup.
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure>;
+}
+
+/// Saves the data of a controller to a folder of files.
+#[derive(Debug, Args)]
+#[group(skip)]
+#[command(
+    after_help = "Files of a yerc, points and data of a yrcx, parameters, points and programs of a toyo controller. \
+                  With several robots, each has a folder with its name. manifest.json lists the files with sizes and \
+                  hashes, and the missing data with the reason. `yrcx backup` and `toyo backup` have more \
+                  options.\n\nTo save every task of a toyo controller, armctl selects each task temporarily. \
+                  That is a change, so on a read-only robot only the current task is saved."
+)]
+pub struct Backup<F: Backups> {
+    #[command(flatten)]
+    options: BackupOptions,
+    #[arg(skip)]
+    family: PhantomData<fn() -> F>,
+}
+
+impl<F: Backups> Backup<F> {
+    /// Folder.
+    pub fn folder(&self) -> &Path {
+        self.options.folder()
+    }
+}
+
+impl<F: Backups> Command for Backup<F> {
+    type Family = F;
+    type Report = BackedUp;
+    const ID: &'static str = F::IDS[0];
+    const RISK: Risk = F::BACKUP_RISK;
+
+    fn risk_on(&self, robot: &Robot) -> Risk {
+        F::backup_risk(robot)
+    }
+
+    async fn run(&self, context: Context<'_, F>) -> Result<BackedUp, Failure> {
+        let making = self.options.making(None);
+        let folder = private_folder(&making.folder, &context.robot.name, context.several);
+        F::back_up(context, SaveOptions { folder, ..making }).await
+    }
+}
+
+/// Writes a backup to the controller.
+#[derive(Debug, Args)]
+#[group(skip)]
+#[command(
+    after_help = "armctl first checks all files against their hashes, then writes the data that differs from the \
+                  controller. After an interruption, run the same command again to continue. Data that is not in the \
+                  backup stays on the controller.\n\nWithout --machine, data that changes the machine itself is not \
+                  written: parameters and system data (yerc), parameters and settings (yrcx), machine parameters \
+                  (toyo). `toyo restore` has more options."
+)]
+pub struct Restore<F: Backups> {
+    #[command(flatten)]
+    options: RestoreOptions,
+    #[arg(skip)]
+    family: PhantomData<fn() -> F>,
+}
+
+impl<F: Backups> Restore<F> {
+    /// Family of the backup.
+    pub fn of_family(&self) -> Option<target::Family> {
+        family_of(&self.options.restoring().folder)
+    }
+}
+
+impl<F: Backups> Command for Restore<F> {
+    type Family = F;
+    type Report = Restored;
+    const ID: &'static str = F::IDS[1];
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite data of the controller with the backup";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    async fn run(&self, context: Context<'_, F>) -> Result<Restored, Failure> {
+        let restoring = self.options.restoring();
+        let folder = place(&restoring.folder, context.robot, context.several);
+        manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, context.robot, restoring.force)?;
+        F::restore(context, &RestoreSelection { folder, ..restoring }).await
+    }
+}
+
+/// Compares a backup with another backup, or with a controller.
+#[derive(Debug, Args)]
+#[group(skip)]
+#[command(
+    after_help = "With two folders, armctl reads no robot. With one folder, it reads the same data from the controller \
+                  and shows the changes since the backup: - is the backup, + the controller. `armctl diff ROBOT ROBOT` \
+                  reads and compares two controllers of a family. If a folder has the same name, use -r for the \
+                  robots. Texts are compared by lines, other files by their hashes.\n\nPositions (points, shifts, \
+                  hands, positions of jobs) within the tolerance are equal: 0.001 mm, 0.001 degrees and 1 pulse, or \
+                  the value of --tolerance. The line ///DATE of jobs is ignored, because controllers rewrite it. The \
+                  result lists the files to which this applies. --exact compares every byte. Exit code 0: equal; 8: \
+                  different."
+)]
+pub struct Diff<F: Backups> {
+    #[command(flatten)]
+    options: DiffOptions,
+    #[arg(skip)]
+    family: PhantomData<fn() -> F>,
+}
+
+impl<F: Backups> Diff<F> {
+    /// Family of the backup.
+    pub fn of_family(&self) -> Option<target::Family> {
+        family_of(self.options.old.as_deref()?)
+    }
+
+    /// Comparison options.
+    pub fn options(&self) -> &DiffOptions {
+        &self.options
+    }
+
+    /// Whether robots may be read: not for a comparison of two folders.
+    pub fn may_ask_robots(&self) -> bool {
+        self.options.new.is_none() || !self.options.names_folder()
+    }
+
+    /// Two robots that are given instead of folders.
+    pub fn robots(&self, inventory: &Inventory) -> Option<[String; 2]> {
+        let robots = [named(self.options.old.as_ref(), inventory)?, named(self.options.new.as_ref(), inventory)?];
+        (!self.options.names_folder()).then_some(robots)
+    }
+
+    /// A single robot that is given instead of a folder, which does not exist.
+    pub fn only_robot(&self, inventory: &Inventory) -> Option<String> {
+        let is_folder = self.options.old.as_ref().is_some_and(|path| path.exists());
+        named(self.options.old.as_ref(), inventory).filter(|_| self.options.new.is_none() && !is_folder)
+    }
+}
+
+/// The robot with this name.
+fn named(path: Option<&PathBuf>, inventory: &Inventory) -> Option<String> {
+    let name = path?.to_str()?;
+    inventory.robots.iter().find(|robot| robot.name == name).map(|robot| robot.name.clone())
+}
+
+impl<F: Backups> Command for Diff<F> {
+    type Family = F;
+    type Report = Differences;
+    const ID: &'static str = F::IDS[2];
+    const RISK: Risk = F::BACKUP_RISK;
+
+    fn risk_on(&self, robot: &Robot) -> Risk {
+        F::backup_risk(robot)
+    }
+
+    fn uses_files(&self) -> bool {
+        true
+    }
+
+    fn takes_robot(&self) -> bool {
+        self.options.new.is_none()
+    }
+
+    fn run_alone(&self) -> Result<Differences, Failure> {
+        self.options.two_folders()
+    }
+
+    async fn run(&self, context: Context<'_, F>) -> Result<Differences, Failure> {
+        let robot = context.robot;
+        let folder = place(self.options.folder()?, robot, context.several);
+        self.options.with_controller(folder, robot, |making| F::back_up(context, making)).await
+    }
+}
+
+/// Folder of a robot's backup: a subfolder with its name if there are several robots.
+fn place(folder: &Path, robot: &Robot, several: bool) -> PathBuf {
+    let own = private_folder(folder, &robot.name, true);
+    let has_list = |folder: &Path| folder.join(manifest::MANIFEST).exists();
+    if several || !has_list(folder) && has_list(&own) { own } else { folder.to_owned() }
+}
+
+/// Family of the backup in a folder, for simulators, which can have any family.
+fn family_of(folder: &Path) -> Option<target::Family> {
+    manifest::read::<Value>(folder).ok()??.family.parse().ok()
+}

@@ -1,0 +1,272 @@
+//! Command interface: arguments, risk, execution.
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::authority::Authority;
+use super::connection::{self, Access, ConnectMode, Connection, Driver, Entry, Family};
+use super::report::{Outcome, Report, sheet_of};
+use crate::failure::Failure;
+use crate::gate::{Confirmation, Intent};
+use crate::output::Screen;
+use crate::output::csv::Sheet;
+use crate::output::envelope::Envelope;
+use crate::settings::{Robot, target};
+use armctl_controller::Risk;
+
+/// Execution context of a command.
+#[derive(Debug)]
+pub struct Context<'a, F: Family> {
+    /// Robot.
+    pub robot: &'a Robot,
+    /// Connection to the robot.
+    pub link: &'a mut F::Link,
+    /// Screen for progress and notes; reports are returned.
+    pub screen: &'a Screen,
+    /// Whether other robots may run the same command, so that files need one folder per robot.
+    pub several: bool,
+    /// Confirms deletions and overwrites when they are known.
+    pub authority: Authority<'a>,
+}
+
+/// [`Context`] with a connection of any family.
+pub struct AnyContext<'a> {
+    /// See [`Context::robot`].
+    pub robot: &'a Robot,
+    /// Connection to the robot.
+    pub connection: &'a mut dyn Connection,
+    /// See [`Context::screen`].
+    pub screen: &'a Screen,
+    /// See [`Context::several`].
+    pub several: bool,
+    /// See [`Context::authority`].
+    pub authority: Authority<'a>,
+}
+
+impl<'a> AnyContext<'a> {
+    /// Converts to the context of one family; the connection must belong to it.
+    pub fn of<F: Family>(self) -> Result<Context<'a, F>, Failure> {
+        let Self { robot, connection, screen, several, authority } = self;
+        Ok(Context { robot, link: connection::link::<F>(connection)?, screen, several, authority })
+    }
+}
+
+/// A parsed command for a robot.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Command {
+    /// Family of the command.
+    type Family: Family;
+    /// Report type.
+    type Report: Report + 'static;
+    /// `yerc.status`: name in envelopes and schemas.
+    const ID: &'static str;
+    /// Maximum risk.
+    const RISK: Risk = Risk::Read;
+    /// Completes "This will …" in the question before a motion.
+    const INTENT: &'static str = "";
+    /// Kind of confirmation for motion, deletion and overwriting.
+    const CONFIRMATION: Confirmation = Confirmation::Question;
+    /// Required connection.
+    const CONNECT_MODE: ConnectMode = ConnectMode::Control;
+
+    /// Risk for these arguments; default [`RISK`](Self::RISK).
+    fn risk(&self) -> Risk {
+        Self::RISK
+    }
+
+    /// Risk for this robot; at most [`risk`](Self::risk).
+    fn risk_on(&self, _robot: &Robot) -> Risk {
+        self.risk()
+    }
+
+    /// Intent for these arguments; default [`INTENT`](Self::INTENT).
+    fn intent(&self) -> String {
+        Self::INTENT.to_owned()
+    }
+
+    /// Confirmation for these arguments; default [`CONFIRMATION`](Self::CONFIRMATION).
+    fn confirmation(&self) -> Confirmation {
+        Self::CONFIRMATION
+    }
+
+    /// Whether the command stops the robot, which is always allowed.
+    fn is_stop(&self) -> bool {
+        false
+    }
+
+    /// Whether the command moves the robot until it is stopped: a jog without `--for`.
+    fn moves_until_stopped(&self) -> bool {
+        false
+    }
+
+    /// Whether the command jogs. A jog is stopped even with `--on-interrupt leave`.
+    fn jogs(&self) -> bool {
+        false
+    }
+
+    /// Whether the command repeats until it is stopped, and each run waits for an event.
+    fn is_endless(&self) -> bool {
+        false
+    }
+
+    /// Whether the command reads or writes files of this machine, even if no file is named.
+    fn uses_files(&self) -> bool {
+        false
+    }
+
+    /// Whether the command needs a robot with these arguments.
+    fn takes_robot(&self) -> bool {
+        true
+    }
+
+    /// Runs without a robot, if the command needs none.
+    fn run_alone(&self) -> Result<Self::Report, Failure> {
+        Err(Failure::local("internal error: this command needs a robot"))
+    }
+
+    /// Required connection for these arguments; default [`CONNECT_MODE`](Self::CONNECT_MODE).
+    fn connect_mode(&self) -> ConnectMode {
+        Self::CONNECT_MODE
+    }
+
+    /// Line below the table of several robots.
+    fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
+        None
+    }
+
+    /// Executes the command. In a dry run, requests that change something are noted and count as done. A read ends
+    /// with the failure [`unknown`](super::dry_run::unknown), and nothing after it can be planned unless the command
+    /// handles it.
+    async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
+}
+
+/// [`Command`] without its types, for the common run loop.
+pub trait AnyCommand {
+    /// See [`Command::ID`].
+    fn id(&self) -> &'static str;
+    /// Intent for the gate: for this robot, or the maximum.
+    fn intent(&self, robot: Option<&Robot>) -> Intent;
+    /// Report, if the command needs no robot.
+    fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
+        None
+    }
+    /// See [`Command::moves_until_stopped`].
+    fn moves_until_stopped(&self) -> bool {
+        false
+    }
+    /// See [`Command::jogs`].
+    fn jogs(&self) -> bool {
+        false
+    }
+    /// See [`Command::is_endless`].
+    fn is_endless(&self) -> bool {
+        false
+    }
+    /// See [`Command::uses_files`].
+    fn uses_files(&self) -> bool {
+        false
+    }
+    /// Driver for its connections; none if it needs no robot.
+    fn driver(&self) -> Option<&'static dyn Driver> {
+        None
+    }
+    /// See [`Command::connect_mode`].
+    fn connect_mode(&self, _robot: &Robot) -> ConnectMode {
+        ConnectMode::default()
+    }
+    /// See [`Command::summary`].
+    fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
+        None
+    }
+    /// Columns of its report, if they are known without one.
+    fn sheet(&self) -> Option<Sheet> {
+        None
+    }
+    /// See [`Command::run`].
+    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome>;
+}
+
+impl dyn AnyCommand + '_ {
+    /// Family of the command; `None` for commands of all families or without a robot.
+    pub fn family(&self) -> Option<target::Family> {
+        self.driver()?.family()
+    }
+
+    /// Effect of opening the connection on a robot.
+    pub fn entry(&self, robot: &Robot) -> Entry {
+        self.driver().map_or(Entry::Harmless, |driver| driver.entry(robot, self.connect_mode(robot)))
+    }
+
+    /// Connects to a robot.
+    pub async fn connect(
+        &self,
+        robot: &Robot,
+        access: Access,
+        screen: &Screen,
+    ) -> Result<Box<dyn Connection>, Failure> {
+        let driver = self.driver().ok_or_else(|| Failure::local("internal error: this command needs no robot"))?;
+        driver.connect(robot, access, screen).await
+    }
+}
+
+impl<C: Command> AnyCommand for C {
+    fn id(&self) -> &'static str {
+        C::ID
+    }
+
+    fn intent(&self, robot: Option<&Robot>) -> Intent {
+        Intent {
+            risk: robot.map_or_else(|| Command::risk(self), |robot| Command::risk_on(self, robot)),
+            text: Command::intent(self),
+            confirmation: Command::confirmation(self),
+            is_stop: Command::is_stop(self),
+        }
+    }
+
+    fn moves_until_stopped(&self) -> bool {
+        Command::moves_until_stopped(self)
+    }
+
+    fn jogs(&self) -> bool {
+        Command::jogs(self)
+    }
+
+    fn is_endless(&self) -> bool {
+        Command::is_endless(self)
+    }
+
+    fn uses_files(&self) -> bool {
+        Command::uses_files(self)
+    }
+
+    fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
+        let alone = || Ok(Box::new(Command::run_alone(self)?) as Box<_>);
+        (!Command::takes_robot(self)).then(alone)
+    }
+
+    fn driver(&self) -> Option<&'static dyn Driver> {
+        Command::takes_robot(self).then(connection::driver::<C::Family>)
+    }
+
+    fn connect_mode(&self, _robot: &Robot) -> ConnectMode {
+        Command::connect_mode(self)
+    }
+
+    fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
+        Command::summary(self, envelopes)
+    }
+
+    fn sheet(&self) -> Option<Sheet> {
+        Some(sheet_of::<C::Report>())
+    }
+
+    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+        async move {
+            let Context { robot, link, screen, several, authority } = context.of::<C::Family>()?;
+            let report = Command::run(self, Context { robot, link: &mut *link, screen, several, authority }).await?;
+            C::Family::settle(link).await?;
+            Ok(Box::new(report) as Box<_>)
+        }
+        .boxed_local()
+    }
+}

@@ -1,0 +1,288 @@
+//! Connections to robots: permitted use, and the family-independent interface for the run loop.
+
+use std::any::Any;
+use std::fmt;
+use std::marker::PhantomData;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::dry_run::Plan;
+use crate::failure::Failure;
+use crate::gate::{Grant, Intent};
+use crate::output::Screen;
+use crate::settings::{Robot, target};
+use armctl_controller::Risk;
+
+/// Permitted use of a link.
+#[derive(Debug, Clone)]
+pub struct Access {
+    /// Maximum risk of a sent frame: the last check, after the gate.
+    pub grant: Grant,
+    /// Whether frames are noted instead of sent.
+    pub dry_run: bool,
+    /// Trace file.
+    pub trace: Option<PathBuf>,
+    /// Required connection.
+    pub mode: ConnectMode,
+    /// Command line, if it differs from that of the process.
+    pub typed: Option<Arc<str>>,
+    /// Family arguments before the command.
+    pub own: FamilyArguments,
+    /// Whether a motion continues if this process ends.
+    pub leaves_motion: bool,
+    /// Whether it is for a stop, which must not wait.
+    pub is_stop: bool,
+}
+
+impl Access {
+    /// Read-only access.
+    pub fn reading(mode: ConnectMode) -> Self {
+        let (grant, own) = (Grant::up_to(Risk::Read), FamilyArguments::default());
+        Self { grant, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false, is_stop: false }
+    }
+}
+
+/// Family arguments before the command, common to all commands of the family. Only the family can interpret them.
+#[derive(Debug, Clone, Default)]
+pub struct FamilyArguments(Option<Arc<dyn AnyFamilyArguments>>);
+
+/// Family arguments before a command.
+pub trait AnyFamilyArguments: Any + fmt::Debug + Send + Sync {
+    /// Adds their effect to the intent of a command.
+    fn complete(&self, intent: Intent) -> Intent;
+
+    /// Equivalent words of the command line.
+    fn words(&self) -> Vec<String>;
+}
+
+impl FamilyArguments {
+    /// Stores the arguments.
+    pub fn of(arguments: impl AnyFamilyArguments) -> Self {
+        Self(Some(Arc::new(arguments)))
+    }
+
+    /// Arguments in the family's type, if given.
+    pub fn get<T: AnyFamilyArguments>(&self) -> Option<&T> {
+        let own: &dyn Any = &**self.0.as_ref()?;
+        own.downcast_ref()
+    }
+
+    /// See [`AnyFamilyArguments::complete`].
+    pub fn complete(&self, intent: Intent) -> Intent {
+        match &self.0 {
+            Some(own) => own.complete(intent),
+            None => intent,
+        }
+    }
+
+    /// See [`AnyFamilyArguments::words`].
+    pub fn words(&self) -> Vec<String> {
+        self.0.as_ref().map(|own| own.words()).unwrap_or_default()
+    }
+}
+
+/// Connection that a command needs. If a controller treats the end of a connection as a fault, like a YRCX, nothing
+/// more than this is opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ConnectMode {
+    /// Read and command.
+    #[default]
+    Control,
+    /// Read the signals that the controller sends on its own.
+    Monitor,
+    /// Explicit messages to the network board, which need no connection to the controller (yrcx).
+    Explicit,
+}
+
+/// Effect of a connection on a controller.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Entry {
+    /// Nothing.
+    Harmless,
+    /// None, because a session holds the link; a direct connection would have an effect.
+    ThroughSession,
+    /// The robot stops when the connection ends; completes "This will …".
+    Stops(String),
+}
+
+/// A controller family, for its commands.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Family: Sized + 'static {
+    /// Name; `None` for commands of all families.
+    const FAMILY: Option<target::Family>;
+    /// A connection to one robot.
+    type Link: 'static;
+    /// Words of the stop command after the family name; empty if nothing can move.
+    const STOP: &'static [&'static str];
+
+    /// Connects. A dry run opens nothing.
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
+
+    /// Stops motion that this link started. Returns the result: "the robot was stopped: HOLD is on".
+    async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
+
+    /// Whether motion of this link is stopped even with `--on-interrupt leave`.
+    fn needs_halt(_link: &Self::Link) -> bool {
+        false
+    }
+
+    /// Frames that a dry run would have sent, in order.
+    fn planned(link: &mut Self::Link) -> Plan;
+
+    /// Checks before a report that all answers belong to the requests.
+    async fn settle(_link: &mut Self::Link) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Effect of opening and closing a connection of this kind.
+    fn entry(_robot: &Robot, _mode: ConnectMode) -> Entry {
+        Entry::Harmless
+    }
+
+    /// Whether the controller accepts only one client, so that the commands of this computer share its link.
+    fn takes_one_client(_robot: &Robot) -> bool {
+        false
+    }
+
+    /// All addresses of a robot, resolved from its network; empty if each robot has one address.
+    fn addresses(_robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+        Ok(Vec::new())
+    }
+
+    /// Closes the connection and prints statistics at `-v`.
+    async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
+}
+
+/// A connection to one robot of any family: [`Family`] without its types.
+pub trait Connection {
+    /// See [`Family::halt`].
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>>;
+    /// See [`Family::needs_halt`].
+    fn needs_halt(&self) -> bool;
+    /// See [`Family::planned`].
+    fn planned(&mut self) -> Plan;
+    /// See [`Family::close`].
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
+    /// The [`Family::Link`].
+    fn as_any(&mut self) -> &mut dyn Any;
+}
+
+/// Driver for the robots of a family: [`Family`] without its types.
+pub trait Driver: Sync {
+    /// See [`Family::FAMILY`].
+    fn family(&self) -> Option<target::Family>;
+    /// See [`Family::STOP`].
+    fn stop(&self) -> &'static [&'static str];
+    /// See [`Family::entry`].
+    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry;
+    /// See [`Family::takes_one_client`].
+    fn takes_one_client(&self, robot: &Robot) -> bool;
+    /// See [`Family::addresses`].
+    fn addresses(&self, robot: &Robot) -> Result<Vec<target::Address>, Failure>;
+    /// See [`Family::connect`].
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
+}
+
+/// Driver of a family.
+pub fn driver<F: Family>() -> &'static dyn Driver {
+    &Driving::<F>(PhantomData)
+}
+
+struct Driving<F>(PhantomData<fn() -> F>);
+
+impl<F: Family> Driver for Driving<F> {
+    fn family(&self) -> Option<target::Family> {
+        F::FAMILY
+    }
+
+    fn stop(&self) -> &'static [&'static str] {
+        F::STOP
+    }
+
+    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
+        F::entry(robot, mode)
+    }
+
+    fn takes_one_client(&self, robot: &Robot) -> bool {
+        F::takes_one_client(robot)
+    }
+
+    fn addresses(&self, robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+        F::addresses(robot)
+    }
+
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
+        let connected = F::connect(robot, access, screen);
+        async move { Ok(Box::new(Connected::<F>(connected.await?)) as Box<dyn Connection>) }.boxed_local()
+    }
+}
+
+/// Link of a family from a connection; a wrong family is an internal error.
+pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, Failure> {
+    let link = connection.as_any().downcast_mut();
+    link.ok_or_else(|| Failure::local("internal error: this connection is one of another family"))
+}
+
+/// Borrowed link of a family as a [`Connection`], for a command that runs on it.
+pub struct Borrowed<'a, F: Family>(pub &'a mut F::Link);
+
+impl<F: Family> Connection for Borrowed<'_, F> {
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
+        F::halt(self.0).boxed_local()
+    }
+
+    fn needs_halt(&self) -> bool {
+        F::needs_halt(self.0)
+    }
+
+    fn planned(&mut self) -> Plan {
+        F::planned(self.0)
+    }
+
+    /// The lender closes it.
+    fn close(self: Box<Self>, _screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
+        async { Ok(()) }.boxed_local()
+    }
+
+    fn as_any(&mut self) -> &mut dyn Any {
+        self.0
+    }
+}
+
+/// The link of a family as a [`Connection`].
+struct Connected<F: Family>(F::Link);
+
+impl<F: Family> Connection for Connected<F> {
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
+        F::halt(&mut self.0).boxed_local()
+    }
+
+    fn needs_halt(&self) -> bool {
+        F::needs_halt(&self.0)
+    }
+
+    fn planned(&mut self) -> Plan {
+        F::planned(&mut self.0)
+    }
+
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
+        F::close(self.0, screen).boxed_local()
+    }
+
+    fn as_any(&mut self) -> &mut dyn Any {
+        &mut self.0
+    }
+}

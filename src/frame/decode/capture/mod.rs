@@ -1,0 +1,391 @@
+//! `armctl decode FAMILY FILE.pcapng`: messages of a family in a capture file. `report` is the printed report,
+//! `stream` prints reports that do not fit into memory.
+
+mod report;
+mod stream;
+#[cfg(test)]
+mod tests;
+
+use std::io::{self, Read};
+use std::net::{IpAddr, SocketAddr};
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::Context as _;
+use clap::Args;
+use jiff::Timestamp;
+use serde::Serialize;
+
+pub use self::report::Capture;
+use self::report::{FULL, Links, Problems, count_text};
+use super::Field;
+use crate::Report as _;
+use crate::failure::Failure;
+use crate::output::Format;
+use crate::output::busy_work::register;
+use crate::output::envelope::ErrorBody;
+use crate::run::{Run, RunError};
+use armctl_files as files;
+use armctl_transport::capture::{Carrier, Message, OpenError, Summary, read};
+pub use armctl_transport::capture::{holds_telegram, parse_hex};
+use armctl_transport::tap::Direction;
+
+/// Selection of messages in a capture file.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Capture files")]
+pub struct Selection {
+    /// Show the messages of one packet with all fields
+    #[arg(long, value_name = "NUMBER")]
+    frame: Option<u64>,
+    /// Only messages from or to this address
+    #[arg(long, value_name = "ADDRESS")]
+    host: Option<IpAddr>,
+    /// Only messages from or to this port
+    #[arg(long, value_name = "PORT")]
+    port: Option<u16>,
+}
+
+impl Selection {
+    /// Whether anything is filtered.
+    pub const fn is_given(&self) -> bool {
+        self.frame.is_some() || self.host.is_some() || self.port.is_some()
+    }
+
+    fn admits(&self, carrier: &Carrier) -> bool {
+        let is = |end: SocketAddr| {
+            self.host.is_none_or(|host| host == end.ip().to_canonical())
+                && self.port.is_none_or(|port| port == end.port())
+        };
+        match carrier.ends() {
+            Some((from, to)) => is(from) || is(to),
+            None => self.host.is_none() && self.port.is_none(),
+        }
+    }
+}
+
+/// Capture file, if it is the only argument.
+pub fn file_among(arguments: &[String]) -> Option<&Path> {
+    let [argument] = arguments else { return None };
+    let path = Path::new(argument);
+    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+    matches!(extension.as_str(), "pcap" | "pcapng" | "cap").then_some(path)
+}
+
+/// Source of a capture.
+#[derive(Debug)]
+pub enum Input<'a> {
+    /// A file.
+    File(&'a Path),
+    /// Bytes, with their name.
+    Bytes(&'static str, Vec<u8>),
+}
+
+impl Input<'_> {
+    fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.display().to_string(),
+            Self::Bytes(name, _) => (*name).to_owned(),
+        }
+    }
+
+    fn open(&self) -> io::Result<Box<dyn Read + '_>> {
+        Ok(match self {
+            Self::File(path) => Box::new(files::open(path)?),
+            Self::Bytes(_, bytes) => Box::new(bytes.as_slice()),
+        })
+    }
+}
+
+/// Report, unless it does not fit into memory, and the decoder, ready to restart.
+type Captured<D> = (Option<Capture<<D as CaptureDecoder>::Field>>, D);
+
+/// Decoder for the messages of a family.
+pub trait CaptureDecoder: Sized {
+    /// A field of a message.
+    type Field: Field;
+    /// Handles a message of any family.
+    fn take(&mut self, message: &Message<'_>);
+    /// Handles the end of the file.
+    fn finish(&mut self);
+    /// Messages decoded so far.
+    fn decoded(&mut self) -> &mut DecodedCapture<Self::Field>;
+    /// Restarts on the same file.
+    #[must_use]
+    fn restart(self) -> Self;
+}
+
+/// Decoded content of a file.
+#[derive(Debug)]
+pub struct DecodedCapture<F> {
+    /// Messages that were not taken yet.
+    pub messages: Vec<DecodedMessage<F>>,
+    /// Number of packets of the family.
+    pub packets: u64,
+    /// Notes.
+    pub notes: Vec<String>,
+}
+
+impl<F> Default for DecodedCapture<F> {
+    fn default() -> Self {
+        Self { messages: Vec::new(), packets: 0, notes: Vec::new() }
+    }
+}
+
+/// Adds a note, up to a reasonable number.
+pub fn note(notes: &mut Vec<String>, text: String) {
+    const MOST: usize = 1000;
+
+    match notes.len() {
+        MOST => notes.push("further notes are omitted".to_owned()),
+        len if len < MOST => notes.push(text),
+        _ => {}
+    }
+}
+
+/// A message of a family.
+#[derive(Debug)]
+pub struct DecodedMessage<F> {
+    /// Packet number.
+    pub number: u64,
+    /// Time since 1970.
+    pub time: Duration,
+    /// Direction.
+    pub direction: Direction,
+    /// Client and controller, as in the table of links.
+    pub link: (String, String),
+    /// Text, as in a trace.
+    pub text: String,
+    /// Packet of the request that it answers.
+    pub answers: Option<u64>,
+    /// Section of the manual.
+    pub section: Option<String>,
+    /// Raw data.
+    pub raw: String,
+    /// Fields.
+    pub fields: Vec<F>,
+    /// Problem found in it.
+    pub problem: Option<String>,
+}
+
+/// Buffer of the selected messages, with limited size.
+#[derive(Debug)]
+struct MessageBuffer<F> {
+    list: Vec<DecodedMessage<F>>,
+    /// Only the messages of this packet.
+    frame: Option<u64>,
+    /// Whether fields, bytes and section are left out, because one line per message is sufficient.
+    without_fields: bool,
+    weight: usize,
+    room: usize,
+    /// Whether there were too many messages.
+    is_full: bool,
+}
+
+/// Memory limit for messages if they can be streamed instead.
+const NOTES_LIMIT: usize = 16 << 20;
+/// Memory limit if all messages are needed as one value, for a filter.
+const ROOM: usize = 256 << 20;
+
+impl<F> MessageBuffer<F> {
+    fn new(room: usize, frame: Option<u64>, without_fields: bool) -> Self {
+        Self {
+            list: Vec::new(),
+            frame,
+            without_fields: without_fields && frame.is_none(),
+            weight: 0,
+            room,
+            is_full: false,
+        }
+    }
+
+    /// Stores a message, if it is selected. Returns whether there is space for more.
+    fn push(&mut self, mut message: DecodedMessage<F>) -> bool {
+        if !self.is_full && self.frame.is_none_or(|frame| frame == message.number) {
+            if self.without_fields {
+                (message.fields, message.raw, message.section) = (Vec::new(), String::new(), None);
+            }
+            self.weight = self.weight.saturating_add(message.weight());
+            self.is_full = self.weight > self.room;
+            if !self.is_full {
+                self.list.push(message);
+            }
+        }
+        !self.is_full
+    }
+}
+
+impl<F> DecodedMessage<F> {
+    /// Approximate memory size.
+    fn weight(&self) -> usize {
+        /// Approximate memory of a field: names and meanings.
+        const FIELD: usize = 100;
+
+        let texts = [self.text.len(), self.raw.len(), self.link.0.len(), self.link.1.len()].iter().sum::<usize>();
+        size_of::<Self>() + texts + self.fields.len() * (size_of::<F>() + FIELD)
+    }
+}
+
+/// Decodes a file and prints the result.
+pub fn print<D: CaptureDecoder>(
+    run: &Run,
+    id: &str,
+    input: &Input<'_>,
+    selection: &Selection,
+    decoder: D,
+) -> Result<(), RunError> {
+    let name = input.name();
+    let source = Source { name: &name, open: || input.open(), selection };
+    let (is_streamed, without_fields) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
+    let room = if is_streamed { NOTES_LIMIT } else { ROOM };
+    let (capture, decoder) = {
+        let _busy = register();
+        source.capture(decoder, room, without_fields)?
+    };
+    if run.screen.format == Format::Value {
+        return Err(Failure::usage("a capture has no list of values")
+            .hint("use -o csv for one row per message")
+            .into());
+    }
+    // CSV rows are written immediately, except for the fields of one packet.
+    let is_whole = run.screen.format != Format::Csv || selection.frame.is_some();
+    let Some(capture) = capture.filter(|_| is_whole) else { return stream::print(run, id, &source, decoder) };
+    // Never as an intermediate JSON value, which needs many times the memory.
+    if is_streamed && !run.is_for_people() {
+        let failure = capture.failure();
+        let whole = ReportEnvelope::new(run, id, &capture, failure.as_ref());
+        run.screen.json(&whole)?;
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }));
+    }
+    run.local(id, &capture)
+}
+
+/// Envelope around a report.
+#[derive(Serialize)]
+struct ReportEnvelope<'a, D> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time: Option<Timestamp>,
+    robot: Option<()>,
+    command: &'a str,
+    ok: bool,
+    data: D,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<ErrorBody>,
+}
+
+impl<'a, D> ReportEnvelope<'a, D> {
+    fn new(run: &Run, command: &'a str, data: D, failure: Option<&Failure>) -> Self {
+        let time = (run.screen.format == Format::Jsonl).then(Timestamp::now);
+        let error = failure.cloned().map(ErrorBody::from);
+        Self { time, robot: None, command, ok: error.is_none(), data, error }
+    }
+}
+
+/// A file that can be read several times.
+struct Source<'a, O> {
+    name: &'a str,
+    open: O,
+    selection: &'a Selection,
+}
+
+impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
+    /// Content of the file, unless it does not fit into memory and must be streamed; also the decoder, ready to
+    /// restart.
+    fn capture<D: CaptureDecoder>(
+        &self,
+        mut decoder: D,
+        room: usize,
+        without_fields: bool,
+    ) -> Result<Captured<D>, Failure> {
+        let frame = self.selection.frame;
+        let mut kept = MessageBuffer::new(room, frame, without_fields);
+        // For one packet, the links are still those of the whole file.
+        let mut links = Links::default();
+        let summary = self.decode(&mut decoder, |message| {
+            if frame.is_some() {
+                links.count(&message.link);
+            }
+            kept.push(message) || room >= ROOM
+        })?;
+        links.are_counted = frame.is_some();
+        if kept.is_full && room < ROOM {
+            return Ok((None, decoder.restart()));
+        }
+        let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
+        // Messages of one packet stay in their order.
+        kept.list.sort_by_key(|message| message.number);
+        let messages: Vec<_> = kept.list.into_iter().map(|message| links.row(message, summary.first)).collect();
+        if let Some(frame) = frame.filter(|_| messages.is_empty()) {
+            let message = format!("no message of this family in packet {frame} of {}", self.name);
+            return Err(Failure::usage(message).hint("list the packet numbers without --frame"));
+        }
+        let mut problems = Problems::default();
+        for row in &messages {
+            problems.add(row);
+        }
+        let mut capture = Capture { messages, problems, links: links.list, ..self.about(&summary, packets, notes) };
+        if kept.is_full {
+            capture.damage = Some(FULL.to_owned());
+        }
+        Ok((Some(capture), decoder.restart()))
+    }
+
+    /// Report without messages.
+    fn about<F>(&self, summary: &Summary, packets: u64, mut notes: Vec<String>) -> Capture<F> {
+        if summary.fragments > 0 {
+            notes.push(format!("{} left out", count_text(summary.fragments, "IP fragment")));
+        }
+        if summary.repeated > 0 {
+            notes.push(format!("{} left out", count_text(summary.repeated, "repeated TCP segment")));
+        }
+        Capture {
+            file: self.name.to_owned(),
+            packets: summary.packets,
+            other_packets: summary.packets.saturating_sub(packets),
+            links: Vec::new(),
+            messages: Vec::new(),
+            notes,
+            damage: summary.damage.as_ref().map(ToString::to_string),
+            problems: Problems::default(),
+            is_detailed: self.selection.frame.is_some(),
+            is_filtered: self.selection.host.is_some() || self.selection.port.is_some(),
+        }
+    }
+
+    /// Decodes the whole file and passes on its messages until the callback ends.
+    fn decode<D: CaptureDecoder>(
+        &self,
+        decoder: &mut D,
+        mut each: impl FnMut(DecodedMessage<D::Field>) -> bool,
+    ) -> Result<Summary, Failure> {
+        let mut pass_on = |decoder: &mut D| decoder.decoded().messages.drain(..).all(&mut each);
+        let mut is_wanted = true;
+        let summary = self.read(|message| {
+            if is_wanted && self.selection.admits(&message.carrier) {
+                decoder.take(message);
+                is_wanted = pass_on(decoder);
+            }
+        })?;
+        decoder.finish();
+        if is_wanted {
+            pass_on(decoder);
+        }
+        Ok(summary)
+    }
+
+    fn read(&self, each: impl FnMut(&Message<'_>)) -> Result<Summary, Failure> {
+        let file = (self.open)().with_context(|| self.name.to_owned())?;
+        read(file, each).map_err(|error| {
+            let hint = match error {
+                OpenError::Compressed => "decompress it first with gunzip or unzstd",
+                OpenError::Unreadable => "check the disk of the file",
+                OpenError::Other => "use a file from tcpdump, Wireshark or --trace",
+            };
+            Failure::local(format!("{}: {error}", self.name)).hint(hint)
+        })
+    }
+}
+
+/// Problem of a message that was not recorded completely.
+pub fn cut() -> String {
+    "the capture has only part of the message; record whole packets, for example with `tcpdump -s 0`".to_owned()
+}

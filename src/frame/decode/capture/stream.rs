@@ -1,0 +1,175 @@
+//! Streamed report with more messages than fit into memory: the file is read a second time while it is printed, with
+//! constant memory. The first pass collects the summary and the column widths.
+
+use std::cell::RefCell;
+use std::io::{self, Read};
+
+use serde::ser::{Serialize, SerializeSeq as _, Serializer};
+use serde_json::json;
+
+use super::report::{Capture, Link, Links, Problems, Row};
+use super::{CaptureDecoder, DecodedCapture, DecodedMessage, ReportEnvelope, Source};
+use crate::Report as _;
+use crate::failure::Failure;
+use crate::output::Format;
+use crate::output::busy_work::register;
+use crate::output::csv::{RowsOf, Sheet};
+use crate::output::render::{self, Layout};
+use crate::output::view::{Table, View};
+use crate::run::{Run, RunError, as_value};
+use crate::schema_of;
+use armctl_transport::capture::Summary;
+
+/// Number of rows per layout batch.
+const PIECE: usize = 1000;
+
+/// Prints a file while it is read.
+pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
+    run: &Run,
+    id: &str,
+    source: &Source<'_, O>,
+    mut decoder: D,
+) -> Result<(), RunError> {
+    let mut links = Links::default();
+    let mut problems = Problems::default();
+    let mut layout = Layout::new(&Row::<D::Field>::COLUMNS);
+    let summary = {
+        let _busy = register();
+        source.decode(&mut decoder, |message| {
+            let row = links.row(message, std::time::Duration::ZERO);
+            problems.add(&row);
+            layout.measure(&row.cells());
+            true
+        })?
+    };
+    let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
+    let mut about: Capture<D::Field> = source.about(&summary, packets, notes);
+    (about.links, about.problems) = (links.list, problems);
+    let failure = about.failure();
+    let second_pass = SecondPass { source, summary: &summary, all: about.problems.all };
+    let _busy = register();
+    if !run.is_for_people() {
+        let Capture { file, packets, other_packets, links, notes, damage, .. } = &about;
+        let messages = Messages(RefCell::new(Some((second_pass, decoder.restart()))));
+        let (packets, other_packets) = (*packets, *other_packets);
+        let data = Written { file, packets, other_packets, links, messages, notes, damage };
+        run.screen.json_as_it_comes(&ReportEnvelope::new(run, id, data, failure.as_ref()))?;
+        return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: true }));
+    }
+    if run.screen.format == Format::Csv {
+        second_pass.csv(run, decoder.restart())?;
+        about.notes.iter().for_each(|note| run.screen.note(note));
+    } else {
+        second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
+    }
+    failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// Second pass through the file, up to the number of messages of the first pass.
+struct SecondPass<'a, 'b, O> {
+    source: &'a Source<'b, O>,
+    summary: &'a Summary,
+    all: u64,
+}
+
+impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
+    /// Passes on every message until the callback ends.
+    fn rows<D: CaptureDecoder>(
+        &self,
+        mut decoder: D,
+        mut each: impl FnMut(Row<D::Field>) -> bool,
+    ) -> Result<(), Failure> {
+        let mut links = Links::default();
+        let mut left = self.all;
+        let row = |message: DecodedMessage<D::Field>| {
+            let Some(fewer) = left.checked_sub(1) else { return false };
+            left = fewer;
+            each(links.row(message, self.summary.first))
+        };
+        self.source.decode(&mut decoder, row).map(|_| ())
+    }
+
+    fn rows_for_people<D: CaptureDecoder>(
+        &self,
+        run: &Run,
+        about: &Capture<D::Field>,
+        layout: Layout,
+        decoder: D,
+    ) -> Result<(), Failure> {
+        let screen = &run.screen;
+        let (width, color) = (screen.width(), screen.stdout_color());
+        let text = |text: String| render::text(&View::text(text), width, color);
+        screen.data(&text(about.head()))?;
+        screen.data("\n")?;
+        let mut layout = layout.fit_width(width);
+        let mut table = Table::new(&Row::<D::Field>::COLUMNS, "");
+        let mut write = |table: &mut Table| {
+            let piece = layout.piece(&table.rows, color);
+            table.rows.clear();
+            screen.data(&piece)
+        };
+        let mut written = Ok(());
+        self.rows(decoder, |row| {
+            table.row(row.cells());
+            if table.rows.len() >= PIECE {
+                written = write(&mut table);
+            }
+            written.is_ok()
+        })?;
+        written?;
+        if !table.rows.is_empty() {
+            write(&mut table)?;
+        }
+        if about.notes.is_empty() {
+            return Ok(());
+        }
+        screen.data(&format!("\n{}", text(about.notes.join("\n"))))
+    }
+
+    /// Messages as CSV, without their lists of fields.
+    fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<(), Failure> {
+        let sheet = Sheet::from_schema(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
+        let (mut text, mut count) = (sheet.header(&[]), 0_usize);
+        let mut written = Ok(());
+        self.rows(decoder, |row| {
+            written = as_value(&row).and_then(|row| {
+                sheet.rows(&[], &json!({ "messages": [row] }), None, &mut text);
+                count += 1;
+                if count.is_multiple_of(PIECE) { run.screen.data(&std::mem::take(&mut text)) } else { Ok(()) }
+            });
+            written.is_ok()
+        })?;
+        written?;
+        run.screen.data(&text)
+    }
+}
+
+/// Fields of a [`Capture`].
+#[derive(serde::Serialize)]
+struct Written<'a, M> {
+    file: &'a str,
+    packets: u64,
+    other_packets: u64,
+    links: &'a [Link],
+    messages: M,
+    notes: &'a [String],
+    damage: &'a Option<String>,
+}
+
+/// Messages that are read during serialization.
+struct Messages<'a, 'b, O, D>(RefCell<Option<(SecondPass<'a, 'b, O>, D)>>);
+
+impl<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder> Serialize for Messages<'_, '_, O, D> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(None)?;
+        let Some((second_pass, decoder)) = self.0.borrow_mut().take() else { return list.end() };
+        let mut written = Ok(());
+        let read = second_pass.rows(decoder, |row| {
+            written = list.serialize_element(&row);
+            written.is_ok()
+        });
+        written?;
+        read.map_err(|failure| serde::ser::Error::custom(failure.message))?;
+        list.end()
+    }
+}

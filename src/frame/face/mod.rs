@@ -1,0 +1,153 @@
+//! Family interface for the rest of the program. Each family implements it in `face.rs`;
+//! [`families`](super::families) lists them.
+
+pub mod explain;
+pub mod family_command;
+pub mod layers;
+pub mod overview;
+pub mod registration;
+pub mod sample;
+pub mod shared_commands;
+pub mod teach_panel;
+pub mod tool;
+
+use clap::ArgMatches;
+use futures_util::future::LocalBoxFuture;
+
+use self::family_command::FamilyLine;
+use self::layers::Layer;
+use self::overview::OverviewReport;
+use self::sample::{Detail, Sample, Traffic};
+use self::shared_commands::SharedVerb;
+use self::teach_panel::Panel;
+use self::tool::{Tool, ToolKind};
+use super::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use super::robot::alarm::Alarm;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::settings::{Robot, target::Family};
+use crate::{Access, AnyCommand, AnyContext, Connection, Driver, Outcome, SchemaEntry};
+use armctl_controller::Risk;
+use armctl_transport::session::host::Guard;
+use armctl_transport::session::host::shared_link::SharedLink;
+
+/// A family, as the rest of the program sees it; [`registration`] derives it from the declaration.
+pub trait Face: Sync {
+    /// Family.
+    fn family(&self) -> Family;
+    /// Manufacturers and models, for completion.
+    fn title(&self) -> &'static str;
+    /// Prefixes of its target URLs, with their continuation.
+    fn urls(&self) -> Vec<(String, &'static str)>;
+    /// Codes that `explain` supports, with their names.
+    fn codes(&self) -> Vec<(String, String)>;
+    /// Whether `explain` supports a code; of a code that is not known, whether it has the form of one.
+    fn explains(&self, code: &str) -> bool;
+    /// Help topic `NAME-setup`: summary and text.
+    fn setup(&self) -> (&'static str, &'static str);
+    /// Additional help topics: name, summary and text.
+    fn topics(&self) -> Vec<(&'static str, &'static str, String)>;
+    /// URL of the simulator that `sim` starts without arguments.
+    fn simulator(&self) -> &'static str;
+    /// Example of a simulator start state.
+    fn start_state(&self) -> &'static str;
+
+    /// Its command with all subcommands and arguments.
+    fn augment(&self, command: clap::Command) -> clap::Command;
+    /// Its command with the named subcommands only.
+    fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
+    /// Parses the arguments after its name.
+    fn read(&self, matches: &mut ArgMatches) -> Result<FamilyLine, clap::Error>;
+    /// Schemas of all its reports.
+    fn schemas(&self) -> Vec<SchemaEntry>;
+
+    /// Its tool of this kind.
+    fn tool(&self, kind: ToolKind) -> Tool;
+
+    /// Driver of its robots.
+    fn driver(&self) -> &'static dyn Driver;
+    /// Summary for `status`.
+    fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>>;
+    /// Present alarms, for `alarm list`.
+    fn alarms<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<Vec<Alarm>, Failure>>;
+    /// Its command for a shared verb.
+    fn shared(&self, verb: SharedVerb) -> Box<dyn AnyCommand>;
+    /// Keys of `armctl teach`.
+    fn panel(&self) -> Panel;
+    /// Layers of `robots check`.
+    fn check<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>>;
+    /// Opens a connection for repeated reads.
+    fn watch<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>>;
+
+    /// Opens a link for a session.
+    fn hold<'a>(
+        &self,
+        robot: &'a Robot,
+        access: &'a Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>>;
+    /// Words of its stop command, after its name.
+    fn stop(&self) -> &'static [&'static str];
+    /// Filter of the requests that may reach a read-only robot through a session.
+    fn guard(&self) -> Guard;
+    /// Whether a session records the traffic; otherwise each command does.
+    fn session_records(&self) -> bool;
+    /// Whether an open session commands the controller, which a read-only robot does not allow.
+    fn session_commands(&self) -> bool;
+
+    /// Risk of reading all of a controller.
+    fn backup_risk(&self, robot: &Robot) -> Risk;
+    /// Makes a backup.
+    fn back_up<'a>(
+        &self,
+        context: AnyContext<'a>,
+        making: SaveOptions,
+    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
+    /// Restores a backup.
+    fn restore<'a>(
+        &self,
+        context: AnyContext<'a>,
+        restoring: &'a RestoreSelection,
+    ) -> LocalBoxFuture<'a, Result<Restored, Failure>>;
+}
+
+/// Repeated reads of a robot, for the poller.
+pub trait Watch {
+    /// Reads once.
+    fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
+    /// Runs a command of the family on the same connection. Only reads are sent.
+    fn ask<'a>(
+        &'a mut self,
+        command: &'a dyn AnyCommand,
+        robot: &'a Robot,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Outcome>;
+    /// Traffic counted on the connection so far.
+    fn traffic(&mut self) -> Traffic;
+    /// Closes the connection.
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
+}
+
+/// A link for a session.
+pub struct HeldLink {
+    /// The link.
+    pub held: SharedLink,
+    /// Action after the link is closed: end of the trace.
+    pub finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
+}
+
+impl From<SharedLink> for HeldLink {
+    fn from(held: SharedLink) -> Self {
+        Self { held, finish: None }
+    }
+}

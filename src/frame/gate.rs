@@ -1,0 +1,229 @@
+//! Safety gate: authorization of a command before anything is sent to a robot.
+//!
+//! A command declares its maximum risk ([`Risk`]). The loop that runs all commands checks it here before anything is
+//! sent. The command then has a [`Grant`], and its link checks each frame against that grant. So a command cannot do
+//! more than was authorized. A command that overwrites data raises its grant later, when it knows what it overwrites
+//! and the user has confirmed it.
+
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::{Origin, Robot};
+pub use armctl_client::Grant;
+use armctl_client::NotAuthorized;
+use armctl_controller::Risk;
+
+/// Effect of Ctrl-C on a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum OnInterrupt {
+    /// Stop the robot, then disconnect.
+    #[default]
+    Stop,
+    /// Disconnect only; the motion goes on.
+    Leave,
+}
+
+/// Type of confirmation that a command needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Confirmation {
+    /// A question before anything is sent.
+    #[default]
+    Question,
+    /// This word must be typed before anything is sent, because the effect cannot be undone.
+    Word(&'static str),
+    /// The command asks the question itself, when it knows what it replaces.
+    WhenKnown,
+}
+
+/// Declaration of a command to the gate.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Intent {
+    /// Maximum risk.
+    pub risk: Risk,
+    /// Completes "This will …": `start job COUNT`.
+    pub text: String,
+    /// Type of confirmation.
+    pub confirmation: Confirmation,
+    /// Whether it stops the robot, which is always allowed.
+    pub is_stop: bool,
+}
+
+impl Intent {
+    /// Risk that is granted before the command has asked a question itself.
+    pub fn initial_risk(&self) -> Risk {
+        match self.confirmation {
+            Confirmation::WhenKnown => self.risk.min(Risk::Write),
+            Confirmation::Question | Confirmation::Word(_) => self.risk,
+        }
+    }
+}
+
+impl From<NotAuthorized> for Failure {
+    fn from(NotAuthorized { what, risk }: NotAuthorized) -> Self {
+        Self::local(format!("internal error: {what} ({}) is not authorized; nothing was sent", risk.name()))
+            .hint("this is a fault of armctl; please report it")
+    }
+}
+
+/// Permissions from the command line.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Gate {
+    /// `--yes`.
+    pub yes: bool,
+    /// `--dry-run`.
+    pub dry_run: bool,
+    /// `--on-interrupt`.
+    pub on_interrupt: OnInterrupt,
+}
+
+impl Gate {
+    /// Whether a question is needed.
+    ///
+    /// # Errors
+    /// A question is needed but not possible, or the robot is read-only.
+    pub fn must_ask(&self, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<bool, Failure> {
+        self.check_read_only(robot, intent)?;
+        if !self.needs_yes(robot, intent.risk) {
+            return Ok(false);
+        }
+        // The command may find that it replaces nothing. A motion always needs a question.
+        let may_be_nothing = intent.confirmation == Confirmation::WhenKnown && intent.risk < Risk::Motion;
+        if !screen.can_ask() && !may_be_nothing {
+            return Err(not_confirmed(robot, intent.risk, &intent.text));
+        }
+        Ok(true)
+    }
+
+    /// Refuses to change a read-only robot. A stop is always allowed.
+    fn check_read_only(&self, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
+        if intent.risk == Risk::Read || self.dry_run || intent.is_stop || !robot.read_only.value {
+            return Ok(());
+        }
+        let hint = |name: &str| {
+            format!("the inventory protects this robot; to allow changes: `armctl robots set {name} read_only=off`")
+        };
+        Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(
+            match &robot.read_only_entry {
+                Some(entry) => format!("its address is that of '{entry}' in robots.toml; {}", hint(entry)),
+                None if robot.read_only.origin == Origin::Defaults => {
+                    "[defaults] in robots.toml make it so, on purpose; `armctl robots edit` changes them".to_owned()
+                }
+                None => hint(&robot.name),
+            },
+        ))
+    }
+
+    /// Whether a confirmation is needed and `--yes` is missing.
+    pub fn needs_yes(&self, robot: &Robot, risk: Risk) -> bool {
+        risk >= Risk::Destroy && !self.yes && !self.dry_run && !robot.target.value.is_simulated()
+    }
+
+    /// Refuses to move several robots, or to overwrite data on them, unless the line names each of them.
+    pub fn check_named_robots(robots: &[(&Robot, Intent)], is_named: impl Fn(&Robot) -> bool) -> Result<(), Failure> {
+        let unnamed =
+            robots.iter().filter(|(robot, intent)| intent.risk >= Risk::Destroy && !intent.is_stop && !is_named(robot));
+        let unnamed: Vec<&(&Robot, Intent)> = unnamed.collect();
+        let Some((_, intent)) = unnamed.first().filter(|_| robots.len() > 1) else { return Ok(()) };
+        let names: Vec<&str> = unnamed.iter().map(|(robot, _)| robot.name.as_str()).collect();
+        let count_text = format!("{} of {} robots", unnamed.len(), robots.len());
+        let message = format!("not confirmed: on {count_text} ({}) this would {}", names.join(", "), intent.text);
+        Err(Failure::new(Kind::Rejected, message).hint(
+            "name each of them with -r; patterns, --tag and --all are not enough for what moves, deletes or overwrites",
+        ))
+    }
+}
+
+/// Data that a command deletes or overwrites, for the confirmation.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Change {
+    /// Completes "This will …": `overwrite 2 points`.
+    text: String,
+    items: Vec<String>,
+    notes: Vec<String>,
+    is_empty: bool,
+}
+
+/// Maximum number of items in a question; the others are counted.
+const MAX_ITEMS: usize = 12;
+
+impl Change {
+    /// `text` completes "This will …": `delete 2 files`.
+    pub fn new(text: impl Into<String>) -> Self {
+        Self { text: text.into(), ..Self::default() }
+    }
+
+    /// A change that overwrites no user data.
+    pub fn none() -> Self {
+        Self { is_empty: true, ..Self::default() }
+    }
+
+    /// Adds a value that is replaced.
+    #[must_use]
+    pub fn replaces(mut self, what: &str, old: &str, new: &str) -> Self {
+        self.items.push(format!("{what}: {old} -> {new}"));
+        self
+    }
+
+    /// Adds an object that is deleted or overwritten completely.
+    #[must_use]
+    pub fn item(mut self, what: impl Into<String>) -> Self {
+        self.items.push(what.into());
+        self
+    }
+
+    /// Adds a consequence: `a power cycle is needed`.
+    #[must_use]
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// Whether no question is needed.
+    pub fn is_empty(&self) -> bool {
+        self.is_empty
+    }
+
+    /// Lines to print before the question.
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = vec![format!("This will {}{}", self.text, if self.items.is_empty() { "." } else { ":" })];
+        lines.extend(self.items.iter().take(MAX_ITEMS).map(|item| format!("  {item}")));
+        if self.items.len() > MAX_ITEMS {
+            lines.push(format!("  and {} more", self.items.len() - MAX_ITEMS));
+        }
+        lines.extend(self.notes.iter().cloned());
+        lines
+    }
+
+    /// The change in one line.
+    pub fn format_line(&self) -> String {
+        match &self.items[..] {
+            [] => self.text.clone(),
+            [item] => format!("{} ({item})", self.text),
+            [item, rest @ ..] => format!("{} ({item}, and {} more)", self.text, rest.len()),
+        }
+    }
+}
+
+/// Failure because the data changed while the question was open.
+pub fn data_changed(message: impl Into<String>) -> Failure {
+    Failure::new(Kind::Rejected, message).hint("another client changed it: check the state, then repeat the command")
+}
+
+/// Failure because a question is needed but not possible.
+pub fn not_confirmed(robot: &Robot, risk: Risk, text: &str) -> Failure {
+    let when = if risk == Risk::Motion { " when nobody is in the cell" } else { "" };
+    Failure::new(Kind::Rejected, format!("not confirmed: on {} this would {text}", robot.label()))
+        .hint(format!("pass --yes to confirm{when}, or --dry-run to see what would be sent"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_the_items_of_a_long_change() {
+        let change = (0..20).fold(Change::new("delete 20 files"), |change, n| change.item(format!("{n}.JBI")));
+        assert_eq!(change.lines().len(), 1 + MAX_ITEMS + 1);
+        assert_eq!(change.lines().last().unwrap(), "  and 8 more");
+        assert_eq!(change.format_line(), "delete 20 files (0.JBI, and 19 more)");
+    }
+}

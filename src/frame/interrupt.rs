@@ -1,0 +1,329 @@
+//! Ctrl-C and other termination requests as events instead of a killed process.
+//!
+//! A separate thread receives them, whatever the rest of the process does. The first request is passed to the running
+//! work, which stops the robot. A second one ends the process at once. So does the first, if the work is busy with a
+//! computation and does not react.
+
+use std::future::Future;
+use std::pin::pin;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{OnceLock, mpsc};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use futures_util::FutureExt;
+use tokio::sync::watch;
+use tokio::task::coop::unconstrained;
+
+use crate::failure::{Failure, Kind};
+use crate::output::{busy_work, immediate_exit};
+
+/// Reason of the termination request, once received. It stays set, so that nothing new starts, until [`clear_interrupt`].
+type TerminationRequest = watch::Sender<Option<&'static str>>;
+
+const KEYS: &str = "Ctrl-C";
+#[cfg_attr(not(unix), cfg(test))]
+const TERMINATE: &str = "termination request (SIGTERM)";
+const HANGUP: &str = "the terminal was closed (SIGHUP)";
+#[cfg(unix)]
+const QUIT: &str = "Ctrl-\\ (SIGQUIT)";
+#[cfg(unix)]
+const SUSPEND: &str = "Ctrl-Z (SIGTSTP)";
+
+/// Two requests closer than this count as one: `timeout`, for example, sends each twice.
+const ECHO_WINDOW: Duration = Duration::from_millis(100);
+/// Time for busy work to react to a request.
+const BUSY_TIMEOUT: Duration = Duration::from_millis(500);
+
+/// One listener per process, so that a signal between two waits is not lost.
+static REQUEST: OnceLock<Result<TerminationRequest, String>> = OnceLock::new();
+
+/// Runs `work` until it ends or a termination request arrives. Of nested calls, the inner one handles it first.
+pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
+    let asked = requests()?.subscribe();
+    let before = *asked.borrow();
+    if let Some(how) = before {
+        return Err(Failure::new(Kind::Interrupted, how));
+    }
+    // `unconstrained`, because work that exhausts the task budget (a peer that answers at once) must not delay this
+    // wait.
+    let how = unconstrained(wait(asked, |_| true));
+    run_until_request(work, how).await.map_err(|how| Failure::new(Kind::Interrupted, how))
+}
+
+/// Result of `work`, or the request that ended it. The work may wait for the same request, so it is polled once more
+/// after the request has arrived from its thread.
+async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
+    let mut work = pin!(work);
+    tokio::select! {
+        biased;
+        done = &mut work => Ok(done),
+        how = request => work.now_or_never().ok_or(how),
+    }
+}
+
+/// From here on, a termination request waits for the next [`interruptible`] instead of killing the process.
+pub fn catch_interrupts() {
+    // If signals cannot be caught, the next call reports it.
+    let _ = requests();
+}
+
+/// Clears a Ctrl-C that ended one of several lines, so that the next line can start. Returns any other termination
+/// request.
+pub fn clear_interrupt() -> Option<&'static str> {
+    let asked = requests().ok()?;
+    asked.send_if_modified(|how| how.take_if(|how| *how == KEYS).is_some());
+    *asked.borrow()
+}
+
+/// Waits for a termination request other than Ctrl-C.
+pub async fn termination_request() -> &'static str {
+    match requests() {
+        Ok(asked) => wait(asked.subscribe(), |how| how != KEYS).await,
+        Err(_) => std::future::pending().await,
+    }
+}
+
+fn requests() -> Result<&'static TerminationRequest, Failure> {
+    let asked = REQUEST.get_or_init(|| start().map_err(|error| crate::failure::plain(&error)));
+    asked.as_ref().map_err(|why| Failure::local(format!("cannot receive signals: {why}")))
+}
+
+/// Starts the thread. It listens when this function returns, because work may send a request at its first poll.
+fn start() -> std::io::Result<TerminationRequest> {
+    let requests = TerminationRequest::default();
+    let (ready, is_ready) = mpsc::channel();
+    let sender = requests.clone();
+    thread::Builder::new().name("signals".to_owned()).spawn(
+        move || match tokio::runtime::Builder::new_current_thread().enable_all().build() {
+            Ok(runtime) => runtime.block_on(async move {
+                let signals = Signals::new();
+                let _ = ready.send(Ok(()));
+                forward_signals(signals, sender).await;
+            }),
+            Err(error) => _ = ready.send(Err(error)),
+        },
+    )?;
+    is_ready.recv().unwrap_or_else(|_| Err(std::io::Error::other("the thread for them has ended")))?;
+    Ok(requests)
+}
+
+/// Waits for a matching termination request.
+async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(&str) -> bool) -> &'static str {
+    let how = asked.wait_for(|how| how.is_some_and(&counts)).await.ok().and_then(|how| *how);
+    match how {
+        Some(how) => how,
+        None => std::future::pending().await,
+    }
+}
+
+/// Passes on every termination request.
+async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
+    let mut presses = Presses::default();
+    // The work that was running at the last check, while a request is pending.
+    let mut seen = None;
+    loop {
+        let is_waiting = requests.borrow().is_some();
+        let how = tokio::select! {
+            how = signals.next() => how,
+            () = tokio::time::sleep(BUSY_TIMEOUT), if is_waiting => {
+                let now = busy_work::current();
+                if now.is_some() && now == seen {
+                    let how = *requests.borrow();
+                    immediate_exit::exit_now(how.unwrap_or(KEYS));
+                }
+                seen = now;
+                continue;
+            }
+        };
+        #[cfg(unix)]
+        if how == SUSPEND && MOTIONS.load(Ordering::SeqCst) == 0 {
+            immediate_exit::suspend();
+            continue;
+        }
+        if presses.press(how, requests.borrow().is_some(), Instant::now()) {
+            immediate_exit::exit_now(&format!("{how} again: ended at once; a motion or command may continue"));
+        }
+        seen = busy_work::current();
+        // The first request stays set, unless it was cleared for the next line.
+        requests.send_if_modified(|asked| {
+            let is_first = asked.is_none_or(|asked| asked == KEYS);
+            if is_first {
+                *asked = Some(how);
+            }
+            is_first
+        });
+    }
+}
+
+/// Requests since the work reacted to one.
+#[derive(Debug, Default)]
+struct Presses {
+    count: u32,
+    last: Option<Instant>,
+}
+
+impl Presses {
+    /// Whether one more request ends the process; `is_waiting` says whether the previous one is pending. Requests
+    /// from a closing terminal do not count, because they come automatically and more than once.
+    fn press(&mut self, how: &str, is_waiting: bool, now: Instant) -> bool {
+        if !is_waiting {
+            *self = Self::default();
+        }
+        if how == HANGUP {
+            return false;
+        }
+        if self.last.is_none_or(|last| now.duration_since(last) >= ECHO_WINDOW) {
+            self.count += 1;
+            self.last = Some(now);
+        }
+        self.count > 1
+    }
+}
+
+/// Number of motions in progress.
+static MOTIONS: AtomicUsize = AtomicUsize::new(0);
+
+/// A motion that this process supervises. During a motion, Ctrl-Z does not suspend the process; it ends the work,
+/// like Ctrl-C.
+#[derive(Debug)]
+pub struct MotionInProgress;
+
+impl MotionInProgress {
+    /// Starts supervision, until it is dropped.
+    pub fn begin() -> Self {
+        catch_interrupts();
+        MOTIONS.fetch_add(1, Ordering::SeqCst);
+        Self
+    }
+}
+
+impl Drop for MotionInProgress {
+    fn drop(&mut self) {
+        MOTIONS.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+#[cfg(unix)]
+async fn receive(signal: &mut Option<tokio::signal::unix::Signal>) {
+    match signal {
+        Some(signal) => _ = signal.recv().await,
+        None => std::future::pending().await,
+    }
+}
+
+/// Termination signals. Signals after its creation count, even before they are awaited.
+#[cfg(unix)]
+struct Signals {
+    keys: Option<tokio::signal::unix::Signal>,
+    terminate: Option<tokio::signal::unix::Signal>,
+    hangup: Option<tokio::signal::unix::Signal>,
+    quit: Option<tokio::signal::unix::Signal>,
+    suspend: Option<tokio::signal::unix::Signal>,
+}
+
+#[cfg(unix)]
+impl Signals {
+    fn new() -> Self {
+        use tokio::signal::unix::{SignalKind, signal};
+
+        /// Number of SIGTSTP.
+        const SIGTSTP: i32 = if cfg!(target_os = "linux") { 20 } else { 18 };
+
+        Self {
+            keys: signal(SignalKind::interrupt()).ok(),
+            terminate: signal(SignalKind::terminate()).ok(),
+            hangup: if hangup_is_ignored() { None } else { signal(SignalKind::hangup()).ok() },
+            quit: signal(SignalKind::quit()).ok(),
+            suspend: signal(SignalKind::from_raw(SIGTSTP)).ok(),
+        }
+    }
+
+    async fn next(&mut self) -> &'static str {
+        tokio::select! {
+            () = receive(&mut self.keys) => KEYS,
+            () = receive(&mut self.terminate) => TERMINATE,
+            () = receive(&mut self.hangup) => HANGUP,
+            () = receive(&mut self.quit) => QUIT,
+            () = receive(&mut self.suspend) => SUSPEND,
+        }
+    }
+}
+
+/// Whether the process must outlive its terminal, as under `nohup`. If unknown, hangups are not caught.
+#[cfg(unix)]
+fn hangup_is_ignored() -> bool {
+    let status = armctl_files::text(std::path::Path::new("/proc/self/status"), armctl_files::SETTINGS);
+    let status = status.unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_none_or(|mask| mask & 1 != 0)
+}
+
+#[cfg(not(unix))]
+struct Signals;
+
+#[cfg(not(unix))]
+impl Signals {
+    fn new() -> Self {
+        Self
+    }
+
+    async fn next(&mut self) -> &'static str {
+        match tokio::signal::ctrl_c().await {
+            Ok(()) => KEYS,
+            Err(_) => std::future::pending().await,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::future::{pending, poll_fn};
+    use std::task::Poll;
+
+    use super::*;
+
+    #[tokio::test]
+    async fn inner_wait_handles_the_request() {
+        let (ask, asked) = watch::channel(None);
+        let inner = run_until_request(pending::<()>(), wait(asked.clone(), |_| true));
+        // The request arrives after the poll of the work.
+        let outer = poll_fn(|_| {
+            ask.send_replace(Some(KEYS));
+            Poll::Ready("outer")
+        });
+        assert_eq!(run_until_request(inner, outer).await, Ok(Err(KEYS)));
+    }
+
+    #[tokio::test]
+    async fn request_ends_work_that_does_not_handle_it() {
+        assert_eq!(run_until_request(pending::<()>(), async { KEYS }).await, Err(KEYS));
+        assert_eq!(run_until_request(async { 1 }, async { KEYS }).await, Ok(1));
+    }
+
+    #[test]
+    fn second_request_ends_the_process_but_an_echo_does_not() {
+        let start = Instant::now();
+        let at = |millis| start + Duration::from_millis(millis);
+        let mut presses = Presses::default();
+        assert!(!presses.press(KEYS, false, at(0)));
+        assert!(!presses.press(KEYS, true, at(50)), "sent twice");
+        assert!(!presses.press(KEYS, true, at(99)), "a key that is held down");
+        assert!(presses.press(TERMINATE, true, at(120)));
+        // The line has ended, and another line is running.
+        assert!(!presses.press(KEYS, false, at(400)));
+        assert!(presses.press(KEYS, true, at(600)));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn repeated_hangups_do_not_end_the_process() {
+        let start = Instant::now();
+        let at = |millis| start + Duration::from_millis(millis);
+        let mut presses = Presses::default();
+        assert!(!presses.press(HANGUP, false, at(0)));
+        assert!(!presses.press(HANGUP, true, at(200)));
+        assert!(!presses.press(TERMINATE, true, at(400)));
+        assert!(presses.press(TERMINATE, true, at(600)));
+    }
+}

@@ -1,0 +1,59 @@
+//! Execution of all commands.
+//!
+//! A command is a struct of its arguments that implements [`Command`]. A group of subcommands is a clap enum. Both
+//! are [`CommandSet`]s. A line in the family's `commands!` list adds them to the command line, help, man page,
+//! completion and schema.
+
+pub mod attach;
+pub mod authority;
+pub mod background;
+pub mod backup;
+pub mod batch;
+pub mod command;
+pub mod command_set;
+pub mod condition;
+pub mod connection;
+pub mod cycle;
+pub mod decode;
+pub mod dry_run;
+pub mod editor_session;
+pub mod face;
+pub mod failure;
+pub mod flags;
+pub mod gate;
+pub mod guardian;
+pub mod interrupt;
+pub mod items;
+pub mod kind;
+pub mod local_names;
+pub mod names;
+pub mod output;
+pub mod plot;
+pub mod prompt;
+pub mod repeat_limiter;
+pub mod repl;
+pub mod report;
+pub mod robot;
+pub mod run;
+pub mod script_line;
+pub mod serve;
+pub mod session_manager;
+pub mod setting;
+pub mod settings;
+pub mod settings_report;
+pub mod share;
+pub mod sheet;
+pub mod store;
+pub mod teach;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;
+pub mod text_files;
+pub mod trace;
+pub mod wait_arguments;
+pub mod watch;
+
+pub use command::{AnyCommand, AnyContext, Command, Context};
+pub use command_set::{CommandSet, Offline, OfflineCommand, Subcommands};
+pub use connection::{Access, AnyFamilyArguments, ConnectMode, Connection, Driver, Entry, Family, FamilyArguments};
+pub use kind::{Candidate, ValueKind};
+pub use report::{AnyReport, Outcome, Report, SchemaEntry, schema_of};

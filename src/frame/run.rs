@@ -1,0 +1,559 @@
+//! Run loop for robot commands: select robots, pass the gate, run, report, repeat.
+
+mod failure_log;
+mod print;
+mod rounds;
+mod several;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::Context as _;
+use futures_util::StreamExt as _;
+use futures_util::stream;
+use serde::Serialize;
+use tokio::time::timeout_at;
+
+use self::failure_log::FailureLog;
+pub use self::print::as_value;
+use self::print::{ReportPosition, with_time};
+pub use self::rounds::Repeat;
+use self::rounds::Rounds;
+use super::attach::{identify, is_held_by_other_process};
+use super::authority::{self, Authority};
+use super::background;
+use super::command::{AnyCommand, AnyContext};
+use super::connection::{Access, Connection, Entry, FamilyArguments};
+use super::dry_run::{DryRun, Plan, is_end};
+use super::interrupt::{MotionInProgress, catch_interrupts, interruptible};
+use super::report::Outcome;
+use super::script_line::Line;
+use super::share::open_shared_session;
+use crate::failure::{Failure, Kind};
+use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
+use crate::guardian::Guardian;
+use crate::output::Screen;
+use crate::output::envelope::Envelope;
+use crate::output::jq::{Filter, failure_after_change};
+use crate::output::redraw::Redraw;
+use crate::settings::{Robot, Sessions, Sources};
+use armctl_controller::Risk;
+
+/// Run options of the command line.
+#[derive(Debug)]
+pub struct Run {
+    /// Output.
+    pub screen: Screen,
+    /// Robots and their settings.
+    pub sources: Sources,
+    /// Permissions.
+    pub gate: Gate,
+    /// Repetition.
+    pub repeat: Repeat,
+    /// `--jq`.
+    pub filter: Option<Filter>,
+    /// `--trace`.
+    pub trace: Option<PathBuf>,
+    /// Context of a line in a REPL or batch.
+    pub line: Option<Line>,
+    /// Screen state of a watch.
+    pub redraw: Redraw,
+    /// Family arguments before the command.
+    pub own: FamilyArguments,
+}
+
+/// A failure with the data for its envelope.
+#[derive(Debug)]
+pub struct RunError {
+    /// Failure.
+    pub failure: Failure,
+    /// Envelope with robot and command.
+    pub envelope: Option<Box<Envelope>>,
+    /// Whether the report on stdout already shows the failure: then only the exit code is set.
+    pub is_reported: bool,
+}
+
+impl From<Failure> for RunError {
+    fn from(failure: Failure) -> Self {
+        Self { failure, envelope: None, is_reported: false }
+    }
+}
+
+impl From<anyhow::Error> for RunError {
+    fn from(error: anyhow::Error) -> Self {
+        Failure::from(error).into()
+    }
+}
+
+impl RunError {
+    /// Failure of a command on a robot.
+    pub fn for_robot(robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Self {
+        let envelope = Some(Box::new(Envelope::of(robot, command.id(), Err(failure.clone()))));
+        Self { failure, envelope, is_reported: false }
+    }
+}
+
+/// Default interval between reads.
+const DEFAULT_INTERVAL: Duration = Duration::from_secs(1);
+/// Maximum number of robots in parallel. It is large enough that a plant with many switched-off robots takes one
+/// timeout, and small enough for an open-file limit of 256.
+const MAX_PARALLEL: usize = 128;
+
+/// Connection and its granted risk.
+type Granted = (Box<dyn Connection>, Grant);
+
+impl Run {
+    /// Runs `command` on its robots and reports.
+    pub async fn robots(&self, command: &dyn AnyCommand) -> Result<(), RunError> {
+        if let Some(outcome) = command.without_robot(&self.screen) {
+            return self.local(command.id(), &*outcome?);
+        }
+        let robots = self.authorize_robots(command).await?;
+        if robots.iter().any(|robot| robot.target.value.is_simulated()) && self.line.is_none() {
+            self.screen.note_simulator();
+        }
+        match &robots[..] {
+            [robot] if !self.sources.selection.is_plural() => self.run_one(command, robot).await,
+            robots => self.run_many(command, robots).await,
+        }
+    }
+
+    /// Robots of a command, after it has been authorized for all of them.
+    pub async fn authorize_robots(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, RunError> {
+        let mut robots = self.select_robots(command)?;
+        let asks = |robot: &Robot| {
+            let intent = self.intent(command, robot);
+            intent.risk == Risk::Motion || intent.confirmation != Confirmation::Question
+        };
+        if robots.iter().any(asks) {
+            // From here on, Ctrl-C (also at a question) ends with a message and an exit code instead of killing the
+            // process.
+            catch_interrupts();
+            for robot in &robots {
+                self.check_model(command, robot)
+                    .await
+                    .map_err(|failure| RunError::for_robot(robot, command, failure))?;
+            }
+        }
+        for robot in &robots {
+            let intent = self.intent(command, robot);
+            let authorized = authority::confirm_intent(self.gate, &self.screen, robot, &intent).await;
+            authorized.map_err(|failure| RunError::for_robot(robot, command, failure))?;
+        }
+        for robot in robots.iter_mut().filter(|robot| self.opens_session(command, robot)) {
+            let opened = background::open_session(robot, self.sources.inventory.path.as_deref(), &self.screen).await;
+            opened.map_err(|failure| RunError::for_robot(robot, command, failure))?;
+            robot.sessions = Sessions::Only;
+        }
+        self.begin_trace()?;
+        Ok(robots)
+    }
+
+    /// Runs a command once on [authorized](Self::authorize_robots) robots, without a report.
+    pub async fn collect(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Vec<Outcome> {
+        run_parallel(robots.iter().map(|robot| self.run_once(command, robot))).await
+    }
+
+    /// Robots of a command, if the command is valid for them.
+    fn select_robots(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
+        if command.intent(None).risk > Risk::Read && (self.repeat.is_wanted() || self.repeat.check.is_some()) {
+            return Err(Failure::usage("--watch, --count, --until and --check need a command that only reads")
+                .hint("run this command once and watch `status` or `position`"));
+        }
+        if command.moves_until_stopped() && !self.gate.dry_run && !self.screen.can_interrupt() {
+            return Err(Failure::usage("this motion needs a limit, because there is no terminal for Ctrl-C")
+                .hint("add --for TIME, such as --for 500ms"));
+        }
+        let mut robots = self.sources.robots(command.family())?;
+        self.identify(command, &mut robots)?;
+        for robot in &mut robots {
+            // If the session ends in the meantime, the direct connection must not be used without confirmation.
+            if !self.gate.dry_run && command.entry(robot) == Entry::ThroughSession {
+                robot.sessions = Sessions::Only;
+            }
+        }
+        if command.is_endless() && robots.len() > MAX_PARALLEL {
+            return Err(Failure::usage(format!(
+                "at most {MAX_PARALLEL} robots can be watched at a time, not {}",
+                robots.len()
+            ))
+            .hint("select fewer with -r or --tag"));
+        }
+        let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
+        Gate::check_named_robots(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
+        Ok(robots)
+    }
+
+    /// Finds robots with an alias address that matters. A dry run sends no request for that.
+    fn identify(&self, command: &dyn AnyCommand, robots: &mut [Robot]) -> Result<(), Failure> {
+        let Some(driver) = command.driver().filter(|_| !self.gate.dry_run) else { return Ok(()) };
+        for robot in robots {
+            let intent = self.intent(command, robot);
+            let changes = intent.risk > Risk::Read && !intent.is_stop;
+            match identify(&self.sources, driver, robot, changes) {
+                Err(failure) if changes => return Err(failure),
+                // For a read or a stop, the identity of the robot does not matter.
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a session is opened for a command, because the robot's entry requires it.
+    fn opens_session(&self, command: &dyn AnyCommand, robot: &Robot) -> bool {
+        let is_wanted = robot.hold.value && !robot.read_only.value && robot.sessions == Sessions::Shared;
+        is_wanted
+            && !self.gate.dry_run
+            && !command.intent(Some(robot)).is_stop
+            && matches!(command.entry(robot), Entry::Stops(_))
+    }
+
+    /// Intent for the gate: effect of the command and of its connection.
+    fn intent(&self, command: &dyn AnyCommand, robot: &Robot) -> Intent {
+        let intent = self.own.complete(command.intent(Some(robot)));
+        let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
+        let entry = if is_free { Entry::Harmless } else { command.entry(robot) };
+        let Entry::Stops(entry) = entry else { return intent };
+        // A command that confirms later describes its own action then; any other action is part of this question.
+        let (asks, confirmation) = match intent.confirmation {
+            Confirmation::Word(_) => (true, intent.confirmation),
+            Confirmation::Question => (intent.risk >= Risk::Destroy, Confirmation::Question),
+            Confirmation::WhenKnown => (intent.risk == Risk::Motion, Confirmation::Question),
+        };
+        let text = if asks { format!("{}, and {entry}", intent.text) } else { entry };
+        Intent { risk: Risk::Motion, text, confirmation, ..intent }
+    }
+
+    /// Finds rejections that need no question: unknown robots, missing permissions.
+    pub fn check_gate(&self, command: &dyn AnyCommand) -> Result<(), Failure> {
+        if command.driver().is_none() {
+            return Ok(());
+        }
+        let robots = self.select_robots(command)?;
+        let mut asked = robots.iter().map(|robot| (robot, self.intent(command, robot)));
+        asked.try_for_each(|(robot, intent)| self.gate.must_ask(&self.screen, robot, &intent).map(|_| ()))
+    }
+
+    async fn run_one(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
+        if (self.repeat.is_wanted() || command.is_endless()) && !self.gate.dry_run {
+            return self.watch(command, robot, None).await;
+        }
+        let report =
+            self.run_once(command, robot).await.map_err(|failure| RunError::for_robot(robot, command, failure))?;
+        let printed = self.print(robot, command.id(), &*report, ReportPosition::Alone);
+        if let Some(failure) = report.failure() {
+            // A closed or full stdout does not change the failure.
+            let is_reported = printed.is_ok() && self.screen.is_json();
+            return Err(RunError { failure, envelope: None, is_reported });
+        }
+        printed.map_err(|failure| self.mark_unprinted(command.intent(None).risk, failure))?;
+        let checked = self.check(&Envelope::of(robot, command.id(), report.data()));
+        checked.map_err(|failure| RunError::for_robot(robot, command, failure))
+    }
+
+    /// Evaluates `--check`.
+    fn check(&self, envelopes: &impl Serialize) -> Result<(), Failure> {
+        let Some(check) = self.repeat.check.as_ref().filter(|_| !self.gate.dry_run) else { return Ok(()) };
+        let envelopes = as_value(envelopes)?;
+        if check.is_met(&envelopes)? {
+            return Ok(());
+        }
+        let failure = Failure::new(Kind::ConditionNotMet, format!("the condition '{check}' is not met"));
+        Err(match check.check_keys(&envelopes) {
+            Some(why) => failure.hint(why),
+            None => failure,
+        })
+    }
+
+    /// Failure to print a report of a completed action, with a note not to repeat the action.
+    fn mark_unprinted(&self, risk: Risk, failure: Failure) -> Failure {
+        if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
+            return failure;
+        }
+        failure_after_change(failure)
+    }
+
+    /// Repeats a read command on one connection; `among` is set if other robots are watched as well.
+    async fn watch(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        among: Option<ReportPosition<'_>>,
+    ) -> Result<(), RunError> {
+        let stopped = |failure| RunError::for_robot(robot, command, failure);
+        let (mut link, _) = self.connect(command, robot).await.map_err(stopped)?;
+        let watched = self.watch_over(command, robot, &mut *link, among).await;
+        let closed = link.close(&self.screen).await;
+        watched?;
+        closed.map_err(stopped)
+    }
+
+    async fn watch_over(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        link: &mut dyn Connection,
+        among: Option<ReportPosition<'_>>,
+    ) -> Result<(), RunError> {
+        let stopped = |failure| RunError::for_robot(robot, command, failure);
+        let mut silences = FailureLog::new(self, robot);
+        let mut rounds =
+            Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { DEFAULT_INTERVAL });
+        loop {
+            let grant = Grant::up_to(Risk::Read);
+            let attempt = self.attempt(command, robot, link, &grant);
+            let attempted = match rounds.deadline().filter(|_| command.is_endless()) {
+                Some(deadline) => timeout_at(deadline, attempt).await,
+                None => Ok(attempt.await),
+            };
+            let Ok(outcome) = attempted else { return rounds.end().map_err(stopped) };
+            let silence = match outcome {
+                Ok(report) => {
+                    silences.end();
+                    let position = among.unwrap_or_else(|| self.round(rounds.is_first(), command.is_endless()));
+                    if !self.repeat.is_quiet {
+                        self.print(robot, command.id(), &*report, position)?;
+                    }
+                    let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
+                    let failure = report.failure().filter(|failure| {
+                        self.repeat.is_quiet && failure.kind == Kind::NoAnswer && !self.repeat.allows(failure)
+                    });
+                    if let Some(failure) = failure.as_ref().filter(|_| !is_met && rounds.is_first()) {
+                        return Err(stopped(failure.clone()));
+                    }
+                    if self.repeat.is_quiet && (is_met || (failure.is_none() && rounds.is_last())) {
+                        self.print(robot, command.id(), &*report, ReportPosition::Alone)?;
+                    }
+                    if is_met {
+                        return Ok(());
+                    }
+                    failure
+                }
+                // A watch continues while a robot does not answer; any other failure ends it.
+                Err(failure)
+                    if failure.kind == Kind::NoAnswer && !self.repeat.ends_with(&failure, rounds.is_first()) =>
+                {
+                    if self.repeat.is_quiet {
+                        // It is reported at the end if the robot is still silent.
+                    } else if self.is_for_people() {
+                        silences.report(&failure);
+                    } else {
+                        self.emit(with_time(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+                    }
+                    Some(failure)
+                }
+                Err(failure) => return Err(self.interrupted(robot, command, failure)?),
+            };
+            if !rounds.next().await.map_err(stopped)? {
+                return match silence {
+                    Some(failure) if self.repeat.is_quiet => Err(stopped(failure)),
+                    Some(failure) => Err(RunError { failure, envelope: None, is_reported: true }),
+                    None => rounds.end().map_err(stopped),
+                };
+            }
+        }
+    }
+
+    /// Failure that ends a watch. In a stream for programs it is written to stdout in order.
+    fn interrupted(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
+        // A wait reports once, like a single command.
+        if self.is_for_people() || self.repeat.is_quiet || failure.kind == Kind::Interrupted {
+            return Ok(RunError::for_robot(robot, command, failure));
+        }
+        self.emit(with_time(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
+        Ok(RunError { failure, envelope: None, is_reported: true })
+    }
+
+    /// One run on one connection.
+    async fn run_once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
+        if self.gate.dry_run {
+            return Ok(Box::new(DryRun::from(self.plan(command, robot, &self.screen).await?)));
+        }
+        let (mut link, grant) = self.connect(command, robot).await?;
+        let outcome = self.attempt(command, robot, &mut *link, &grant).await;
+        // The result of the command matters more than that of its trace.
+        let closed = link.close(&self.screen).await;
+        let report = outcome?;
+        closed.map_err(|failure| Failure { message: format!("succeeded, but {}", failure.message), ..failure })?;
+        Ok(report)
+    }
+
+    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
+        let access = self.access(command, robot);
+        let grant = access.grant.clone();
+        let access = match &self.line {
+            Some(line) => line.connect(robot, access, &self.screen).await?,
+            None => access,
+        };
+        let goes_on = self.repeat.is_wanted() || command.is_endless();
+        let robot = &match command.driver().filter(|_| goes_on) {
+            Some(driver) => match open_shared_session(driver, robot).await {
+                // Without a family in common, a robot that is not there has a line as well.
+                Err(failure) if failure.kind == Kind::NoAnswer && driver.family().is_none() => robot.clone(),
+                robot => robot?,
+            },
+            None => robot.clone(),
+        };
+        let link = interruptible(command.connect(robot, access, &self.screen)).await??;
+        Ok((link, grant))
+    }
+
+    /// Access of a command at its start.
+    fn access(&self, command: &dyn AnyCommand, robot: &Robot) -> Access {
+        Access {
+            grant: Grant::up_to(command.intent(Some(robot)).initial_risk()),
+            dry_run: self.gate.dry_run,
+            trace: self.trace.clone(),
+            mode: command.connect_mode(robot),
+            typed: None,
+            own: self.own.clone(),
+            leaves_motion: self.leaves_motion(command),
+            is_stop: command.intent(Some(robot)).is_stop,
+        }
+    }
+
+    fn context<'a>(
+        &'a self,
+        command: &dyn AnyCommand,
+        robot: &'a Robot,
+        connection: &'a mut dyn Connection,
+        (screen, grant): (&'a Screen, &Grant),
+    ) -> AnyContext<'a> {
+        let most = command.intent(Some(robot)).risk;
+        let authority = Authority::new(self.gate, screen, robot, most, grant.clone());
+        AnyContext { robot, connection, screen, several: self.sources.selection.is_plural(), authority }
+    }
+
+    /// Whether motion continues when this process ends. A jog never continues.
+    fn leaves_motion(&self, command: &dyn AnyCommand) -> bool {
+        self.gate.on_interrupt == OnInterrupt::Leave && !command.jogs()
+    }
+
+    /// One run, with a guardian if the robot may move.
+    async fn attempt(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        link: &mut dyn Connection,
+        grant: &Grant,
+    ) -> Outcome {
+        let guardian = self.guardian(command, robot)?;
+        let attempt = self.attempt_alone(command, robot, link, grant);
+        let Some(guardian) = guardian else { return attempt.await };
+        grant.on_motion(guardian.before_motion());
+        guardian.guard(attempt).await
+    }
+
+    /// Guardian that stops the robot if this process dies or hangs. With a session of another process, or a fieldbus
+    /// adapter that detects the missing master, the guardian only ends a hanging process.
+    fn guardian(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Option<Guardian>, Failure> {
+        let intent = command.intent(Some(robot));
+        let moves = intent.risk == Risk::Motion && !intent.is_stop && !self.leaves_motion(command);
+        let Some(driver) = command.driver().filter(|_| moves && !robot.target.value.is_simulated()) else {
+            return Ok(None);
+        };
+        let stops = command.entry(robot) == Entry::Harmless && !is_held_by_other_process(robot);
+        Guardian::start(robot, driver.stop(), stops).map(Some)
+    }
+
+    /// One run. Ctrl-C during a motion first stops the robot.
+    async fn attempt_alone(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        link: &mut dyn Connection,
+        grant: &Grant,
+    ) -> Outcome {
+        let Intent { risk, is_stop, .. } = command.intent(Some(robot));
+        let _under_way =
+            (risk == Risk::Motion && !is_stop && !robot.target.value.is_simulated()).then(MotionInProgress::begin);
+        let context = self.context(command, robot, link, (&self.screen, grant));
+        match interruptible(command.run(context)).await {
+            Ok(outcome) => outcome,
+            Err(_) if risk == Risk::Motion && (self.gate.on_interrupt == OnInterrupt::Stop || link.needs_halt()) => {
+                Err(match link.halt().await {
+                    Ok(done) => Failure::new(Kind::Interrupted, done),
+                    Err(failure) => Failure::new(Kind::Interrupted, format!("the robot may still move: {failure}"))
+                        .hint("use the pendant or the emergency stop if the robot must not move"),
+                })
+            }
+            Err(interrupt) if risk == Risk::Motion => Err(Failure {
+                message: format!("{}: not stopped; the motion or program continues", interrupt.message),
+                ..interrupt
+            }),
+            Err(interrupt) if risk > Risk::Read => Err(Failure {
+                message: format!("{}; the command may have been executed completely or in part", interrupt.message),
+                ..interrupt
+            }
+            .hint("before you repeat it, read the values that this command writes")),
+            Err(interrupt) => Err(interrupt),
+        }
+    }
+
+    /// Frames that `command` would send: it runs to its end on a link that takes notes and has no answers.
+    async fn plan(&self, command: &dyn AnyCommand, robot: &Robot, screen: &Screen) -> Result<Plan, Failure> {
+        let access = Access { dry_run: true, ..self.access(command, robot) };
+        let grant = access.grant.clone();
+        let mut link = command.connect(robot, access, screen).await?;
+        let gate = Gate { dry_run: true, ..self.gate };
+        let several = self.sources.selection.is_plural();
+        let authority = Authority::new(gate, screen, robot, command.intent(Some(robot)).risk, grant);
+        let ended = command.run(AnyContext { robot, connection: &mut *link, screen, several, authority }).await;
+        match ended {
+            Err(failure) if !is_end(&failure) => Err(failure),
+            Ok(_) | Err(_) => Ok(link.planned()),
+        }
+    }
+
+    /// Checks before any question whether the controller model supports the command, so that nobody clears a cell for
+    /// a mistyped command. Simulators are skipped, because they need no question and may be of another model than
+    /// configured.
+    async fn check_model(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), Failure> {
+        if self.gate.dry_run || robot.target.value.is_simulated() {
+            return Ok(());
+        }
+        self.plan(command, robot, &self.screen.silenced()).await.map(|_| ())
+    }
+
+    /// Truncates the `--trace` file, to which every connection of this command appends. With several lines, only the
+    /// first one truncates it.
+    pub fn begin_trace(&self) -> Result<(), Failure> {
+        begin_trace(self.trace.as_deref().filter(|_| !self.gate.dry_run && self.line.is_none()))
+    }
+}
+
+/// Truncates the `--trace` file; `-` is not a file.
+pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
+    if let Some(path) = file.filter(|path| path.as_os_str() != "-") {
+        std::fs::File::create(path).with_context(|| path.display().to_string())?;
+    }
+    Ok(())
+}
+
+/// Runs the work of all robots with limited parallelism and returns the results in order. A slow robot delays only
+/// itself.
+async fn run_parallel<T>(work: impl Iterator<Item = impl Future<Output = T>>) -> Vec<T> {
+    let numbered = work.enumerate().map(|(number, work)| async move { (number, work.await) });
+    let mut done: Vec<(usize, T)> = stream::iter(numbered).buffer_unordered(MAX_PARALLEL).collect().await;
+    done.sort_unstable_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, came)| came).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test(start_paused = true)]
+    async fn runs_robots_in_parallel() {
+        // Half of the robots do not answer, as in a plant with switched-off robots, mixed with the others.
+        let silent = |robot: usize| robot.is_multiple_of(2);
+        let ask = |robot| async move {
+            tokio::time::sleep(Duration::from_millis(if silent(robot) { 2000 } else { 10 })).await;
+            robot
+        };
+        let start = tokio::time::Instant::now();
+        let robots = run_parallel((0..200).map(ask)).await;
+        assert!(robots.is_sorted() && robots.len() == 200);
+        assert!(start.elapsed() < Duration::from_millis(2100), "{:?}", start.elapsed());
+    }
+}

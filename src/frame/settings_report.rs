@@ -1,0 +1,170 @@
+//! Common arguments and reports of commands that set a value.
+
+use clap::ValueEnum;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::report::Report;
+use crate::face::shared_commands::CommonReport;
+use crate::failure::Failure;
+use crate::gate::Change;
+use crate::output::view::View;
+
+/// Purpose of a read before a write, in a dry run.
+pub const OLD_VALUE: &str = "old value";
+/// Condition of a write in a dry run.
+pub const IF_DIFFERENT: &str = "whether the old value differs";
+
+/// Failure before any write.
+pub fn nothing_written(failure: Failure) -> Failure {
+    let message = format!("{}; nothing was written", failure.message.trim_end_matches('.'));
+    Failure { message, ..failure }
+}
+
+/// Old value of a write: null if it was not read, or if the controller refused to report it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Old(Value);
+
+impl Old {
+    /// Not read: there is no request for it, it is an event without a value, or the command must not wait.
+    pub const UNREAD: Self = Self(Value::Null);
+
+    /// Old value; none if the controller refused.
+    pub fn read(value: Option<impl Into<Value>>) -> Self {
+        Self(value.map_or(Value::Null, Into::into))
+    }
+
+    /// The value, if known.
+    pub fn value(&self) -> Option<Value> {
+        Some(self.0.clone()).filter(|value| !value.is_null())
+    }
+
+    /// Value as text; none if unknown.
+    pub fn describe(&self) -> Option<String> {
+        (!self.0.is_null()).then(|| shown(&self.0))
+    }
+}
+
+/// A value that was set. It becomes a report only with its old value, so that no command omits that.
+#[derive(Debug)]
+pub struct NewValue {
+    name: String,
+    arguments: Map<String, Value>,
+    new: Value,
+    text: String,
+}
+
+impl NewValue {
+    /// Name, new value, and text.
+    pub fn of(set: impl Into<String>, new: impl Into<Value>, words: impl Into<String>) -> Self {
+        Self { name: set.into(), arguments: Map::new(), new: new.into(), text: words.into() }
+    }
+
+    /// Adds a number or a name; none adds nothing.
+    #[must_use]
+    pub fn with(mut self, name: &str, value: impl Into<Value>) -> Self {
+        let value = value.into();
+        if !value.is_null() {
+            self.arguments.insert(name.to_owned(), value);
+        }
+        self
+    }
+
+    /// Confirmation: the intent, and old and new value if the old value was read.
+    pub fn question(&self, intent: String, old: &Old) -> Change {
+        let change = Change::new(intent);
+        let what = self.name.trim_end_matches("_on").replace('_', " ");
+        match old.describe() {
+            Some(old) => change.replaces(&what, &old, &shown(&self.new)),
+            None => change,
+        }
+    }
+
+    /// Adds the old value.
+    pub fn replaces(self, old: Old) -> Done {
+        let Self { name: set, arguments: with, new, text: words } = self;
+        Done { set, with, old, new, words }
+    }
+}
+
+/// Result of a set command: `{"set":"B0","old":1,"new":5}`. JSON has values, the view a sentence.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Done {
+    /// Name of the value, as in reads: `servo_on`.
+    set: String,
+    /// Index and other arguments: numbers and names.
+    #[serde(flatten)]
+    with: Map<String, Value>,
+    old: Old,
+    /// New value.
+    new: Value,
+    #[serde(skip)]
+    words: String,
+}
+
+impl Done {
+    /// Text of the result.
+    pub fn words(&self) -> &str {
+        &self.words
+    }
+}
+
+impl CommonReport for Done {
+    type Core = Self;
+
+    fn core(&self) -> Self {
+        self.clone()
+    }
+}
+
+impl Report for Done {
+    fn view(&self) -> View {
+        View::text(self.words.clone())
+    }
+}
+
+/// One of several items that a command wrote, as reads report it, with old and new value.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Written<T> {
+    /// Item.
+    #[serde(flatten)]
+    pub item: T,
+    old: Old,
+    /// New value.
+    new: Value,
+    /// Always true.
+    written: bool,
+}
+
+impl<T> Written<T> {
+    /// Adds old and new value.
+    pub fn new(item: T, old: Old, new: impl Into<Value>) -> Self {
+        Self { item, old, new: new.into(), written: true }
+    }
+}
+
+/// Value as text.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Bool(on) => if *on { "on" } else { "off" }.to_owned(),
+        Value::String(text) => text.clone(),
+        value => value.to_string(),
+    }
+}
+
+/// Typed number as JSON; null if it is not a number.
+pub fn number(text: &str) -> Value {
+    let whole = text.parse::<i64>().map(Value::from);
+    whole.unwrap_or_else(|_| text.parse::<f64>().map_or(Value::Null, Value::from))
+}
+
+/// On or off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// Switch it on
+    On,
+    /// Switch it off
+    Off,
+}

@@ -1,0 +1,92 @@
+//! Spreadsheet table files: target path, and the content that stays on an update.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::local_names::Target;
+use super::text_files;
+use crate::failure::Failure;
+use armctl_controller::findings::Findings;
+use armctl_controller::sheet::{Column, Dialect, update, write};
+
+/// File options.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct SheetManner {
+    /// Replace the file if it exists
+    #[arg(long)]
+    pub force: bool,
+    /// Update the values in an existing CSV file; comments and order stay
+    #[arg(long, conflicts_with_all = ["force", "decimal_comma"])]
+    update: bool,
+    /// CSV with decimal commas and semicolons between cells
+    #[arg(long)]
+    decimal_comma: bool,
+}
+
+/// Target of rows, checked before the controller is asked.
+#[derive(Debug)]
+pub struct SheetTarget {
+    target: Target,
+    dialect: Dialect,
+    /// Existing content that stays.
+    old: Option<Vec<u8>>,
+}
+
+impl SheetManner {
+    /// Whether an option was given that needs a table file.
+    pub fn is_given(&self) -> bool {
+        self.force || self.is_of_tables()
+    }
+
+    /// Whether an option was given that only tables have.
+    pub fn is_of_tables(&self) -> bool {
+        self.update || self.decimal_comma
+    }
+
+    /// Target for the rows of one robot.
+    pub fn target(&self, file: PathBuf, several: bool) -> Result<SheetTarget, Failure> {
+        if several {
+            return Err(text_files::of_one_robot(&file));
+        }
+        let exists = file.symlink_metadata().is_ok();
+        let old = if self.update && exists { Some(text_files::read(&file)?) } else { None };
+        let target = Target::new(file, self.force || self.update);
+        let advice = "add --update to update its values and keep its comments, or --force to replace it";
+        let target = target.map_err(|failure| if exists { failure.hint(advice) } else { failure })?;
+        let dialect = if self.decimal_comma { Dialect::DECIMAL_COMMA } else { Dialect::COMMAS };
+        Ok(SheetTarget { target, dialect, old })
+    }
+}
+
+impl SheetTarget {
+    /// Existing file whose rows get new values.
+    pub fn old(&self) -> Option<&[u8]> {
+        self.old.as_deref()
+    }
+
+    /// Writes the rows atomically and returns the path. The first column identifies a row; `canonical` normalizes it.
+    pub fn write(
+        &self,
+        columns: &[Column],
+        rows: &[Vec<String>],
+        canonical: impl Fn(&str) -> String,
+    ) -> Result<String, Failure> {
+        let text = match &self.old {
+            None => write(self.dialect, columns, rows),
+            Some(old) => {
+                let mut warnings = Findings::default();
+                let updated = update(old, columns, rows, canonical, &mut warnings);
+                let name = self.target.path().display().to_string();
+                updated.ok_or_else(|| text_files::file_failure(&name, &warnings.into_errors()))?
+            }
+        };
+        text_files::write(&self.target, &text)
+    }
+}
+
+/// Canonical spelling of a number: `007` is `7`.
+pub fn number(text: &str) -> String {
+    text.trim().parse::<i64>().map_or_else(|_| text.trim().to_owned(), |number| number.to_string())
+}

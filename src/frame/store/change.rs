@@ -1,0 +1,237 @@
+//! Write of rows: read the old rows, confirm the changes, write different rows, each with its own result.
+
+use super::{Answers, Differing, Store, Writable, WrittenOf, columns, item};
+use crate::authority::Authority;
+use crate::connection::Family;
+use crate::dry_run::{Known as _, unknown};
+use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
+use crate::interrupt::interruptible;
+use crate::names;
+use crate::output::Screen;
+use crate::robot::item::{Written, WrittenItems};
+use crate::settings::Robot;
+use crate::settings_report::nothing_written;
+use armctl_controller::Risk;
+
+/// Type of confirmation for a write.
+pub const fn confirmation<S: Writable>() -> Confirmation {
+    match S::RISK {
+        Risk::Destroy => Confirmation::WhenKnown,
+        Risk::Read | Risk::Write | Risk::Motion => Confirmation::Question,
+    }
+}
+
+/// Completes "This will …".
+pub fn intent<S: Writable>() -> String {
+    format!("overwrite {}", S::WORDS.nouns[1])
+}
+
+/// Key and new content of a row.
+pub type Row<S> = (<S as Store>::Key, <S as Writable>::Draft);
+
+/// Context of a write.
+pub struct TableWrite<'a, S: Store> {
+    /// Table.
+    pub table: S,
+    /// Robot.
+    pub robot: &'a Robot,
+    /// Connection to the robot.
+    pub link: &'a mut <S::Family as Family>::Link,
+    /// Screen for progress.
+    pub screen: &'a Screen,
+    /// Authority to confirm overwriting.
+    pub authority: Authority<'a>,
+}
+
+/// A row, compared with the controller.
+#[derive(Debug)]
+pub struct ComparedRow<S: Store> {
+    /// The row.
+    pub key: S::Key,
+    old: Option<S::Wire>,
+    new: S::Wire,
+    /// Whether it was written, or why not.
+    pub outcome: Result<bool, Failure>,
+    /// Whether an earlier failure ended the work before this row.
+    pub is_skipped: bool,
+}
+
+impl<S: Store> ComparedRow<S> {
+    /// Whether the row was refused, so that the controller does not have it yet.
+    pub fn is_undefined(&self) -> bool {
+        self.old.is_none()
+    }
+
+    /// Whether the controller holds something else.
+    pub fn is_different(&self) -> bool {
+        self.old.as_ref().is_none_or(|old| !S::is_equal(old, &self.new))
+    }
+}
+
+/// Writes the rows that differ. Stops at the first failure of the link; each row has its own result.
+pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
+    let TableWrite { mut table, robot, link, screen, authority } = work;
+    table.select(link).await.map_err(nothing_written)?;
+    let compared = write_selected(&table, link, screen, authority, rows).await;
+    // After Ctrl-C nothing more is requested. The close of the link restores the selected table.
+    let is_interrupted = |rows: &Vec<ComparedRow<S>>| {
+        rows.iter().any(|row| row.outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted))
+    };
+    let compared = match compared {
+        Ok(rows) if is_interrupted(&rows) => rows,
+        compared => table.deselect(link, compared).await?,
+    };
+    let written: Vec<S::Key> =
+        compared.iter().filter(|row| matches!(row.outcome, Ok(true))).map(|row| row.key).collect();
+    if let Some(words) = table.follow_up_note(&written).filter(|_| !written.is_empty()) {
+        screen.note(&words);
+    }
+    let names = names::of_robot(robot, screen);
+    let items: Vec<_> = compared
+        .into_iter()
+        .map(|ComparedRow { key, old, new, outcome, .. }| {
+            let (is_written, outcome) = match outcome {
+                Ok(is_written) => (is_written, Ok(Some(new))),
+                Err(failure) => (false, Err(failure)),
+            };
+            let old = old.as_ref().and_then(|old| table.value(old));
+            Written::new(item(&table, names, key, outcome), old, is_written)
+        })
+        .collect();
+    Ok(WrittenItems::new(columns(&table), items))
+}
+
+/// Compares rows with the controller, confirms the change, and writes the rows that differ.
+async fn write_selected<S: Writable>(
+    table: &S,
+    link: &mut <S::Family as Family>::Link,
+    screen: &Screen,
+    authority: Authority<'_>,
+    rows: Vec<Row<S>>,
+) -> Result<Vec<ComparedRow<S>>, Failure> {
+    let Some(mut compared) = compare(table, link, screen, &rows).await? else {
+        table.plan(link, &rows).await?;
+        return Err(unknown());
+    };
+    authority.confirm(&describe_change(table, &differing(&compared))).await?;
+    write_each(table, link, screen, &mut compared).await;
+    Ok(compared)
+}
+
+/// Reads rows and compares them with their new content; `None` in a dry run, which does not know the content.
+///
+/// # Errors
+/// Those of the reads, which state that nothing was written.
+pub async fn compare<S: Writable>(
+    table: &S,
+    link: &mut <S::Family as Family>::Link,
+    screen: &Screen,
+    rows: &[Row<S>],
+) -> Result<Option<Vec<ComparedRow<S>>>, Failure> {
+    let read = match table.read_old(link, screen, rows).await {
+        // All are refused alike: each is judged below.
+        Err(failure) if failure.kind == Kind::Refused => {
+            let refused = rows.iter().map(|_| Err(failure.clone()));
+            Ok(Answers { rows: refused.collect(), asked: rows.len() })
+        }
+        read => read,
+    };
+    let Some(answers) = read.known().map_err(nothing_written)? else { return Ok(None) };
+    let mut compared = Vec::with_capacity(rows.len());
+    for ((key, draft), old) in rows.iter().zip(answers.rows) {
+        let old = match old {
+            Ok(old) => old,
+            Err(failure) if S::risk(*key) < Risk::Destroy && failure.kind == Kind::Refused => None,
+            Err(failure) if S::is_undefined(&failure) => None,
+            Err(failure) => return Err(nothing_written(failure)),
+        };
+        let new = table.complete_draft(*key, draft, old.as_ref())?;
+        compared.push(ComparedRow::<S> { key: *key, old, new, outcome: Ok(false), is_skipped: false });
+    }
+    Ok(Some(compared))
+}
+
+/// Rows that will be written.
+pub fn differing<S: Writable>(rows: &[ComparedRow<S>]) -> Vec<Differing<'_, S>> {
+    rows.iter().filter(|row| row.is_different()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
+}
+
+/// Values that a person wrote and that are replaced: name, old value, new value.
+pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[String; 3]> {
+    let lost = rows.iter().filter_map(|(key, old, new)| {
+        let is_lost = |old: &&S::Wire| S::risk(*key) == S::RISK && !S::is_equal(old, new) && !table.is_blank(old);
+        let old = old.filter(is_lost)?;
+        let [old, new] = table.difference(old, new);
+        Some([S::asked(*key), old, new])
+    });
+    lost.collect()
+}
+
+/// What is overwritten that a person wrote, for a question.
+pub fn describe_change<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
+    table.consequences(rows).into_iter().fold(overwriting(table, &replaced(table, rows)), Change::note)
+}
+
+/// Question about rows that are overwritten: the name of each, old and new.
+pub fn overwriting<S: Writable>(table: &S, lost: &[[String; 3]]) -> Change {
+    let [one, many] = S::WORDS.nouns;
+    let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.table_suffix());
+    let change = match lost.len() {
+        0 => return Change::none(),
+        1 => Change::new(format!("overwrite {article} {one}{place}")),
+        count => Change::new(format!("overwrite {count} {many}{place}")),
+    };
+    lost.iter().fold(change, |change, [name, old, new]| change.replaces(name, old, new))
+}
+
+/// Writes the rows that differ and records the outcome of each.
+pub async fn write_each<S: Writable>(
+    table: &S,
+    link: &mut <S::Family as Family>::Link,
+    screen: &Screen,
+    rows: &mut [ComparedRow<S>],
+) {
+    let differing: Vec<usize> = (0..rows.len()).filter(|index| rows[*index].is_different()).collect();
+    let blocks = table.blocks(&changes(rows, &differing));
+    let mut progress = (differing.len() > 1)
+        .then(|| screen.items_progress(&format!("writing {}", S::WORDS.nouns[1]), differing.len() as u64));
+    let mut end: Option<Failure> = None;
+    for block in blocks {
+        let block: Vec<usize> = block.into_iter().map(|index| differing[index]).collect();
+        let is_skipped = end.is_some();
+        let outcome = match &end {
+            Some(failure) => Err(unwritten_rows(failure)),
+            // After Ctrl-C, the report still lists the written rows.
+            None => match interruptible(table.write(link, screen, &changes(rows, &block))).await {
+                Ok(outcome) => outcome.map(|()| true),
+                Err(interrupted) => Err(interrupted),
+            },
+        };
+        if let Err(failure) = &outcome
+            && failure.kind != Kind::Refused
+            && end.is_none()
+        {
+            end = Some(failure.clone());
+        }
+        if let Some(progress) = &mut progress {
+            progress.advance(block.len() as u64);
+        }
+        for index in block {
+            rows[index].outcome.clone_from(&outcome);
+            rows[index].is_skipped = is_skipped;
+        }
+    }
+}
+
+/// Rows with these indices, with old and new content.
+fn changes<'r, S: Writable>(rows: &'r [ComparedRow<S>], indices: &[usize]) -> Vec<Differing<'r, S>> {
+    indices.iter().map(|index| &rows[*index]).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
+}
+
+/// Failure of the rows after the one that ended the work.
+fn unwritten_rows(failure: &Failure) -> Failure {
+    let kind = if failure.kind == Kind::OutcomeUnknown { Kind::NoAnswer } else { failure.kind };
+    Failure { kind, message: format!("not written: {}", failure.message), ..failure.clone() }
+        .hint("the same command goes on: what is stored already is not written again")
+}

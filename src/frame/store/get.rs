@@ -1,0 +1,134 @@
+//! `get` and `list`; `watch` repeats `get`.
+
+use clap::Args;
+
+use super::{ItemsOf, Store, columns, item, read, read_keys};
+use crate::failure::Failure;
+use crate::items::ItemError;
+use crate::names;
+use crate::robot::item::{Item, Items};
+use crate::watch::{Watchable, Watched};
+use crate::{Command, Context};
+use armctl_controller::{Risk, typed};
+
+/// Parsed row arguments.
+#[derive(Debug)]
+pub struct Rows<S: Store>(pub Vec<S::Key>);
+
+impl<S: Store> Clone for Rows<S> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<S: Store> Rows<S> {
+    /// Parses the arguments.
+    ///
+    /// # Errors
+    /// An argument is not a row.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        read_keys::<S>(text).map(Self)
+    }
+
+    /// The typed rows, without repetitions; all rows if none was typed.
+    pub fn of(given: &[Self]) -> Vec<S::Key> {
+        if given.is_empty() { S::all() } else { typed::once(given.iter().flat_map(|rows| rows.0.iter().copied())) }
+    }
+}
+
+/// Reads rows.
+#[derive(Debug, Args)]
+#[command(after_help = S::help().or(S::WORDS.reading))]
+pub struct Get<S: Store> {
+    #[command(flatten)]
+    options: S::Options,
+    #[arg(required = S::all().is_empty(), value_name = S::WORDS.placeholder, value_delimiter = ',',
+        value_parser = Rows::<S>::parse, help = S::WORDS.range, add = S::COMPLETE)]
+    rows: Vec<Rows<S>>,
+}
+
+impl<S: Store> Command for Get<S> {
+    type Family = S::Family;
+    type Report = ItemsOf<S>;
+    const ID: &'static str = S::IDS.get;
+
+    fn risk(&self) -> Risk {
+        S::risk_of_reading(&self.options)
+    }
+
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
+        let Context { robot, link, screen, .. } = context;
+        let keys = Rows::of(&self.rows);
+        let mut table = S::open(link, &self.options).await?;
+        table.prepare(link, &keys).await?;
+        let answers = read(&mut table, link, screen, &keys).await?;
+        let names = names::of_robot(robot, screen);
+        let mut undefined = Vec::new();
+        let items = keys.iter().zip(answers.rows).map(|(key, outcome)| {
+            let outcome = match outcome {
+                Err(failure) if S::UNDEFINED_IS_NULL && S::is_undefined(&failure) => {
+                    undefined.push(ItemError::new(S::asked(*key), failure));
+                    Ok(None)
+                }
+                outcome => outcome,
+            };
+            item(&table, names, *key, outcome)
+        });
+        let items = items.collect();
+        Items::new(columns(&table), items).asked(answers.asked).undefined(undefined).single_failure()
+    }
+}
+
+impl<S: Store> Watchable for Get<S> {
+    const WATCH: &'static str = S::IDS.watch;
+    const WATCHED: Watched = Watched::ITEMS;
+}
+
+/// Reads all rows, and shows those that hold something.
+#[derive(Debug, Args)]
+pub struct List<S: Store> {
+    #[command(flatten)]
+    options: S::Options,
+    /// Only these
+    #[arg(value_name = S::WORDS.placeholder, value_delimiter = ',', required = S::all().is_empty(),
+        value_parser = Rows::<S>::parse)]
+    rows: Vec<Rows<S>>,
+    /// Empty rows as well
+    #[arg(long)]
+    empty: bool,
+}
+
+impl<S: Store> Command for List<S> {
+    type Family = S::Family;
+    type Report = ItemsOf<S>;
+    const ID: &'static str = S::IDS.list;
+
+    fn risk(&self) -> Risk {
+        S::risk_of_reading(&self.options)
+    }
+
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
+        let Context { robot, link, screen, .. } = context;
+        let keys = Rows::of(&self.rows);
+        let mut table = S::open(link, &self.options).await?;
+        table.prepare(link, &keys).await?;
+        let answers = read(&mut table, link, screen, &keys).await?;
+        let names = names::of_robot(robot, screen);
+        let rows = answers.rows.into_iter().map(defined::<S>);
+        let stored = keys.into_iter().zip(rows).filter(|(_, outcome)| {
+            let is_empty = |wire: &Option<S::Wire>| wire.as_ref().is_none_or(|wire| table.is_blank(wire));
+            self.empty || !outcome.as_ref().is_ok_and(is_empty)
+        });
+        let items: Vec<Item<S::Value, S::More>> =
+            stored.map(|(key, outcome)| item(&table, names, key, outcome)).collect();
+        Ok(Items::new(columns(&table), items))
+    }
+}
+
+/// For a list of all rows, the refusal of an undefined row counts as an answer.
+pub fn defined<S: Store>(outcome: Result<Option<S::Wire>, Failure>) -> Result<Option<S::Wire>, Failure> {
+    match outcome {
+        Err(failure) if S::is_undefined(&failure) => Ok(None),
+        outcome => outcome,
+    }
+}

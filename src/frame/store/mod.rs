@@ -1,0 +1,513 @@
+//! Tables of a controller. A family declares a table ([`Store`], [`Writable`]). The commands `get`, `list`, `watch`, `set`,
+//! `copy`, `dump` and `restore` are generic, so that they are the same for every table of every family.
+
+mod change;
+mod copy;
+mod file;
+mod get;
+mod part;
+mod set;
+
+use std::borrow::Cow;
+use std::fmt::Debug;
+use std::hash::Hash;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+pub use self::change::{Row, TableWrite, describe_change, overwriting, write};
+pub use self::copy::Copy;
+pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
+pub use self::get::{Get, List};
+pub use self::part::{Part, PartResult, TablePart, Text};
+pub use self::set::Set;
+use super::connection::Family;
+use super::kind::ValueKind;
+use super::names as labels;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::Cell;
+use crate::robot::item::{Columns, Item, Items, WrittenItems, as_requested};
+use armctl_controller::Risk;
+use armctl_controller::names::{Kind, Names};
+use armctl_controller::sheet::Column;
+
+/// Field of a row, for tables and files.
+#[derive(Debug, Clone)]
+pub struct Field {
+    /// Column of a file: `speed_mm_s`.
+    pub name: Cow<'static, str>,
+    /// Alternative column name: `ax1_mm` for `x_mm`.
+    pub alias: Option<&'static str>,
+    /// Heading of a table: `speed (mm/s)`.
+    pub heading: &'static str,
+    /// Whether it is a number.
+    pub is_number: bool,
+    /// Whether only some rows have it. Then an empty cell means no value, and a file has the column only if a row has a value.
+    pub is_optional: bool,
+}
+
+impl Field {
+    /// A number.
+    pub const fn number(name: &'static str, heading: &'static str) -> Self {
+        Self { name: Cow::Borrowed(name), alias: None, heading, is_number: true, is_optional: false }
+    }
+
+    /// A text.
+    pub const fn text(name: &'static str, heading: &'static str) -> Self {
+        Self { name: Cow::Borrowed(name), alias: None, heading, is_number: false, is_optional: false }
+    }
+
+    /// A field that only some rows have.
+    #[must_use]
+    pub fn optional(self) -> Self {
+        Self { is_optional: true, ..self }
+    }
+}
+
+/// Names of a table and its rows in texts.
+#[derive(Debug, Clone, Copy)]
+pub struct TableWords {
+    /// Singular and plural of a row: `counter`, `counters`. The singular is `kind` in reports.
+    pub nouns: [&'static str; 2],
+    /// Placeholder of a row on the command line: `N`, `POINT`.
+    pub placeholder: &'static str,
+    /// Valid rows, for the help: `1 to 99: 5, CN05 or 1-10, or a name`.
+    pub range: &'static str,
+    /// Additional help of commands that read.
+    pub reading: Option<&'static str>,
+    /// Additional help of commands that write.
+    pub writing: Option<&'static str>,
+}
+
+/// Report names of the commands of a table.
+#[derive(Debug, Clone, Copy)]
+pub struct Ids {
+    /// Of `get`: `toyo.counter.get`.
+    pub get: &'static str,
+    /// Of `list`.
+    pub list: &'static str,
+    /// Of `watch`.
+    pub watch: &'static str,
+    /// Of `set`.
+    pub set: &'static str,
+    /// Of `copy`.
+    pub copy: &'static str,
+    /// Of `dump`.
+    pub dump: &'static str,
+    /// Of `restore`.
+    pub restore: &'static str,
+}
+
+/// Report names for a noun: `ids!("toyo.counter")`.
+#[macro_export]
+macro_rules! ids {
+    ($noun:literal) => {
+        $crate::store::Ids {
+            get: concat!($noun, ".get"),
+            list: concat!($noun, ".list"),
+            watch: concat!($noun, ".watch"),
+            set: concat!($noun, ".set"),
+            copy: concat!($noun, ".copy"),
+            dump: concat!($noun, ".dump"),
+            restore: concat!($noun, ".restore"),
+        }
+    };
+}
+pub use ids;
+
+/// Declares the commands of a table: the generic verbs, then additional ones.
+#[macro_export]
+macro_rules! table_commands {
+    ($(#[$meta:meta])* $name:ident of $store:ty { $($(#[$doc:meta])* $variant:ident($arguments:ty),)* }) => {
+        $crate::commands! {
+            $(#[$meta])*
+            pub enum $name {
+                /// Read by number or range
+                Get($crate::store::Get<$store>),
+                /// List all that hold something
+                List($crate::store::List<$store>),
+                /// Print each change
+                Watch($crate::watch::Watch<$crate::store::Get<$store>>),
+                /// Set one: its number, then its values
+                Set($crate::store::Set<$store>),
+                /// Copy one to others: 5 6-8
+                Copy($crate::store::Copy<$store>),
+                /// Save to a CSV file
+                Dump($crate::store::Dump<$store>),
+                /// Write from a CSV file
+                Restore($crate::store::Restore<$store>),
+                $($(#[$doc])* $variant($arguments),)*
+            }
+        }
+    };
+}
+pub use table_commands;
+
+/// Result of each row: its content, `None` if it is not defined, or the reason why it was not read.
+#[derive(Debug)]
+pub struct Answers<W> {
+    /// One result per row, in the requested order.
+    pub rows: Vec<Result<Option<W>, Failure>>,
+    /// Number of rows that were requested. The remaining rows would fail in the same way.
+    pub asked: usize,
+}
+
+impl<W> Answers<W> {
+    /// Results of rows that were all requested, and are defined if they were read.
+    pub fn of(rows: Vec<Result<W, Failure>>) -> Self {
+        Self { asked: rows.len(), rows: rows.into_iter().map(|row| row.map(Some)).collect() }
+    }
+}
+
+/// Options of a table that exists once per controller.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Single {}
+
+/// A table of a controller that can be read.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Store: Debug + Send + Sync + Sized + 'static {
+    /// Family of the controller.
+    type Family: Family;
+    /// Key of a row.
+    type Key: Debug + Clone + std::marker::Copy + PartialEq + Eq + Hash + Send + Sync;
+    /// Content of a row in the protocol.
+    type Wire: Debug + Clone + PartialEq;
+    /// Content of a row in reports.
+    type Value: Debug + Clone + Serialize + JsonSchema;
+    /// Additional fields of an item; [`Plain`](crate::robot::item::Plain) for none.
+    type More: Debug + Clone + Serialize + JsonSchema;
+    /// Options that say which table is meant, where there are several: [`Single`] otherwise.
+    type Options: Args + Debug + Clone + Send + Sync;
+
+    /// Names in texts.
+    const WORDS: TableWords;
+    /// Report names.
+    const IDS: Ids;
+    /// Kind of the user names of rows.
+    const LABELS: Option<Kind> = None;
+    /// Completion of a row argument.
+    const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
+    /// Whether `dump` saves blank rows as well.
+    const SAVES_BLANK: bool = false;
+    /// Whether a row is a text, which `set` takes as one word, with whatever signs.
+    const IS_TEXT: bool = false;
+    /// Whether `get` reports a row that is not defined as null beside rows that are, and fails only if none is defined.
+    const UNDEFINED_IS_NULL: bool = false;
+
+    /// Help of `get` and `set` that is not a constant.
+    fn help() -> Option<&'static str> {
+        None
+    }
+
+    /// Rows as typed: one, or a range.
+    ///
+    /// # Errors
+    /// The text is not a row.
+    fn keys(text: &str) -> Result<Vec<Self::Key>, String>;
+
+    /// All rows, if they are few enough to read without a selection; otherwise none.
+    fn all() -> Vec<Self::Key> {
+        Vec::new()
+    }
+
+    /// Rows that `dump` saves if none is typed.
+    fn saved() -> Vec<Self::Key> {
+        Self::all()
+    }
+
+    /// A row that is always there: it stands for a name that is not looked up yet.
+    fn any() -> String {
+        Self::all().first().map_or_else(String::new, |key| Self::name(*key))
+    }
+
+    /// Row as typed.
+    fn name(key: Self::Key) -> String;
+
+    /// Several rows as they are typed.
+    fn names(keys: &[Self::Key]) -> String {
+        keys.iter().map(|key| Self::name(*key)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// A row in questions.
+    fn asked(key: Self::Key) -> String {
+        as_requested(Self::WORDS.nouns[0], &Self::name(key))
+    }
+
+    /// Address of the row in the user names.
+    fn address(key: Self::Key) -> String {
+        Self::name(key)
+    }
+
+    /// Reads the information that is needed before a row is read or written, such as the axis letters. Changes nothing.
+    async fn open(link: &mut <Self::Family as Family>::Link, options: &Self::Options) -> Result<Self, Failure>;
+
+    /// Reads the information about these rows that is needed before they are read, or parsed from a file.
+    async fn prepare(
+        &mut self,
+        _link: &mut <Self::Family as Family>::Link,
+        _keys: &[Self::Key],
+    ) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Risk of a read: Write, if another table must be selected on the controller for it.
+    fn risk_of_reading(_options: &Self::Options) -> Risk {
+        Risk::Read
+    }
+
+    /// Selects the table, if the controller has several.
+    async fn select(&mut self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Selects the table again that was selected before [`select`](Self::select), also after a failure.
+    async fn deselect<T>(
+        &self,
+        _link: &mut <Self::Family as Family>::Link,
+        outcome: Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        outcome
+    }
+
+    /// Suffix for one of several tables, in questions: ` of task 2`.
+    fn table_suffix(&self) -> String {
+        String::new()
+    }
+
+    /// Fields of a row.
+    fn fields(&self) -> Vec<Field>;
+
+    /// Text of each field.
+    fn texts(&self, wire: &Self::Wire) -> Vec<String>;
+
+    /// Headings of a table; by default those of the fields.
+    fn headings(&self) -> Vec<&'static str> {
+        self.fields().iter().map(|field| field.heading).collect()
+    }
+
+    /// Cells of a row in a table.
+    fn cells(&self, _key: Self::Key, wire: &Self::Wire) -> Vec<Cell> {
+        let cell = |(field, text): (Field, String)| if field.is_number { Cell::number(text) } else { text.into() };
+        self.fields().into_iter().zip(self.texts(wire)).map(cell).collect()
+    }
+
+    /// Differences of two rows: one line for the old, one for the new.
+    fn difference(&self, old: &Self::Wire, new: &Self::Wire) -> [String; 2] {
+        difference(self, old, new)
+    }
+
+    /// Content of a row for reports; `None` if it has no report type.
+    fn value(&self, wire: &Self::Wire) -> Option<Self::Value>;
+
+    /// Additional fields of the item of a row. Without `wire`, the row was not read or is not defined.
+    fn more(&self, key: Self::Key, wire: Option<&Self::Wire>) -> Self::More;
+
+    /// Whether two rows have the same content.
+    fn is_equal(old: &Self::Wire, new: &Self::Wire) -> bool {
+        old == new
+    }
+
+    /// Whether a row has no user data.
+    fn is_blank(&self, _wire: &Self::Wire) -> bool {
+        false
+    }
+
+    /// Reason why a row is not in a file, although it was read; without `wire`, it is not defined.
+    fn unsaved(&self, _key: Self::Key, _wire: Option<&Self::Wire>) -> Option<String> {
+        None
+    }
+
+    /// Whether a refusal to report a row says that it is not defined.
+    fn is_undefined(_failure: &Failure) -> bool {
+        false
+    }
+
+    /// Reads rows, each with its own result. A dry run notes the requests and fails with
+    /// [`unknown`](super::dry_run::unknown).
+    ///
+    /// # Errors
+    /// A failure before any row was read.
+    async fn read(
+        &self,
+        link: &mut <Self::Family as Family>::Link,
+        screen: &Screen,
+        keys: &[Self::Key],
+    ) -> Result<Answers<Self::Wire>, Failure>;
+}
+
+/// A row to write: its key, its old content if known, and its new content.
+pub type Differing<'r, S> = (<S as Store>::Key, Option<&'r <S as Store>::Wire>, &'r <S as Store>::Wire);
+
+/// A table that can be written.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Writable: Store {
+    /// New content of a row; can be incomplete.
+    type Draft: Debug + Clone;
+
+    /// Highest risk of all rows: Destroy, if user data can be overwritten, otherwise Write.
+    const RISK: Risk;
+
+    /// Risk of writing this row.
+    fn risk(_key: Self::Key) -> Risk {
+        Self::RISK
+    }
+
+    /// Why `restore` skips rows unless they are typed.
+    const NOT_RESTORED: &'static str = "type them to write them";
+
+    /// Whether `restore` writes this row if no rows are typed.
+    fn is_restored(_key: Self::Key) -> bool {
+        true
+    }
+
+    /// Whether this controller does not have the row, if it was not read; a backup without it is complete.
+    fn is_absent(_key: Self::Key) -> bool {
+        false
+    }
+
+    /// What a row shall hold, from the text of each field; a field without text stays.
+    ///
+    /// # Errors
+    /// The content is not valid.
+    fn draft(&self, key: Self::Key, texts: &[Option<&str>]) -> Result<Self::Draft, String>;
+
+    /// New content from words of a command line: all values in their order, or some as `NAME=VALUE`.
+    ///
+    /// # Errors
+    /// The content is not valid.
+    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Self::Draft, Failure> {
+        set::typed(self, key, words)
+    }
+
+    /// Completes the new content with the old one.
+    ///
+    /// # Errors
+    /// An old value is needed, but it is unknown or cannot be written.
+    fn complete_draft(
+        &self,
+        key: Self::Key,
+        draft: &Self::Draft,
+        old: Option<&Self::Wire>,
+    ) -> Result<Self::Wire, Failure>;
+
+    /// Consequences of the write, for the question.
+    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Note about steps after the write of these rows.
+    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
+        None
+    }
+
+    /// Reads rows before a write. A dry run can note another purpose for the requests.
+    ///
+    /// # Errors
+    /// As [`read`](Store::read).
+    async fn read_old(
+        &self,
+        link: &mut <Self::Family as Family>::Link,
+        screen: &Screen,
+        rows: &[Row<Self>],
+    ) -> Result<Answers<Self::Wire>, Failure> {
+        let keys: Vec<Self::Key> = rows.iter().map(|(key, _)| *key).collect();
+        self.read(link, screen, &keys).await
+    }
+
+    /// Groups of row indices that one request can write; by default, one row per request.
+    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+        (0..rows.len()).map(|index| vec![index]).collect()
+    }
+
+    /// Notes in a dry run the requests that write rows and read them back.
+    async fn plan(&self, link: &mut <Self::Family as Family>::Link, rows: &[Row<Self>]) -> Result<(), Failure>;
+
+    /// Writes the rows of a [block](Self::blocks).
+    async fn write(
+        &self,
+        link: &mut <Self::Family as Family>::Link,
+        screen: &Screen,
+        rows: &[Differing<'_, Self>],
+    ) -> Result<(), Failure>;
+}
+
+/// Report of reads.
+type ItemsOf<S> = Items<<S as Store>::Value, <S as Store>::More>;
+/// Report of writes.
+pub type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
+
+/// Item of a row.
+fn item<S: Store>(
+    table: &S,
+    names: &Names,
+    key: S::Key,
+    outcome: Result<Option<S::Wire>, Failure>,
+) -> Item<S::Value, S::More> {
+    let name = S::name(key);
+    let label = S::LABELS.and_then(|kind| labels::label(names, kind, &S::address(key)));
+    let wire = outcome.as_ref().ok().and_then(Option::as_ref);
+    let (cells, more) = (wire.map(|wire| table.cells(key, wire)).unwrap_or_default(), table.more(key, wire));
+    // The row was read and has no value.
+    let cells = if matches!(outcome, Ok(None)) { vec!["undefined".into()] } else { cells };
+    let value = outcome.map(|wire| wire.as_ref().and_then(|wire| table.value(wire)));
+    Item { cells, ..Item::with(S::WORDS.nouns[0], name, more, value) }.labelled(label)
+}
+
+/// Columns of a table of rows.
+fn columns<S: Store>(table: &S) -> Columns {
+    Columns { name: S::WORDS.nouns[0], values: table.headings(), empty: "nothing stored" }
+}
+
+/// Columns of a file: the row, its fields, and its user name.
+fn sheet<S: Store>(table: &S) -> Vec<Column> {
+    let column = |field: Field| {
+        let name = field.name.into_owned();
+        if field.is_number { Column::number(name) } else { Column::text(name) }
+    };
+    std::iter::once(Column::text("name")).chain(table.fields().into_iter().map(column)).collect()
+}
+
+/// Content of a row in one line: `250.0 mm/s`, or `limit=2.50 load=1.00`.
+fn line<S: Store>(table: &S, wire: &S::Wire) -> String {
+    let (fields, texts) = (table.fields(), table.texts(wire));
+    if let ([field], [text]) = (&fields[..], &texts[..]) {
+        let unit = field.heading.split_once('(').and_then(|(_, unit)| unit.strip_suffix(')'));
+        return unit.map_or_else(|| text.clone(), |unit| format!("{text} {unit}"));
+    }
+    let pairs = fields.iter().zip(&texts).map(|(field, text)| format!("{}={text}", field.name));
+    pairs.collect::<Vec<_>>().join(" ")
+}
+
+/// What differs between two rows, in a line each.
+pub fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String; 2] {
+    let (fields, old_texts, new_texts) = (table.fields(), table.texts(old), table.texts(new));
+    if fields.len() < 2 || old_texts.len() != fields.len() {
+        return [line(table, old), line(table, new)];
+    }
+    let differ = |texts: &[String]| {
+        let rows = fields.iter().zip(texts).zip(old_texts.iter().zip(&new_texts));
+        let rows = rows.filter(|(_, (old, new))| old != new);
+        rows.map(|((field, text), _)| format!("{}={text}", field.name)).collect::<Vec<_>>().join(" ")
+    };
+    [differ(&old_texts), differ(&new_texts)]
+}
+
+/// Selects the table, reads rows, and restores the selection.
+async fn read<S: Store>(
+    table: &mut S,
+    link: &mut <S::Family as Family>::Link,
+    screen: &Screen,
+    keys: &[S::Key],
+) -> Result<Answers<S::Wire>, Failure> {
+    table.select(link).await?;
+    let read = table.read(link, screen, keys).await;
+    table.deselect(link, read).await
+}
+
+/// Rows as typed, with their user names.
+fn read_keys<S: Store>(text: &str) -> Result<Vec<S::Key>, String> {
+    let Some(kind) = S::LABELS else { return S::keys(text) };
+    labels::parse_or_name(&[kind], &S::any(), text, S::keys)
+}

@@ -1,0 +1,74 @@
+//! Test support for all families.
+
+use futures_util::FutureExt as _;
+use serde_json::Value;
+
+use super::authority::Authority;
+use super::command::{AnyCommand, AnyContext, Context};
+use super::connection::{self, Access, Borrowed, ConnectMode, Family};
+use super::dry_run::{DryRun, is_end};
+use super::report::{AnyReport as _, Outcome};
+use super::settings_report::OLD_VALUE;
+use crate::failure::Failure;
+use crate::gate::{Gate, Grant};
+use crate::output::Screen;
+use crate::settings::Robot;
+use armctl_controller::Risk;
+
+/// Screen without output.
+pub static QUIET: Screen = Screen::silent();
+
+/// Access without restrictions.
+pub fn unlimited_access() -> Access {
+    Access { grant: Grant::up_to(Risk::Motion), ..Access::reading(ConnectMode::Control) }
+}
+
+/// Context for a command; all questions are answered with `--yes`.
+pub fn context<'a, F: Family>(robot: &'a Robot, link: &'a mut F::Link) -> Context<'a, F> {
+    let gate = Gate { yes: true, ..Gate::default() };
+    let authority = Authority::new(gate, &QUIET, robot, Risk::Motion, Grant::up_to(Risk::Motion));
+    Context { robot, link, screen: &QUIET, several: false, authority }
+}
+
+/// Runs a command on a link that the test keeps.
+pub async fn run<F: Family>(command: &dyn AnyCommand, context: Context<'_, F>) -> Outcome {
+    let Context { robot, link, screen, several, authority } = context;
+    let mut borrowed = Borrowed::<F>(link);
+    command.run(AnyContext { robot, connection: &mut borrowed, screen, several, authority }).await
+}
+
+/// Report of a dry run.
+pub fn planned<F: Family>(
+    robot: &Robot,
+    command: &dyn AnyCommand,
+    prepare: impl FnOnce(&mut F::Link),
+) -> Result<Value, Failure> {
+    let intent = command.intent(Some(robot));
+    let grant = Grant::up_to(intent.initial_risk());
+    let access = Access { grant: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode(robot)) };
+    let connected = command.connect(robot, access, &QUIET).now_or_never().expect("a dry run opens nothing");
+    let mut connection = connected?;
+    prepare(connection::link::<F>(&mut *connection)?);
+    let gate = Gate { dry_run: true, ..Gate::default() };
+    let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
+    let context = AnyContext { robot, connection: &mut *connection, screen: &QUIET, several: false, authority };
+    match command.run(context).now_or_never().expect("a dry run waits for nothing") {
+        Err(failure) if !is_end(&failure) => Err(failure),
+        _ => DryRun::from(connection.planned()).data(),
+    }
+}
+
+/// Frames of [`planned`], without reads of old values.
+pub fn frames(planned: &Value) -> Vec<Value> {
+    complete_frames(planned).into_iter().filter(|frame| frame["about"] != OLD_VALUE).collect()
+}
+
+/// All frames of [`planned`].
+pub fn complete_frames(planned: &Value) -> Vec<Value> {
+    planned["frames"].as_array().expect("frames").clone()
+}
+
+/// Number of frames of [`planned`] that only read old values.
+pub fn count_before(planned: &Value) -> usize {
+    complete_frames(planned).len() - frames(planned).len()
+}

@@ -1,0 +1,63 @@
+//! Input and output files of the operator.
+
+use std::io::ErrorKind;
+use std::path::Path;
+
+use super::local_names::Target;
+use crate::failure::Failure;
+use armctl_controller::findings::Finding;
+use armctl_files as files;
+
+/// Maximum file size: larger than all data of a controller.
+const SIZE_LIMIT: u64 = 16 << 20;
+
+/// Bytes of a file, or of stdin for `-`.
+pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    files::input(path, SIZE_LIMIT).map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => {
+            Failure::usage(format!("{} is larger than the memory of a controller", display_path(path)))
+                .hint("check that it is the right file")
+        }
+        _ => Failure::io(display_path(path), &error),
+    })
+}
+
+/// File name in reports.
+pub fn display_path(path: &Path) -> String {
+    if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() }
+}
+
+/// Target of an optional file for one robot, checked before the controller is asked.
+pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<Target>, Failure> {
+    let Some(file) = file else { return Ok(None) };
+    if several {
+        return Err(of_one_robot(file));
+    }
+    Target::new(file.to_owned(), force).map(Some)
+}
+
+/// Failure for a file that is not possible with several robots.
+pub fn of_one_robot(file: &Path) -> Failure {
+    Failure::usage(format!("{} is for one robot", file.display()))
+        .hint("run the command once per robot, each with its own file")
+}
+
+/// Writes a file atomically and returns its path.
+pub fn write(target: &Target, text: &str) -> Result<String, Failure> {
+    let mut draft = target.begin()?;
+    draft.write(text.as_bytes())?;
+    draft.commit()?;
+    Ok(target.path().display().to_string())
+}
+
+/// All errors of a file, one line each.
+pub fn file_failure(name: &str, errors: &[Finding]) -> Failure {
+    let lines: Vec<String> = errors
+        .iter()
+        .map(|Finding { line, column, message, hint, .. }| {
+            let hint = hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
+            format!("{name}:{line}:{column}: {message}{hint}")
+        })
+        .collect();
+    Failure::usage(lines.join("\n")).hint("nothing was written; correct the file")
+}

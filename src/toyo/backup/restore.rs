@@ -1,0 +1,456 @@
+//! `toyo restore`.
+
+use clap::Args;
+
+use super::content::{self, Content, Table, left_out_row};
+use super::manifest::{Controller, Manifest};
+use super::parts::Part;
+use crate::eeprom::{Cell, Cells};
+use crate::link::Toyo;
+use crate::link::{Link, wrong};
+use crate::numbers::small;
+use crate::program::steps;
+use crate::tasks;
+use armctl_controller::Risk;
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table::{self, Group, Parameter};
+use armctl_frame::authority::Authority;
+use armctl_frame::backup::arguments::RestoreOptions;
+use armctl_frame::backup::manifest;
+use armctl_frame::backup::manifest::{MANIFEST, Saved};
+use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreSelection, Restored, would_leave, would_write};
+use armctl_frame::dry_run::unknown;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::gate::{Change, Confirmation};
+use armctl_frame::interrupt::interruptible;
+use armctl_frame::local_names::private_folder;
+use armctl_frame::output::Screen;
+use armctl_frame::robot::file::{FileItem, State};
+use armctl_frame::settings_report::nothing_written;
+use armctl_frame::store::PartResult;
+use armctl_frame::{Command, Context};
+
+/// Write a backup back to the controller.
+#[derive(Debug, Args)]
+#[command(after_help = "All files are checked first: their hashes and their content. Each value is compared \
+                  before the write. Equal values are not written, because the EEPROM takes about a \
+                  million rewrites. After an interrupted restore, the same command continues.\n\n\
+                  Machine parameters (E) and special ones (U) need --machine. They are written first; \
+                  after a change of E nothing else is written, because the controller executes nothing before a \
+                  restart. Then restore again without --machine.\n\nThe restore \
+                  selects program mode temporarily.")]
+pub struct Restore {
+    #[command(flatten)]
+    options: RestoreOptions,
+    /// Continue an interrupted restore; with a part, earlier parts are not compared
+    #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "parameters")]
+    resume: Option<Part>,
+}
+
+/// What is asked for of a restore.
+struct Asked {
+    restoring: RestoreSelection,
+    resume: Option<Part>,
+}
+
+/// A part to restore.
+struct Job {
+    part: Part,
+    saved: Saved,
+    /// Steps that a program needs.
+    steps: u16,
+    /// Its rows.
+    table: Table,
+}
+
+/// Everything to restore, in the order of the writes.
+struct Jobs {
+    /// Parameters of the machine itself, if they are wanted.
+    machine: Option<Table>,
+    parts: Vec<Job>,
+    /// Speed override, and the present one.
+    speed: Option<(Cell, Option<u8>)>,
+}
+
+/// Number of values that a question shows one by one; more are counted by parts.
+const SHOWN: usize = 10;
+
+impl Command for Restore {
+    type Family = Toyo;
+    type Report = Restored;
+    const ID: &'static str = "toyo.restore";
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite what the controller stores by the backup";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
+        let restoring = self.options.restoring();
+        let folder = private_folder(&restoring.folder, &context.robot.name, context.several);
+        Asked { restoring: RestoreSelection { folder, ..restoring }, resume: self.resume }.run(context).await
+    }
+}
+
+/// Writes back what a backup holds.
+pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+    Asked { restoring: restoring.clone(), resume: None }.run(context).await
+}
+
+impl Asked {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
+        let Context { link, screen, robot, authority, .. } = context;
+        let folder = &self.restoring.folder;
+        let manifest: Manifest = manifest::open_existing(folder)?;
+        // Whether robot and address are those of the backup; the machine itself is asked later.
+        manifest::check_origin(&manifest::open_existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
+        let parts = self.chosen(&manifest)?;
+        if self.restoring.machine && !parts.contains(&Part::Parameters) {
+            return Err(Failure::usage("--machine needs the parameters, which --only excludes")
+                .hint("remove --machine, or add `parameters` to --only"));
+        }
+        let mut contents = Vec::new();
+        for part in parts {
+            if let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) {
+                copy.check(folder)?;
+                let loaded = Content::load(part, folder, manifest.controller.letters(), screen)?;
+                contents.push((part, copy.clone(), loaded));
+            }
+        }
+        if link.is_dry() {
+            let jobs = self.jobs(&manifest.controller, contents, None)?;
+            return self.dry_run(link, screen, &manifest, jobs).await;
+        }
+        let outcome = self.restore((link, screen, &authority), &manifest.controller, contents).await;
+        match outcome {
+            // Nothing more is sent then but what puts things back at the end of the link.
+            Ok(report) if report.is_interrupted() => Ok(report),
+            outcome => tasks::done(link, outcome).await,
+        }
+    }
+
+    /// The tables of the parts. Programs fill the steps of their tasks, which a dry run does not know.
+    fn jobs(
+        &self,
+        backup: &Controller,
+        contents: Vec<(Part, Saved, Content)>,
+        found: Option<&Controller>,
+    ) -> Result<Jobs, Failure> {
+        let mut jobs = Jobs { machine: None, parts: Vec::new(), speed: None };
+        for (part, saved, content) in contents {
+            let steps = content.steps();
+            let room = match (part, found) {
+                (Part::Program(task), Some(found)) => found.task_steps[usize::from(task) - 1],
+                _ => steps,
+            };
+            let [machine, table] = content.tables(room);
+            if let Some(machine) = machine {
+                jobs.machine = Some(machine);
+            }
+            if let Some(table) = table {
+                jobs.parts.push(Job { part, saved, steps, table });
+            }
+        }
+        if self.restoring.only == Only::default() {
+            jobs.speed = speed(backup)?.map(|cell| (cell, None));
+        }
+        Ok(jobs)
+    }
+
+    /// The parts to restore, in the order of writing.
+    fn chosen(&self, manifest: &Manifest) -> Result<Vec<Part>, Failure> {
+        let tasks = [1, 2, 3, 4];
+        let mut parts = Part::all(&tasks, &tasks);
+        parts.retain(|part| manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some()));
+        let only = &self.restoring.only;
+        only.check(&parts.iter().flat_map(|part| part.names()).collect::<Vec<_>>())?;
+        parts.retain(|part| only.has_any(&part.names()));
+        if parts.is_empty() {
+            return Err(Failure::usage("the backup has none of these parts").hint(format!("{MANIFEST} lists them")));
+        }
+        if let Some(resume) = self.resume {
+            let first = parts.iter().position(|part| *part == resume);
+            // All of them, where it is the first that there can be.
+            let first = first.or_else(|| (resume == Part::Parameters).then_some(0));
+            let first = first.ok_or_else(|| {
+                Failure::usage(format!("--resume={resume}: the backup does not have it"))
+                    .hint("type a part from the manifest of the backup, or --resume alone")
+            })?;
+            parts.drain(..first);
+        }
+        Ok(parts)
+    }
+
+    async fn restore(
+        &self,
+        (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
+        backup: &Controller,
+        contents: Vec<(Part, Saved, Content)>,
+    ) -> Result<Restored, Failure> {
+        let found = content::controller(link).await?;
+        if !self.restoring.force {
+            identify(backup, &found, self.restoring.machine)?;
+        }
+        let Jobs { mut machine, mut parts, mut speed } = self.jobs(backup, contents, Some(&found))?;
+        let folder = &self.restoring.folder;
+        let pending = |job: &Job| FileItem::values(job.part).from_copy(folder, &job.saved);
+        let mut results: Vec<FileItem> = parts.iter().map(pending).collect();
+        machine.take_if(|_| !self.restoring.machine);
+        if let Some(machine) = &mut machine {
+            interruptible(machine.compare(link, screen))
+                .await
+                .and_then(|compared| compared)
+                .map_err(nothing_written)?;
+        }
+        let needs_power_cycle = machine.iter().any(changes_machine);
+        if needs_power_cycle {
+            speed = None;
+        } else {
+            check_room(&parts, &found)?;
+            compare_all(link, screen, &mut parts, &mut results).await?;
+            if let Some((cell, present)) = &mut speed {
+                *present =
+                    link.read_if_there(&cell.read).await.map_err(nothing_written)?.map(|record| percent(&record));
+            }
+        }
+        let compared = || parts.iter().zip(&results).filter(|(_, result)| !needs_power_cycle && result.error.is_none());
+        authority.confirm(&replacing(machine.as_ref(), compared(), speed.as_ref())).await?;
+        let is_ready: Vec<bool> = parts.iter().zip(&results).map(|(_, result)| result.error.is_none()).collect();
+        steps::open(link).await?;
+        if let Some(machine) = &mut machine {
+            let written = interruptible(machine.write(link, screen)).await.and_then(|written| written);
+            let is_whole = written.as_ref().is_ok_and(|written| written.failure.is_none());
+            if needs_power_cycle || !is_whole {
+                if let Some(result) = results.iter_mut().find(|result| result.name == Part::Parameters.to_string()) {
+                    settle(result, written);
+                    // The other parameters were not written.
+                    if is_whole {
+                        (result.more.state, result.ok) = (State::NotTried, false);
+                    }
+                }
+                let mut restored = Restored::new(folder, results);
+                restored.needs_power_cycle = is_whole;
+                return Ok(restored);
+            }
+        }
+        for ((job, result), _) in parts.iter_mut().zip(&mut results).zip(is_ready).filter(|(_, is_ready)| *is_ready) {
+            if !settle(result, job.table.write(link, screen).await) {
+                break;
+            }
+        }
+        if let Some((cell, present)) = speed {
+            let mut result = FileItem::values("override");
+            if results.iter().all(|result| result.more.state != State::NotTried) {
+                settle(&mut result, write_speed(link, screen, &cell, present).await);
+            }
+            results.push(result);
+        }
+        Ok(Restored::new(folder, results))
+    }
+
+    async fn dry_run(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        manifest: &Manifest,
+        jobs: Jobs,
+    ) -> Result<Restored, Failure> {
+        const ON: &str = "the comparison: values that differ are written";
+        let Jobs { machine, mut parts, speed } = jobs;
+        for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
+            let Some(job) = parts.iter().find(|job| job.part.to_string() == entry.name) else {
+                link.plan_item(would_leave(&entry.name, NOT_CHOSEN));
+                continue;
+            };
+            link.plan_item(would_write(&entry.name, ("values", job.table.count() as u64), ON));
+            if let Some(machine) = machine.as_ref().filter(|table| job.part == Part::Parameters && table.count() > 0) {
+                let name = format!("{}: machine and special", entry.name);
+                let written = || would_write(&name, ("values", machine.count() as u64), ON);
+                link.plan_item(if self.restoring.machine { written() } else { would_leave(&name, NOT_MACHINE) });
+            }
+        }
+        content::plan_controller(link);
+        let mut machine = machine.filter(|_| self.restoring.machine);
+        if let Some(machine) = &mut machine {
+            machine.compare(link, screen).await?;
+        }
+        for job in &mut parts {
+            job.table.compare(link, screen).await?;
+            if let Part::Program(_) = job.part {
+                let behind = steps::read_request(job.steps.saturating_add(1).min(5000));
+                link.plan(&behind, "and so on to the end of the task");
+            }
+        }
+        if let Some((cell, _)) = &speed {
+            link.plan(&cell.read, "the override");
+        }
+        steps::plan_open(link).await?;
+        if let Some(machine) = &mut machine {
+            machine.write(link, screen).await?;
+        }
+        for job in &mut parts {
+            job.table.write(link, screen).await?;
+            if let Part::Program(_) = job.part {
+                link.then(&format!("steps behind those of {} that are no NOP become one", job.part));
+            }
+        }
+        if let Some((cell, _)) = &speed {
+            link.plan_overwriting(&cell.read, &cell.write.text()).await?;
+        }
+        link.put_back().await?;
+        Err(unknown())
+    }
+}
+
+/// Whether a part changes the machine itself, so that the controller needs a restart.
+fn changes_machine(table: &Table) -> bool {
+    let parameter = |name: &String| Parameter::named(name).is_some_and(|found| found.group() == Group::Machine);
+    table.differing().iter().any(parameter)
+}
+
+/// Compares all parts with the controller. A part that cannot be read fails alone; nothing of it is written.
+async fn compare_all(
+    link: &mut Link,
+    screen: &Screen,
+    jobs: &mut [Job],
+    results: &mut [FileItem],
+) -> Result<(), Failure> {
+    let mut read = screen.parts_progress("parts read", jobs.len());
+    let mut lost = None;
+    for (job, result) in jobs.iter_mut().zip(results) {
+        if let Some(failure) = &lost {
+            result.fail(Failure::clone(failure));
+            continue;
+        }
+        match interruptible(job.table.compare(link, screen)).await.and_then(|compared| compared) {
+            Ok(()) => {}
+            Err(failure) if failure.kind == Kind::Interrupted => return Err(nothing_written(failure)),
+            Err(failure) => {
+                if !result.fail(failure.clone()) {
+                    lost = Some(failure);
+                }
+            }
+        }
+        read.advance(1);
+    }
+    Ok(())
+}
+
+/// Change to confirm: a few values one by one, many by parts.
+fn replacing<'j>(
+    machine: Option<&Table>,
+    parts: impl Iterator<Item = (&'j Job, &'j FileItem)>,
+    speed: Option<&(Cell, Option<u8>)>,
+) -> Change {
+    let lost_of = |part: String, table: &Table| (part, table.nouns(), table.replaced());
+    let mut lost: Vec<_> = machine.map(|table| lost_of("machine".to_owned(), table)).into_iter().collect();
+    lost.extend(parts.map(|(job, _)| lost_of(job.part.to_string(), &job.table)));
+    if let Some((cell, Some(present))) = speed {
+        let new = percent(&cell.wanted);
+        if new != *present {
+            let row = ["override".to_owned(), format!("{present} %"), format!("{new} %")];
+            lost.push(("override".to_owned(), ["override", "overrides"], vec![row]));
+        }
+    }
+    lost.retain(|(_, _, replaced)| !replaced.is_empty());
+    let total: usize = lost.iter().map(|(_, _, replaced)| replaced.len()).sum();
+    let values = if total == 1 { "a value" } else { &format!("{total} values") };
+    let change = match total {
+        0 => return Change::none(),
+        _ => Change::new(format!("overwrite {values} by the backup")),
+    };
+    let notes = machine.map(|table| table.consequences()).unwrap_or_default();
+    let change = notes.into_iter().fold(change, Change::note);
+    lost.iter().fold(change, |change, (part, [one, many], replaced)| {
+        if total > SHOWN {
+            let count = replaced.len();
+            return change.item(format!("{part}: {count} {}", if count == 1 { one } else { many }));
+        }
+        replaced.iter().fold(change, |change, [what, old, new]| change.replaces(&format!("{part}, {what}"), old, new))
+    })
+}
+
+/// Override in an answer or a request.
+fn percent(record: &Record) -> u8 {
+    small(record, "override")
+}
+
+/// The override of the backup.
+fn speed(backup: &Controller) -> Result<Option<Cell>, Failure> {
+    let Some(percent) = backup.speed_override_percent else { return Ok(None) };
+    let values = vec![Value::Number(percent.into())];
+    let wanted = table::Command::Rovr.row().answers[0].record(values.clone());
+    Ok(Some(Cell {
+        read: Request::bare(table::Command::Rovr),
+        write: Request::new(table::Command::Wovr, values).map_err(|error| wrong(&error))?,
+        wanted: wanted.map_err(|error| wrong(&error))?,
+    }))
+}
+
+/// Writes the override if it differs.
+async fn write_speed(
+    link: &mut Link,
+    screen: &Screen,
+    cell: &Cell,
+    present: Option<u8>,
+) -> Result<PartResult, Failure> {
+    if present.is_none_or(|present| present == percent(&cell.wanted)) {
+        return Ok(PartResult { unchanged: usize::from(present.is_some()), ..PartResult::default() });
+    }
+    interruptible(link.overwrite(screen, cell, &mut Cells::default())).await.and_then(|written| written)?;
+    Ok(PartResult { written: 1, ..PartResult::default() })
+}
+
+/// Whether the controller is the machine that the backup is of: its robot type (SYSP), which task has which axes (E19), and
+/// what the axes are called (E01). With `machine`, E19 and E01 are among what is restored.
+fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<(), Failure> {
+    let none = String::new();
+    let letters = [backup, found].map(|one| one.axis_letters.as_ref());
+    let marks = [
+        ("robot type", &backup.robot_type, &found.robot_type, true),
+        ("E19 (task-axes)", &backup.task_axes, &found.task_axes, !machine),
+        (
+            "E01 (axis-letters)",
+            letters[0].unwrap_or(&none),
+            letters[1].unwrap_or(&none),
+            !machine && letters.iter().all(Option::is_some),
+        ),
+    ];
+    let other = marks.iter().filter(|(_, saved, found, counts)| *counts && saved != found);
+    let other: Vec<String> =
+        other.map(|(what, saved, found, _)| format!("{what} is {saved} in the backup and {found} here")).collect();
+    if other.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::new(Kind::Rejected, format!("the backup is of another machine: {}", other.join(", ")))
+        .hint("use the backup of this robot, or --force to write this one; nothing was written"))
+}
+
+/// Whether all programs fit the tasks; before anything is written.
+fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
+    for Job { part, steps, .. } in jobs {
+        let Part::Program(task) = part else { continue };
+        let room = found.task_steps[usize::from(*task) - 1];
+        if *steps > room {
+            let message = format!("{part} needs {steps} steps, but task {task} has {room}");
+            return Err(Failure::usage(message)
+                .hint("restore E22 (task-steps) with --machine, or exclude the part with --only"));
+        }
+    }
+    Ok(())
+}
+
+/// Records the result of a part. Returns whether the next one can be tried.
+fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bool {
+    let PartResult { written, unchanged, left_out, failure } = match outcome {
+        Ok(outcome) => outcome,
+        Err(failure) => return result.fail(failure),
+    };
+    (result.more.written, result.more.unchanged) = (Some(written), Some(unchanged));
+    result.more.left_out = left_out.into_iter().map(left_out_row).collect();
+    if let Some(failure) = failure {
+        return result.fail(failure);
+    }
+    result.succeed(State::Done);
+    true
+}

@@ -1,0 +1,168 @@
+//! `toyo card read|write`: the memory card.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::Toyo;
+use super::wait::{AcceptedWork, Work};
+use armctl_controller::Risk;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::dry_run::{Known as _, unknown};
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Tone, View};
+use armctl_frame::wait_arguments::MotionEnd;
+use armctl_frame::{Command, Context, Report, commands};
+
+commands! {
+    /// The memory card.
+    pub enum Card {
+        /// Restore the controller from the memory card
+        Read(Read),
+        /// Save the controller to the memory card
+        Write(Write),
+    }
+}
+
+/// Read everything from the memory card, and wait for the end (TO 2-3).
+#[derive(Debug, Args)]
+pub struct Read {
+    #[command(flatten)]
+    end: MotionEnd,
+}
+
+/// Write everything to the memory card, replace its content, and wait for the end (TO 2-3).
+#[derive(Debug, Args)]
+pub struct Write {
+    #[command(flatten)]
+    end: MotionEnd,
+}
+
+impl Command for Read {
+    type Family = Toyo;
+    type Report = TransferReport;
+    const ID: &'static str = "toyo.card.read";
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str =
+        "replace programs, tables and parameters of the controller with the content of the memory card";
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<TransferReport, Failure> {
+        let work = AcceptedWork {
+            work: Work::Card,
+            order: table::Command::Rmca,
+            done: "the controller accepted the card read",
+            doing: "reading the card",
+        };
+        transfer(context, work, self.end.no_wait()).await
+    }
+}
+
+impl Command for Write {
+    type Family = Toyo;
+    type Report = TransferReport;
+    const ID: &'static str = "toyo.card.write";
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite the content of the memory card";
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<TransferReport, Failure> {
+        let work = AcceptedWork {
+            work: Work::Card,
+            order: table::Command::Wmca,
+            done: "the controller accepted the card write",
+            doing: "writing the card",
+        };
+        transfer(context, work, self.end.no_wait()).await
+    }
+}
+
+async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool) -> Result<TransferReport, Failure> {
+    let link = context.link;
+    link.ask(&Request::bare(work.order)).await?;
+    if no_wait {
+        return Ok(TransferReport { accepted: true, elapsed_ms: None, needs_power_cycle: None });
+    }
+    let Some(end) = work.wait(link, context.screen, armctl_client::toyo::Letters::UNKNOWN).await.known()? else {
+        link.status_of(&[0]).await?;
+        return Err(unknown());
+    };
+    let needs_power_cycle = link.status_of(&[0]).await?.needs_power_cycle();
+    Ok(TransferReport { accepted: true, elapsed_ms: end.elapsed_ms, needs_power_cycle: Some(needs_power_cycle) })
+}
+
+/// Result of a transfer.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct TransferReport {
+    /// Whether the controller accepted the command.
+    accepted: bool,
+    /// Time from acceptance to end; null without a wait, or if the transfer ended before the first read.
+    elapsed_ms: Option<u64>,
+    /// Whether parameter 2 changed, so that the controller executes nothing before a restart; null without a wait.
+    needs_power_cycle: Option<bool>,
+}
+
+impl Report for TransferReport {
+    fn view(&self) -> View {
+        let due = match self.needs_power_cycle {
+            None => return View::fields([("memory card", "started".into())]),
+            Some(true) => Cell::from("due").tone(Tone::Bad),
+            Some(false) => "not due".into(),
+        };
+        View::fields([
+            ("memory card", Cell::from("done").tone(Tone::Good)),
+            ("power cycle", due),
+            ("elapsed (ms)", Cell::optional(self.elapsed_ms)),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{Bench, Fault, all_blocks, blocks};
+    use armctl_frame::failure::Kind;
+
+    #[test]
+    fn a_transfer_sends_one_order_and_status_reads() {
+        assert_eq!(
+            all_blocks(&["card", "write"]).unwrap(),
+            [
+                "@STAS SNO=2",
+                "@HSON",
+                "@STAS SNO=0",
+                "@WMCA",
+                "@STAS SNO=3",
+                "@STAS SNO=0",
+                "@STAS SNO=1",
+                "@STAS SNO=0",
+                "@HSOF"
+            ]
+        );
+        assert_eq!(blocks(&["card", "read", "--no-wait"]).unwrap(), ["@RMCA"]);
+    }
+
+    #[test]
+    fn card_write_waits_for_the_end_of_the_transfer() {
+        let (mut bench, _) = Bench::with_faults("card = \"empty\"\n", |_, _| Fault::None);
+        let failure = bench.run(&["card", "read"]).unwrap_err();
+        assert!(failure.hint.unwrap().contains("check that the card contains data"));
+        let data = bench.data(&["card", "write"]);
+        let elapsed = data["elapsed_ms"].as_u64().unwrap();
+        assert!((1800..2300).contains(&elapsed), "{elapsed}");
+        assert_eq!(data["needs_power_cycle"], false);
+        assert_eq!(bench.data(&["card", "read"])["accepted"], true);
+    }
+
+    #[test]
+    fn an_absent_or_removed_card_is_an_error() {
+        let failure = Bench::with_faults("", |_, _| Fault::None).0.run(&["card", "write"]).unwrap_err();
+        assert_eq!(failure.message, "the controller refused WMCA (@NG): there is no memory card");
+        let state = "card = \"written\"\n[[event]]\nat_ms = 1000\ndo = \"card out\"\n";
+        let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["card", "read"]).unwrap_err();
+        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("E0")));
+        assert!(
+            failure.message.starts_with("the controller accepted the card read, but an error occurred (E0"),
+            "{}",
+            failure.message
+        );
+    }
+}

@@ -1,0 +1,77 @@
+//! Layers of a controller for `armctl robots check`.
+
+use super::info;
+use super::link::Link;
+use super::link::Toyo;
+use super::overview::left_over;
+use armctl_controller::toyo::errors;
+use armctl_controller::toyo::status::RunMode;
+use armctl_frame::attach::is_held;
+use armctl_frame::face::layers::{Layer, Layers};
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::settings::Robot;
+use armctl_frame::{Access, Family as _};
+
+const LAYERS: &[&str] =
+    &["line", "answer", "version", "teach pendant", "mode", "slaves", "power cycle", "error", "servo", "origin"];
+
+/// Checks the layers with read requests.
+pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+    let mut layers = Layers::new(robot.label(), LAYERS);
+    match Toyo::connect(robot, access, screen).await {
+        Err(failure) => layers.fail("line", &failure),
+        Ok(mut link) => {
+            layers.ok("line", format!("{} is open", robot.target.value));
+            check_state(robot, &mut link, &mut layers).await;
+            Toyo::close(link, screen).await?;
+        }
+    }
+    Ok(layers.finish())
+}
+
+async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
+    let status = match link.status().await {
+        Ok(status) => status,
+        Err(failure) => return layers.fail("answer", &failure),
+    };
+    layers.ok("answer", "all pages of the status were received");
+    match info::version(link).await {
+        Ok(version) => layers.ok("version", version),
+        Err(failure) => layers.warn("version", failure.message, "`toyo info` shows details"),
+    }
+    layers.judge(
+        "teach pendant",
+        !status.pendant_on(),
+        ("off", "on"),
+        "switch the teach pendant OFF to allow commands of the host",
+    );
+    let mode = status.run_mode().map_or("unknown", RunMode::name);
+    layers.ok("mode", mode);
+    if status.slave_not_ready() {
+        layers.fail_with("slaves", "a slave does not answer", "check power and cables of the slave stations");
+    } else {
+        layers.ok("slaves", "ready");
+    }
+    if status.needs_power_cycle() {
+        layers.fail_with(
+            "power cycle",
+            "parameter 2 was changed, and the controller executes nothing before a restart",
+            "switch the controller's power off and on",
+        );
+    } else {
+        layers.ok("power cycle", "not due");
+    }
+    if status.has_error() || status.error != errors::NONE {
+        let error = errors::explain(status.error);
+        layers.fail_with("error", format!("{:02X}, {}: {}", error.code, error.name, error.cause), error.remedy);
+    } else {
+        layers.ok("error", "none");
+    }
+    layers.leftover_drafts(&left_over(status));
+    // Servo power without use is only a remark, not a failure.
+    let is_idle = !status.executing() && !status.homing() && !is_held(robot);
+    let on = if is_idle { "on; no program runs and no session is open: `toyo servo off`" } else { "on" };
+    layers.judge("servo", status.servo_on(), (on, "off"), "motion needs servo power: `toyo servo on`");
+    layers.judge("origin", status.homed(), ("done", "not done"), "motion needs the origin: `toyo home`");
+}

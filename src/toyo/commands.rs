@@ -1,0 +1,103 @@
+//! The commands of `toyo`, as its help lists them.
+
+use super::link::Toyo;
+use super::{
+    alarm, backup, bus, card, coordinate, counter, easy, home, host, info, init, io, jog, mvm, offset, orders,
+    overrides, palletizing, param, point, ports, position, program, raw, robot_type, rows, run, sim, status, task,
+};
+use armctl_frame::backup::family_backup::Diff;
+use armctl_frame::{Offline, Subcommands, commands};
+
+commands! {
+    /// What can be asked of a Toyo controller.
+    pub enum Commands {
+        "Status and diagnosis":
+        /// Show all status flags
+        Status(status::Status),
+        /// Current position of the axes
+        Position(position::Position),
+        /// Alarms
+        #[command(alias = "error")]
+        Alarm(Subcommands<alarm::Alarm>),
+        /// Robot type, versions, axes, task, override
+        Info(info::Info),
+        /// Settings and errors of CC-Link
+        Bus(bus::Bus),
+        "Power and operation":
+        /// Take or release host control (host ON / OFF)
+        Host(host::Host),
+        /// Switch servo power
+        Servo(orders::Servo),
+        /// Select run mode or program type
+        Mode(orders::Mode),
+        /// Stop the running program or jog
+        Stop(orders::Stop),
+        /// Reset programs to the first step
+        Reset(orders::Reset),
+        "Motion":
+        /// Return to the origin
+        #[command(alias = "origin")]
+        Home(home::Home),
+        /// Jog one axis, for a time or in small steps
+        Jog(jog::Jog),
+        /// Start programs, move to a point
+        Run(Subcommands<run::Run>),
+        /// Send coordinates to a waiting RSMV step
+        Coordinate(Subcommands<coordinate::Coordinate>),
+        /// Speed override (percent)
+        Override(Subcommands<overrides::Override>),
+        /// Current coordinate offset
+        Offset(offset::Offset),
+        "Programs":
+        /// Sequential programs
+        #[command(alias = "job")]
+        Program(Subcommands<program::Program>),
+        /// Palletizing programs
+        Palletizing(Subcommands<palletizing::Palletizing>),
+        /// Easy programs
+        Easy(Subcommands<easy::Easy>),
+        /// Show or select the current task
+        Task(Subcommands<task::Task>),
+        /// Run programs offline
+        Sim(Subcommands<sim::Sim>),
+        "Data":
+        /// Teach: store the current position as a point
+        Teach(point::Teach),
+        /// Points of the coordinate table
+        Point(Subcommands<point::Point>),
+        /// Parameters
+        Param(Subcommands<param::Param>),
+        /// Speed table
+        SpeedTable(Subcommands<rows::SpeedTable>),
+        /// Acceleration table
+        AccelTable(Subcommands<rows::AccelTable>),
+        /// Torque table
+        TorqueTable(Subcommands<rows::TorqueTable>),
+        /// MVM table (matrix moves)
+        Mvm(Subcommands<mvm::Mvm>),
+        /// Save everything the controller stores to a folder
+        Backup(backup::Backup),
+        /// Restore a backup
+        Restore(backup::Restore),
+        /// Compare a backup with a second backup, or with the controller
+        Diff(Diff<Toyo>),
+        /// Memory card
+        Card(Subcommands<card::Card>),
+        /// Clear memory
+        Init(init::Init),
+        /// Set the robot type of an axis
+        RobotType(robot_type::RobotType),
+        "Signals":
+        /// Input, output and internal ports
+        Io(Subcommands<io::Io>),
+        /// Counters
+        Counter(Subcommands<counter::Counter>),
+        /// Timers
+        Timer(Subcommands<counter::Timer>),
+        "Link":
+        /// List the serial ports of this machine
+        Ports(Offline<ports::Ports>),
+        /// Send any block and decode the answer
+        Raw(raw::Raw),
+    }
+}

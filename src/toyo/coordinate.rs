@@ -1,0 +1,141 @@
+//! `toyo coordinate set`: coordinates for a program that waits for them.
+
+use clap::Args;
+
+use super::link::Toyo;
+use super::link::wrong;
+use super::point::table as point_table;
+use super::position::Coordinates;
+use super::values::{Changes, assignment, json};
+use armctl_controller::Risk;
+use armctl_controller::toyo::field::{Field, Value};
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::failure::Failure;
+use armctl_frame::gate::{Change, Confirmation};
+use armctl_frame::settings_report::{Done, NewValue, Old};
+use armctl_frame::{Command, Context, commands};
+
+commands! {
+    /// Coordinates that the host supplies.
+    pub enum Coordinate {
+        /// Send coordinates to a waiting RSMV step, which moves there
+        Set(Set),
+    }
+}
+
+/// Send coordinates to a task. Its waiting or next RSMV step moves to them (TO 2-8, MRSS).
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct Set {
+    /// X, Y, Z and R in mm, -8000.00 to 8000.00, or by name, such as z=12.5 or ax1=12.5; 0 for a missing axis
+    #[arg(required = true, num_args = 4, value_names = ["X", "Y", "Z", "R"], value_parser = coordinate)]
+    values: Vec<String>,
+    /// Task of the program
+    #[arg(long, value_name = "N", default_value = "1", value_parser = |text: &str| read("task", text))]
+    task: Value,
+    /// Row of the speed table, 1 to 10; 0 for the speed of the step
+    #[arg(long = "speed-row", value_name = "ROW", default_value = "0", value_parser = |text: &str| read("speed", text))]
+    speed: Value,
+}
+
+/// Parses a field of MRSS within its range.
+fn read(name: &str, text: &str) -> Result<Value, String> {
+    field(name).read(text).map_err(|error| error.to_string())
+}
+
+/// Parses a coordinate with or without its name.
+fn coordinate(text: &str) -> Result<String, String> {
+    read("x", assignment(text).map_or(text, |(_, value)| value)).map(|_| text.to_owned())
+}
+
+fn field(name: &str) -> &'static Field {
+    let fields = table::Command::Mrss.row().requests[0].fields;
+    fields.iter().find(|field| field.name == name).expect("MRSS has these fields")
+}
+
+impl Set {
+    /// Text for the speed.
+    fn pace(&self) -> String {
+        match self.speed {
+            Value::Number(0) => "the speed of its step".to_owned(),
+            _ => format!("the speed of row {}", field("speed").meaning(&self.speed)),
+        }
+    }
+
+    /// Text after "This will …".
+    fn in_words(&self, coordinates: &str) -> String {
+        format!(
+            "move to {coordinates} with the next RSMV step of task {} at {}",
+            field("task").meaning(&self.task),
+            self.pace()
+        )
+    }
+}
+
+impl Command for Set {
+    type Family = Toyo;
+    type Report = Done;
+    const ID: &'static str = "toyo.coordinate.set";
+    const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    fn intent(&self) -> String {
+        let axes = self.values.iter().zip(["X", "Y", "Z", "R"]).map(|(text, usual)| {
+            let (name, value) = assignment(text).unwrap_or((usual, text));
+            format!("{} {value} mm", name.to_uppercase())
+        });
+        self.in_words(&axes.collect::<Vec<_>>().join(", "))
+    }
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
+        let Self { values, task, speed } = self;
+        let Context { link, authority, .. } = context;
+        let letters = link.letters().await?;
+        let changes = Changes::read_by("coordinates", &point_table().body(), &letters, values)?;
+        let coordinates = changes.whole().ok_or_else(|| {
+            Failure::usage("coordinates: a value is missing; each axis needs one")
+                .hint("`toyo coordinate set -h` has examples")
+        })?;
+        let values = std::iter::once(task.clone()).chain(coordinates).chain([speed.clone()]).collect();
+        let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
+        let coordinates = Coordinates::of(request.record(), letters);
+        let target = format!("{} (mm)", coordinates.in_a_line());
+        authority.confirm(&Change::new(self.in_words(&target))).await?;
+        link.ask(&request).await?;
+        let words = format!("task {} has {target} at {}", field("task").meaning(task), self.pace());
+        let new =
+            NewValue::of("coordinates", serde_json::json!(coordinates), words).with("task", json(field("task"), task));
+        let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", json(field("speed"), speed)) };
+        Ok(new.replaces(Old::UNREAD))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{Bench, Fault, blocks, intent, objection};
+
+    #[test]
+    fn coordinates_are_formatted_and_checked() {
+        let line = ["coordinate", "set", "100", "-20.5", "0", "0", "--task", "2", "--speed-row", "5"];
+        assert_eq!(blocks(&line).unwrap(), ["@MRSS TASK=02 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00 V=05"]);
+        assert_eq!(
+            intent(&line),
+            "move to X 100 mm, Y -20.5 mm, Z 0 mm, R 0 mm with the next RSMV step of task 2 at the speed of row 5"
+        );
+        assert!(objection(&["coordinate", "set", "1", "2", "3"]).contains("<R>"));
+        assert!(objection(&["coordinate", "set", "8000.01", "0", "0", "0"]).contains("-8000.00 to 8000.00 mm"));
+        assert!(objection(&["coordinate", "set", "0.001", "0", "0", "0"]).contains("has too many decimals"));
+        assert!(objection(&["coordinate", "set", "0", "0", "0", "0", "--speed-row", "11"]).contains("0 to 10"));
+    }
+
+    #[test]
+    fn a_waiting_move_goes_to_the_sent_coordinates() {
+        let state = "origin = true\nsteps = { 1 = [\"RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 PASS\", \"END\"] }\n";
+        let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
+        bench.data(&["run", "sequential", "1", "--no-wait"]);
+        bench.data(&["coordinate", "set", "50", "20", "0", "0"]);
+        bench.wait(std::time::Duration::from_secs(5));
+        assert_eq!(bench.data(&["position"])["positions"][0]["x_mm"], 50.0);
+    }
+}

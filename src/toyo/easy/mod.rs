@@ -1,0 +1,181 @@
+//! `toyo easy`: the eight easy programs. Each repeats a part of the sequential program.
+
+mod progress;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::eeprom::Cell;
+use super::link::wrong;
+use super::programs::{Copy, Kind, Select};
+use super::rows::{self, Rows, WRITING};
+use armctl_controller::toyo::field::{self, Value};
+use armctl_controller::toyo::layout::{Layout, Record};
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table::Command;
+use armctl_frame::commands;
+use armctl_frame::failure::Failure;
+use armctl_frame::store::{Dump, Field, Get, Ids, List, Restore, Set, TableWords, ids};
+
+commands! {
+    /// Commands for easy programs.
+    pub enum Easy {
+        /// Read programs: 1-3; without any, all 8
+        Get(Get<Rows<Numbered>>),
+        /// List programs that are not empty
+        List(List<Rows<Numbered>>),
+        /// Write a program: 1 START LOOP END
+        Set(Set<Rows<Numbered>>),
+        /// Copy a program to another number
+        Copy(Copy<Numbered>),
+        /// Save programs to a CSV file
+        Dump(Dump<Rows<Numbered>>),
+        /// Write programs from a CSV file
+        Restore(Restore<Rows<Numbered>>),
+        /// Select the program that `run easy` starts
+        Select(Select<Numbered>),
+        /// Progress of the running program
+        Progress(progress::Progress),
+    }
+}
+
+/// The easy programs as a table and as a type of program.
+#[derive(Debug)]
+pub struct Numbered;
+
+impl Kind for Numbered {
+    const WHAT: &'static str = "easy program";
+    const IDS: [&'static str; 2] = ["toyo.easy.copy", "toyo.easy.select"];
+    const INTENT: &'static str = "overwrite an easy program";
+    const HELP: [&'static str; 3] = ["Program to copy, 1 to 8", "Program to replace, 1 to 8", "Program, 1 to 8"];
+    const RUN: &'static str = "toyo run easy";
+    const COMMANDS: [Command; 3] = [Command::Cesy, Command::Sesn, Command::Resd];
+
+    fn field() -> &'static field::Field {
+        key()
+    }
+
+    fn reads(program: i32) -> Result<Vec<Request>, Failure> {
+        Ok(vec![read(program)?])
+    }
+}
+
+/// Field of the program number, 1 to 8.
+fn key() -> &'static field::Field {
+    &Command::Resy.row().requests[0].fields[0]
+}
+
+/// Request that reads a program.
+pub fn read(program: i32) -> Result<Request, Failure> {
+    Request::new(Command::Resy, vec![Value::Number(program), Value::Number(0)]).map_err(|error| wrong(&error))
+}
+
+/// EEPROM cell of a program with these values.
+pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+    let all: Vec<Value> = [Value::Number(program), Value::Number(0)].into_iter().chain(values).collect();
+    let write = Request::new(Command::Wesy, all.clone()).map_err(|error| wrong(&error))?;
+    let wanted = Command::Resy.row().answers[0].record(all).map_err(|error| wrong(&error))?;
+    Ok(Cell { read: read(program)?, write, wanted })
+}
+
+impl rows::Kind for Numbered {
+    type Value = Program;
+    const WORDS: TableWords = TableWords {
+        nouns: ["easy program", "easy programs"],
+        placeholder: "PROGRAM",
+        range: "Programs, 1 to 8: 5, 1-3",
+        reading: None,
+        writing: Some(WRITING),
+    };
+    const IDS: Ids = ids!("toyo.easy");
+    const FIELDS: &'static [Field] = &[
+        Field::number("start_tag", "start tag"),
+        Field::number("loops", "loops"),
+        Field::number("end_tag", "end tag"),
+    ];
+    const ZERO_IS_BLANK: bool = true;
+
+    fn key() -> &'static field::Field {
+        key()
+    }
+
+    fn body() -> Layout {
+        Layout::new("START={} LOOP={} END={}", &Command::Wesy.row().requests[0].fields[2..])
+    }
+
+    fn read(program: i32) -> Result<Request, Failure> {
+        read(program)
+    }
+
+    fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+        cell(program, values)
+    }
+
+    fn sketch(program: i32, values: &[Option<Value>]) -> String {
+        let keys = [program, 0].map(|key| Some(Value::Number(key)));
+        let all: Vec<_> = keys.into_iter().chain(values.iter().cloned()).collect();
+        format!("@{}", Command::Wesy.row().requests[0].sketch(&all).unwrap_or_default())
+    }
+
+    fn value(record: &Record) -> Program {
+        let number = |name| record.number(name).unwrap_or_default();
+        Program { start_tag: number("start"), loops: number("loop"), end_tag: number("end") }
+    }
+}
+
+/// An easy program.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Program {
+    /// Start tag in the sequential program.
+    start_tag: i32,
+    /// Number of repetitions.
+    loops: i32,
+    /// End tag.
+    end_tag: i32,
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{Bench, blocks, objection};
+
+    #[test]
+    fn one_program_or_all_programs_are_read() {
+        assert_eq!(blocks(&["easy", "get", "2"]).unwrap(), ["@RESY PNO=02 ST=000"]);
+        assert_eq!(blocks(&["easy", "get"]).unwrap().len(), 8);
+        assert_eq!(blocks(&["easy", "progress"]).unwrap(), ["@RESD"]);
+        assert_eq!(blocks(&["easy", "select", "3"]).unwrap(), ["@SESN PR=03", "@RESD"]);
+        assert!(objection(&["easy", "get", "9"]).contains("9 is out of range"));
+    }
+
+    #[test]
+    fn an_equal_program_is_not_written() {
+        let read = "@RESY PNO=01 ST=000";
+        assert_eq!(
+            blocks(&["easy", "set", "1", "10", "5", "20"]).unwrap(),
+            [read, "@WESY PNO=01 ST=000 START=010 LOOP=0005 END=020", read]
+        );
+        assert_eq!(
+            blocks(&["easy", "set", "1", "loop=7"]).unwrap(),
+            [read, "@WESY PNO=01 ST=000 START=? LOOP=0007 END=?", read]
+        );
+        assert_eq!(
+            blocks(&["easy", "set", "1", "10", "5", "1000"]).unwrap_err().message,
+            "easy program 1: end: 1000 is out of range (a number, 0 to 999)"
+        );
+    }
+
+    #[test]
+    fn a_second_copy_writes_nothing() {
+        let mut bench = Bench::new("sim:");
+        bench.data(&["easy", "set", "1", "10", "5", "20"]);
+        assert_eq!(bench.data(&["easy", "set", "1", "loop=6"])["items"][0]["new"]["loops"], 6);
+        let copied = |bench: &mut Bench| bench.data(&["easy", "copy", "1", "8"])["cells_written"].clone();
+        assert_eq!((copied(&mut bench), copied(&mut bench)), (1.into(), 0.into()));
+        let read = bench.data(&["easy", "get", "8"]);
+        let value = serde_json::json!({ "start_tag": 10, "loops": 6, "end_tag": 20 });
+        assert_eq!((&read["items"][0]["name"], &read["items"][0]["value"]), (&"8".into(), &value));
+        assert_eq!(bench.run(&["easy", "copy", "1", "1"]).unwrap_err().kind.exit(), 2);
+        bench.data(&["easy", "select", "8"]);
+        assert_eq!(bench.data(&["easy", "progress"])["number"], 8);
+    }
+}

@@ -1,0 +1,119 @@
+//! Interface of `toyo` to the other parts of the program.
+
+use super::alarm;
+use super::backup::{back_up, restore};
+use super::commands::Commands;
+use super::decode::Decode;
+use super::explain::Explain;
+use super::instructions;
+use super::link::{Link, Toyo};
+use super::orders::Stop;
+use super::serve::Serve;
+use super::top::Poller;
+use super::{check, connect, overview, panel};
+use armctl_controller::Risk;
+use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
+use armctl_controller::toyo::{errors, passing, simulator};
+use armctl_frame::backup::family_backup::Backups;
+use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use armctl_frame::face::HeldLink;
+use armctl_frame::face::layers::Layer;
+use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::face::registration::Declaration;
+use armctl_frame::face::sample::Traffic;
+use armctl_frame::face::teach_panel::Panel;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::robot::alarm::Alarm;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::Family;
+use armctl_frame::{Access, Context};
+use armctl_transport::session::host::Guard;
+use armctl_transport::session::host::shared_link::SharedLink;
+
+impl Declaration for Toyo {
+    type Commands = Commands;
+    type Decode = Decode;
+    type Explain = Explain;
+    type Alarms = alarm::List;
+    type AlarmHistory = alarm::History;
+    type AlarmReset = alarm::Reset;
+    type Position = super::position::Position;
+    type Stop = Stop;
+    type Serve = Serve;
+    type Poller = Poller;
+
+    const NAME: Family = Family::Toyo;
+    const TITLE: &'static str = "Toyo";
+    const ABOUT: &'static str = "Toyo over RS-232C host communication";
+    const AFTER_HELP: &'static str =
+        "Cable, settings and first contact: `armctl help toyo-setup`. Serial ports: `armctl toyo ports`.";
+    const SETUP: (&'static str, &'static str) = ("cable and settings of a Toyo controller", include_str!("setup.txt"));
+    const START_STATE: &'static str = simulator::EXAMPLE;
+    const PANEL: Panel = panel::PANEL;
+    const GUARD: Guard = Guard { is_harmless_data: passing::only_reads_or_stops, is_harmless_image: |_, _| false };
+
+    fn urls() -> Vec<(String, &'static str)> {
+        vec![
+            ("serial://".to_owned(), "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
+            ("tcp://".to_owned(), "toyo: HOST:PORT of a serial device server"),
+        ]
+    }
+
+    fn codes() -> Vec<(String, String)> {
+        let codes = errors::all().map(|code| (format!("{:02X}", code.code), code.name.to_string()));
+        codes.chain(INSTRUCTIONS.iter().map(|row| (row.word.to_owned(), row.about.to_owned()))).collect()
+    }
+
+    fn topics() -> Vec<(&'static str, &'static str, String)> {
+        vec![instructions::topic()]
+    }
+
+    fn stop_command() -> Self::Stop {
+        Stop::everything()
+    }
+
+    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
+        alarm::present_alarms(link).await
+    }
+
+    fn traffic(link: &Link) -> Traffic {
+        link.traffic()
+    }
+
+    async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+        overview::overview(link).await
+    }
+
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+        check::check(robot, access, screen).await
+    }
+
+    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+        Ok(SharedLink::Stream(connect::hold(robot, access, screen).await?).into())
+    }
+}
+
+impl Backups for Toyo {
+    const IDS: [&'static str; 3] = ["toyo.backup", "toyo.restore", "toyo.diff"];
+    const BACKUP_RISK: Risk = Risk::Write;
+
+    fn backup_risk(robot: &Robot) -> Risk {
+        if robot.read_only.value { Risk::Read } else { Self::BACKUP_RISK }
+    }
+
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
+        let current_task = context.robot.read_only.value;
+        if current_task {
+            context.screen.note(&format!(
+                "{}: the robot is read-only, and selecting a task is a change: only the points and program of the current task",
+                context.robot.label()
+            ));
+        }
+        back_up(context, making, current_task).await
+    }
+
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+        restore(context, restoring).await
+    }
+}

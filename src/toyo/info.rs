@@ -1,0 +1,173 @@
+//! `toyo info`: type and versions of the controller.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::Link;
+use super::link::Toyo;
+use super::numbers::small;
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Section, View};
+use armctl_frame::{Command, Context, Report};
+
+/// Show robot type, versions, axes, task and override.
+#[derive(Debug, Args)]
+#[command(after_help = "A missing station refuses to report its version. The report lists refused requests.")]
+pub struct Info {}
+
+/// Stations of the controller; 0 is the controller itself.
+const STATIONS: [u8; 5] = [0, 1, 2, 3, 4];
+
+impl Command for Info {
+    type Family = Toyo;
+    type Report = About;
+    const ID: &'static str = "toyo.info";
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<About, Failure> {
+        let link = context.link;
+        let system = Request::bare(table::Command::Sysp);
+        let version = |station: u8| Request::of(table::Command::Cver, [Value::Number(station.into())]);
+        let (task, speed) = (Request::bare(table::Command::Mtsk), Request::bare(table::Command::Rovr));
+        let versions = STATIONS.map(version);
+        let all: Vec<Request> = [&system].into_iter().chain(&versions).chain([&task, &speed]).cloned().collect();
+        link.plan_all(&all)?;
+        // Every controller answers this request; each of the others can be refused.
+        let mut about = About::of(&link.ask(&system).await?);
+        for request in &all[1..] {
+            match link.try_ask(request).await? {
+                Ok(answer) => about.add_answer(request, &answer),
+                Err(_) => about.refused.push(request.text()),
+            }
+        }
+        Ok(about)
+    }
+}
+
+/// Version of the controller.
+pub(super) async fn version(link: &mut Link) -> Result<String, Failure> {
+    Ok(meaning(&link.ask(&Request::bare(table::Command::Sysp)).await?, "version"))
+}
+
+/// Identity of a controller.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct About {
+    /// Six digits.
+    robot_type: String,
+    /// Version of the controller: `3.36`.
+    version: String,
+    /// Language of the teach pendant: `Japanese` or `English`.
+    language: String,
+    /// Letters of axes 1 to 4.
+    axes: Vec<&'static str>,
+    /// End of the answer, which the manual does not explain.
+    tail: String,
+    /// Versions of the stations that answered.
+    stations: Vec<Station>,
+    /// The current task; null if the controller refused to report it.
+    task: Option<u8>,
+    /// Null if the controller refused to report it.
+    speed_override_percent: Option<u8>,
+    /// Requests that the controller refused (`@NG`).
+    refused: Vec<String>,
+}
+
+/// A station of the controller.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Station {
+    /// 0 is the controller itself.
+    station: u8,
+    version: String,
+}
+
+impl About {
+    fn of(system: &Record) -> Self {
+        Self {
+            robot_type: field_text(system, "robot_type"),
+            version: meaning(system, "version"),
+            language: meaning(system, "language"),
+            axes: ["arm1", "arm2", "arm3", "arm4"].iter().filter_map(|arm| system.word(arm)).collect(),
+            tail: system.text("tail").unwrap_or_default().to_owned(),
+            stations: Vec::new(),
+            task: None,
+            speed_override_percent: None,
+            refused: Vec::new(),
+        }
+    }
+
+    fn add_answer(&mut self, request: &Request, answer: &Record) {
+        match request.command() {
+            table::Command::Cver => {
+                self.stations.push(Station { station: small(answer, "station"), version: meaning(answer, "version") });
+            }
+            table::Command::Mtsk => self.task = Some(small(answer, "task")),
+            _ => self.speed_override_percent = Some(small(answer, "override")),
+        }
+    }
+}
+
+/// Value in the protocol.
+fn field_text(record: &Record, name: &str) -> String {
+    record.pairs().find(|(field, _)| field.name == name).map(|(field, value)| field.written(value)).unwrap_or_default()
+}
+
+/// Meaning of a value.
+fn meaning(record: &Record, name: &str) -> String {
+    let field = record.pairs().find(|(field, _)| field.name == name);
+    field.map(|(field, value)| field.meaning(value).into_owned()).unwrap_or_default()
+}
+
+impl Report for About {
+    fn view(&self) -> View {
+        let stations = self.stations.iter().map(|Station { station, version }| format!("{station}: {version}"));
+        let stations: Vec<String> = stations.collect();
+        let mut fields = vec![
+            ("robot type", Cell::from(self.robot_type.as_str())),
+            ("version", self.version.as_str().into()),
+            ("language", self.language.as_str().into()),
+            ("axes", self.axes.join(" ").into()),
+            ("stations", if stations.is_empty() { "-".into() } else { stations.join(", ").into() }),
+            ("task", self.task.map_or_else(|| "-".into(), |task| task.to_string().into())),
+            (
+                "override",
+                self.speed_override_percent.map_or_else(|| "-".into(), |percent| format!("{percent} %").into()),
+            ),
+        ];
+        if !self.refused.is_empty() {
+            fields.push(("refused", self.refused.join(", ").into()));
+        }
+        View { sections: vec![Section::Fields(fields)] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::all_blocks;
+    use armctl_controller::toyo::request::Answer;
+
+    #[test]
+    fn info_reads_all_identification() {
+        let versions = ["@CVER NO=0", "@CVER NO=1", "@CVER NO=2", "@CVER NO=3", "@CVER NO=4"];
+        assert_eq!(all_blocks(&["info"]).unwrap(), [&["@SYSP"][..], &versions, &["@MTSK", "@ROVR"]].concat());
+    }
+
+    #[test]
+    fn the_report_describes_the_controller_as_text() {
+        let Ok(Answer::Data(record)) =
+            Request::bare(table::Command::Sysp).answer("@SYSP RTYP=000123 VER=03.36 E ARM1=X ARM2=Y ARM3=Z ARM4=R N")
+        else {
+            panic!("it is data")
+        };
+        let about = About::of(&record);
+        assert_eq!((about.robot_type.as_str(), about.version.as_str()), ("000123", "3.36"));
+        assert_eq!(
+            (about.language.as_str(), about.axes.concat(), about.tail.as_str()),
+            ("English", "XYZR".into(), "N")
+        );
+    }
+}

@@ -1,0 +1,319 @@
+//! Connection to a controller for commands: the client, with errors in plain text, a trace of the traffic, and a
+//! journal of temporary changes.
+
+mod abandoned_changes;
+mod observer;
+
+use std::sync::{Arc, Mutex};
+
+use derive_more::{Deref, DerefMut};
+
+use super::change_journal::{AbandonedEntry, ChangeJournal};
+use super::connect;
+use super::failure::failure;
+pub use super::failure::{misuse, wrong};
+use super::position::Coordinates;
+use super::program::kept::Sources;
+use super::refusal;
+use super::trace::Trace;
+use super::user_choices::UserChoices;
+use super::write_log::WriteLog;
+use armctl_client::toyo::{Client, Error, Letters, Line, is_stop, status_page};
+pub use armctl_client::toyo::{Moving, Refusal, jog};
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::request::{Answer, Request};
+use armctl_controller::toyo::session::Counters;
+use armctl_controller::toyo::status::Status;
+use armctl_controller::toyo::table::Command;
+use armctl_frame::dry_run::Plan;
+use armctl_frame::face::sample::{Traffic, counter};
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target;
+use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
+use armctl_frame::trace::lock_writer;
+use armctl_frame::{Access, Family};
+use observer::{Observer, PrintedNotices, SharedObserver};
+
+/// The toyo family.
+#[derive(Debug)]
+pub struct Toyo;
+
+/// A connection to one controller. It dereferences to the client for operations that cannot fail.
+#[derive(Debug, Deref, DerefMut)]
+pub struct Link {
+    #[deref]
+    #[deref_mut]
+    client: Client,
+    observer: Arc<Mutex<Observer>>,
+    screen: Screen,
+    label: String,
+    /// Changes that ended processes left on the controller and that were not reported yet.
+    abandoned: Vec<AbandonedEntry>,
+    /// Writes to the EEPROM.
+    pub(super) write_log: WriteLog,
+    /// Source texts of the programs that were written.
+    pub(super) sources: Sources,
+}
+
+impl Family for Toyo {
+    const FAMILY: Option<target::Family> = Some(target::Family::Toyo);
+    type Link = Link;
+    const STOP: &'static [&'static str] = &["stop"];
+
+    async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
+        Link::of(connect::open(robot, &access, screen).await?, robot, &access, screen)
+    }
+
+    async fn halt(link: &mut Link) -> Result<String, Failure> {
+        let Some(moving) = link.moving() else { return Ok("nothing was sent that moves the robot".to_owned()) };
+        // Stop first and print then, because a blocked terminal must not delay the stop.
+        link.send_urgent(moving).await;
+        let stop = moving.stop().text();
+        link.screen.note(&format!("stopping the robot: {stop}"));
+        let coordinates = link.stop(moving).await?;
+        let coordinates = link.coordinates(&coordinates).await;
+        Ok(format!("the robot was stopped ({stop}); the axes are at {}", coordinates.in_a_line()))
+    }
+
+    fn needs_halt(link: &Link) -> bool {
+        link.moving() == Some(Moving::Jog)
+    }
+
+    /// A serial port and a device server each have one line.
+    fn takes_one_client(robot: &Robot) -> bool {
+        matches!(robot.target.value.place, target::Place::Serial(_) | target::Place::Tcp(_))
+    }
+
+    fn planned(link: &mut Link) -> Plan {
+        link.take_plan()
+    }
+
+    async fn settle(link: &mut Link) -> Result<(), Failure> {
+        let settled = link.client.settle().await;
+        settled.map_err(|error| link.failure(error))
+    }
+
+    async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+        link.report_abandoned_changes().await;
+        let Link { client, observer, label, mut write_log, .. } = link;
+        let (totals, closed) = client.close().await;
+        // Motion that continues on purpose was already reported.
+        lock_writer(&observer).journal.moving(None);
+        let Counters { sent, received, .. } = totals.counters;
+        screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", totals.waited));
+        if let Some(counts) = counter(&disturbances(&totals.counters)) {
+            screen.detail(1, &format!("on the line: {counts}"));
+        }
+        if let Err(error) = write_log.keep() {
+            screen.detail(1, &format!("the EEPROM write log could not be saved: {error}"));
+        }
+        closed.map_err(|error| failure(&label, error)).and(lock_writer(&observer).trace.finish())
+    }
+}
+
+/// Counters of disturbances, with their names.
+fn disturbances(counters: &Counters) -> [(u64, &'static str); 5] {
+    let Counters { sent: _, received: _, noise, garbled, foreign, echoes, repeats } = *counters;
+    [
+        (noise.into(), "stray characters"),
+        (garbled.into(), "garbled"),
+        (foreign.into(), "foreign or late"),
+        (echoes.into(), "echoes"),
+        (repeats.into(), "repeated"),
+    ]
+}
+
+impl Link {
+    /// Traffic counters of the connection.
+    pub(super) fn traffic(&self) -> Traffic {
+        let Counters { sent, received, .. } = self.client.totals().counters;
+        let disturbances = disturbances(&self.client.totals().counters).iter().map(|(count, _)| count).sum();
+        Traffic { sent: sent.into(), received: received.into(), disturbances }
+    }
+
+    /// Wraps a client.
+    pub(super) fn of(mut client: Client, robot: &Robot, access: &Access, screen: &Screen) -> Result<Self, Failure> {
+        let (target, label) = (robot.target.value.to_string(), robot.label());
+        let has_files = !robot.target.value.is_simulated();
+        let write_log = if has_files { WriteLog::of(&target) } else { WriteLog::without_file() };
+        let (journal, choices) = if has_files && !access.dry_run {
+            (ChangeJournal::of(&target), UserChoices::of(&target))
+        } else {
+            (ChangeJournal::without_files(), UserChoices::without_file())
+        };
+        let abandoned = journal.abandoned_entries();
+        let trace = Trace::open(access, screen, client.ends())?;
+        let (screen, printed) = (*screen, PrintedNotices::from_journal(&abandoned));
+        let observer = Observer { trace, journal, choices, printed, screen, label: label.clone() };
+        let observer = Arc::new(Mutex::new(observer));
+        client.watch(SharedObserver(Arc::clone(&observer)));
+        let sources = if access.dry_run { Sources::default() } else { Sources::of(robot) };
+        Ok(Self { client, observer, screen, label, abandoned, write_log, sources })
+    }
+
+    /// Returns the line for a session; `None` in a dry run.
+    pub(super) fn into_line(self) -> Option<Line> {
+        self.client.into_line()
+    }
+
+    /// Sends a request; a refusal is a failure.
+    pub async fn ask(&mut self, request: &Request) -> Result<Record, Failure> {
+        match self.try_ask(request).await? {
+            Ok(record) => Ok(record),
+            Err(Refusal(request)) => Err(refusal::explained(self, &request).await),
+        }
+    }
+
+    /// Sends a request; a refusal is a valid result.
+    pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
+        self.report_abandoned_changes().await;
+        self.before_steps_change(request);
+        self.client.try_ask(request).await.map_err(|error| self.failure(error))
+    }
+
+    /// Marks the stored source text as uncertain before a command that changes steps in another way than `program put`.
+    fn before_steps_change(&mut self, request: &Request) {
+        let changes =
+            [Command::Wstx, Command::Istx, Command::Dstx, Command::Dstl, Command::Cpss, Command::Mint, Command::Rmca];
+        if changes.contains(&request.command()) {
+            self.sources.doubt();
+        }
+    }
+
+    /// Sends a request unchanged, and returns the whole answer, good or bad.
+    pub async fn raw(&mut self, request: &Request) -> Result<Answer, Failure> {
+        if !is_stop(request) {
+            self.report_abandoned_changes().await;
+        }
+        self.before_steps_change(request);
+        self.client.raw(request).await.map_err(|error| self.failure(error))
+    }
+
+    /// Sends a block that no table contains, and returns the answer.
+    pub async fn raw_text(&mut self, block: &str) -> Result<String, Failure> {
+        self.report_abandoned_changes().await;
+        self.sources.doubt();
+        self.client.raw_text(block).await.map_err(|error| self.failure(error))
+    }
+
+    /// Reads the value that a write replaces; `None` if the controller refuses to report it. A dry run records the
+    /// request and returns `None`. A lost line is a failure, and nothing was written.
+    pub async fn before(&mut self, question: &Request) -> Result<Option<Record>, Failure> {
+        if self.is_dry() {
+            self.plan(question, OLD_VALUE);
+            return Ok(None);
+        }
+        Ok(self.try_ask(question).await.map_err(nothing_written)?.ok())
+    }
+
+    /// Reads one page of the status before a write; the other pages are 0.
+    pub async fn status_before(&mut self, page: u8) -> Result<Option<Status>, Failure> {
+        let record = self.before(&status_page(page)).await?;
+        Ok(record.and_then(|record| record.byte("st1")).map(|byte| Status::default().with(page, byte)))
+    }
+
+    /// Reads all five pages of the status.
+    pub async fn status(&mut self) -> Result<Status, Failure> {
+        self.status_of(&[0, 1, 2, 3, 4]).await
+    }
+
+    /// Reads some pages of the status; the other pages are 0.
+    pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Failure> {
+        self.report_abandoned_changes().await;
+        self.client.status_of(pages).await.map_err(|error| self.failure(error))
+    }
+
+    /// Reads the position of the axes. A refusal is not explained, because the explanation takes time and the
+    /// controller is busy for a moment.
+    pub async fn read_position(&mut self) -> Result<Record, Failure> {
+        self.report_abandoned_changes().await;
+        self.client.read_position().await.map_err(|error| self.failure(error))
+    }
+
+    /// Reads the letters of the axes from the controller.
+    pub async fn letters(&mut self) -> Result<Letters, Failure> {
+        self.report_abandoned_changes().await;
+        self.client.letters().await.map_err(|error| self.failure(error))
+    }
+
+    /// Converts a position record for a report. If the letters of the axes cannot be read, the report has the numbers
+    /// of the axes.
+    pub async fn coordinates(&mut self, record: &Record) -> Coordinates {
+        Coordinates::of(record, self.letters().await.unwrap_or(Letters::UNKNOWN))
+    }
+
+    /// Changes a setting temporarily. [`Link::put_back`] or the end of the link restores it with `back`.
+    pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
+        self.report_abandoned_changes().await;
+        match self.client.borrow(change, back).await {
+            Err(Error::Refused(Refusal(request))) => Err(refusal::explained(self, &request).await),
+            borrowed => borrowed.map_err(|error| self.failure(error)),
+        }
+    }
+
+    /// Restores all settings of [`Link::borrow`]. After a failure it continues, and returns the first failure.
+    pub async fn put_back(&mut self) -> Result<(), Failure> {
+        self.client.put_back().await.map_err(|error| self.failure(error))
+    }
+
+    /// Stops the motion, and returns the position of rest.
+    pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
+        // Stale changes are reported after the stop.
+        let printed = std::mem::replace(&mut lock_writer(&self.observer).printed, PrintedNotices::ALL);
+        let stopped = self.client.stop(moving).await;
+        let mut observer = lock_writer(&self.observer);
+        observer.printed = printed;
+        observer.trace.resume();
+        stopped.map_err(|error| self.failure(error))
+    }
+
+    /// Stops a motion that the controller refused before it began. The stop is sent once.
+    pub async fn stop_refused_motion(&mut self, moving: Moving) {
+        self.client.stop_refused_motion(moving).await;
+        lock_writer(&self.observer).trace.resume();
+    }
+
+    /// Detects a lost connection early, and buffers trace text until [`Link::stop`]. Neither long timeouts nor a
+    /// blocked terminal must delay the stop.
+    pub fn use_short_timeouts(&mut self) {
+        self.client.use_short_timeouts();
+        lock_writer(&self.observer).trace.pause();
+    }
+
+    /// Records that the user chose the present state of the host.
+    pub fn choose_host(&mut self, is_on: bool) {
+        lock_writer(&self.observer).choose_host(is_on);
+    }
+
+    /// Records that the user chose this task as the current one.
+    pub fn choose_task(&mut self, task: u8) {
+        lock_writer(&self.observer).choose_task(task);
+    }
+
+    /// Records requests in a dry run. Their answers are not known.
+    pub fn plan_all(&mut self, requests: &[Request]) -> Result<(), Failure> {
+        self.client.plan_all(requests).map_err(|error| self.failure(error))
+    }
+
+    /// Records a command in a dry run, after the requests that precede every command. The earlier answer `on` decides
+    /// whether it is sent.
+    pub async fn plan_order(&mut self, text: &str, on: &str) -> Result<(), Failure> {
+        self.client.plan_order(text, on).await.map_err(|error| self.failure(error))
+    }
+
+    /// Records a temporary change in a dry run. `back` restores the setting; `?` in it is the value that was read.
+    pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Failure> {
+        self.client.plan_to_borrow(change, back, on).await.map_err(|error| self.failure(error))
+    }
+
+    /// Failure for an answer that makes no sense.
+    pub fn malformed(&self, block: &str, why: &str) -> Failure {
+        self.failure(Error::Malformed { block: block.to_owned(), why: why.to_owned() })
+    }
+
+    fn failure(&self, error: Error) -> Failure {
+        failure(&self.label, error)
+    }
+}

@@ -1,0 +1,142 @@
+//! Observer of the client: it records the trace, and keeps the journal of temporary changes. It also reports a host that
+//! is ON, or a current task, if this user did not select it. It sends no requests; it uses the answers that commands
+//! read.
+
+use std::sync::{Arc, Mutex};
+
+use crate::change_journal::{AbandonedEntry, ChangeJournal};
+use crate::failure::not_put_back;
+use crate::trace::Trace;
+use crate::user_choices::UserChoices;
+use armctl_client::toyo::Event;
+use armctl_client::{Ends, Watcher};
+use armctl_controller::toyo::status::Status;
+use armctl_controller::toyo::table::commands::Command;
+use armctl_frame::output::Screen;
+use armctl_frame::trace::lock_writer;
+use armctl_transport::tap::Direction;
+
+/// State that a link shares with its client.
+#[derive(Debug)]
+pub(super) struct Observer {
+    pub(super) trace: Trace,
+    /// Temporary changes, for other processes to find if this process is killed.
+    pub(super) journal: ChangeJournal,
+    /// Settings that the user chose to keep.
+    pub(super) choices: UserChoices,
+    pub(super) printed: PrintedNotices,
+    pub(super) screen: Screen,
+    pub(super) label: String,
+}
+
+/// Notices that were printed or are not needed. A link prints each one once.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PrintedNotices {
+    host: bool,
+    task: bool,
+}
+
+impl PrintedNotices {
+    pub(super) const ALL: Self = Self { host: true, task: true };
+
+    /// Notices that the journal entries of this user already contain.
+    pub(super) fn from_journal(abandoned: &[AbandonedEntry]) -> Self {
+        let selects_task = |block: &String| block.trim_start_matches('@').starts_with(Command::Ctsk.row().word);
+        Self {
+            host: abandoned.iter().any(|abandoned| abandoned.entry.host),
+            task: abandoned.iter().any(|abandoned| abandoned.entry.back.iter().any(selects_task)),
+        }
+    }
+}
+
+/// Client's reference to the observer.
+#[derive(Debug)]
+pub(super) struct SharedObserver(pub(super) Arc<Mutex<Observer>>);
+
+impl Watcher<Event> for SharedObserver {
+    fn frame(&mut self, direction: Direction, _: Ends, bytes: &[u8]) {
+        lock_writer(&self.0).trace.record(direction, bytes);
+    }
+
+    fn event(&mut self, event: Event) {
+        let mut observer = lock_writer(&self.0);
+        match event {
+            Event::Motion(moving) => observer.journal.moving(moving),
+            Event::HostSwitch(is_taken) => observer.journal.host(is_taken),
+            Event::TemporaryChange(back) => observer.journal.push(&back.text()),
+            Event::Undone(back) => observer.journal.pop(&back.text()),
+            Event::NotUndone(back) => {
+                observer.screen.note(&format!("{}: the connection is lost", not_put_back(&back.text())));
+            }
+            Event::Host { status, is_taken } => observer.report_foreign_host(status, is_taken),
+            Event::Task(task) => observer.report_foreign_task(task),
+            Event::Reopened => observer.screen.detail(1, "the connection is open again"),
+            _ => {}
+        }
+    }
+}
+
+impl Observer {
+    /// Prints a notice if the host is ON and this user did not switch it ON. Execution while the host is ON was started
+    /// by a host.
+    fn report_foreign_host(&mut self, status: Status, is_taken: bool) {
+        let Some(choice) = self.choices.get() else { return };
+        if !status.host_on() {
+            if choice.host {
+                self.choices.change(|choice| choice.host = false);
+            }
+            return;
+        }
+        if choice.host || self.printed.host || is_taken || self.must_wait() {
+            return;
+        }
+        self.printed.host = true;
+        let what = if status.executing() || status.homing() {
+            "another client switched the host ON and started a program: if no other person uses the robot, \
+             `toyo stop` stops it and `toyo host off` releases the host"
+        } else {
+            "another client switched the host ON, which disables the start input; \
+             `toyo host off` releases the host"
+        };
+        self.screen.note(&format!("{}: {what}", self.label));
+    }
+
+    /// Prints a notice if another client selected the current task. Task 1 is the default and needs no notice.
+    fn report_foreign_task(&mut self, task: Option<i32>) {
+        let Some(task) = task.and_then(|task| u8::try_from(task).ok()) else { return };
+        let Some(choice) = self.choices.get() else { return };
+        if choice.task == Some(task) || self.must_wait() {
+            return;
+        }
+        if choice.task.is_some() {
+            self.choices.change(|choice| choice.task = None);
+        }
+        if task == 1 || self.printed.task {
+            return;
+        }
+        self.printed.task = true;
+        self.screen.note(&format!(
+            "{}: another client selected task {task}, and commands without --task use \
+             it; `toyo task set 1` selects task 1",
+            self.label
+        ));
+    }
+
+    /// Records that the user chose the present state of the host.
+    pub(super) fn choose_host(&mut self, is_on: bool) {
+        self.printed.host = true;
+        self.choices.change(|choice| choice.host = is_on);
+    }
+
+    /// Records that the user chose this task as the current one.
+    pub(super) fn choose_task(&mut self, task: u8) {
+        self.printed.task = true;
+        self.choices.change(|choice| choice.task = Some(task));
+    }
+
+    /// Whether a notice must wait. A blocked terminal must not delay a stop during motion. The setting can also be a
+    /// temporary change of another process of this user.
+    fn must_wait(&self) -> bool {
+        self.journal.entry().moving.is_some() || self.journal.has_entry_of_running_process()
+    }
+}

@@ -1,0 +1,67 @@
+//! `toyo`: Toyo controllers over RS-232C host communication.
+
+mod alarm;
+pub mod backup;
+mod bus;
+mod card;
+mod change_journal;
+mod check;
+pub mod commands;
+mod complete;
+mod connect;
+mod coordinate;
+mod copies;
+mod counter;
+#[cfg(test)]
+mod coverage;
+pub mod decode;
+mod easy;
+mod eeprom;
+mod explain;
+pub mod face;
+mod failure;
+use armctl_frame::text_files as files;
+#[cfg(test)]
+mod gate;
+mod home;
+mod host;
+mod info;
+mod init;
+mod instructions;
+mod io;
+mod items;
+mod jog;
+pub mod link;
+mod mvm;
+mod numbers;
+mod offset;
+mod orders;
+mod overrides;
+mod overview;
+mod palletizing;
+mod panel;
+mod param;
+mod point;
+pub mod ports;
+mod position;
+mod program;
+mod programs;
+mod raw;
+mod refusal;
+mod robot_type;
+mod rows;
+mod run;
+mod serve;
+mod sim;
+pub mod simulated;
+mod status;
+mod task;
+mod tasks;
+#[cfg(test)]
+mod testing;
+pub mod top;
+mod trace;
+mod user_choices;
+mod values;
+mod wait;
+mod write_log;

@@ -1,0 +1,36 @@
+//! `toyo offset`: current offset of coordinates.
+
+use clap::Args;
+
+use super::link::Toyo;
+use super::position::Coordinates;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::failure::Failure;
+use armctl_frame::{Command, Context};
+
+/// Show the offset that the program has set.
+#[derive(Debug, Args)]
+pub struct Offset {}
+
+impl Command for Offset {
+    type Family = Toyo;
+    type Report = Coordinates;
+    const ID: &'static str = "toyo.offset";
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Coordinates, Failure> {
+        let letters = context.link.letters().await?;
+        let record = context.link.ask(&Request::bare(table::Command::Moff)).await?;
+        Ok(Coordinates::of(&record, letters))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::all_blocks;
+
+    #[test]
+    fn offset_sends_its_block() {
+        assert_eq!(all_blocks(&["offset"]).unwrap(), ["@SYSP", "@RPAR E01", "@MOFF"]);
+    }
+}

@@ -1,0 +1,77 @@
+//! Special rules of parameters 2 (E) and 3 (U).
+
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::table::{Group, Parameter};
+use armctl_frame::failure::Failure;
+
+/// Limit of the steps of all tasks together (TO 2-4, E22).
+const MOST_STEPS: i32 = 5000;
+/// Limit of steps with easy programs.
+const BESIDE_EASY: i32 = 2000;
+
+/// Remedy after a change of a machine parameter.
+pub const POWER_CYCLE: &str = "switch the controller's power off and on; until then it executes nothing";
+
+/// Consequence of a change of several machine parameters.
+pub fn consequence_of(parameters: &[&Parameter]) -> String {
+    let names: Vec<String> =
+        parameters.iter().map(|parameter| format!("{} ({})", parameter.id, parameter.name)).collect();
+    let what = if names.len() > 3 { format!("{} machine parameters", names.len()) } else { names.join(", ") };
+    of_machine(&what, parameters.iter().any(|parameter| is_task_steps(parameter)))
+}
+
+/// Consequence of a change of machine parameters; `has_steps` if the steps of tasks are among them.
+fn of_machine(what: &str, has_steps: bool) -> String {
+    let lost = if has_steps {
+        "; steps above a smaller limit are lost, and above 2000 steps all easy programs are lost"
+    } else {
+        ""
+    };
+    format!("after a change of {what} the controller executes nothing before a restart{lost}")
+}
+
+/// Warnings before a parameter changes.
+pub fn warnings(parameter: &Parameter, stored: Option<&Record>, values: &[Value]) -> Vec<String> {
+    if parameter.group() == Group::Special {
+        return vec![format!("warning: {} ({}) is not for normal use", parameter.id, parameter.name)];
+    }
+    match stored {
+        Some(stored) if is_task_steps(parameter) => lost_steps(stored, values),
+        _ => Vec::new(),
+    }
+}
+
+/// Checks that new values fit together.
+pub fn check(parameter: &Parameter, values: &[Value]) -> Result<(), Failure> {
+    let steps = total(values);
+    if is_task_steps(parameter) && steps > MOST_STEPS {
+        return Err(Failure::usage(format!("all tasks together would have {steps} steps; the limit is {MOST_STEPS}"))
+            .hint("reduce the steps of another task: `toyo param get task-steps`"));
+    }
+    Ok(())
+}
+
+/// Whether a parameter defines the number of steps of each task.
+pub fn is_task_steps(parameter: &Parameter) -> bool {
+    parameter.id == "E22"
+}
+
+fn lost_steps(stored: &Record, values: &[Value]) -> Vec<String> {
+    let mut lost = Vec::new();
+    for (task, (old, new)) in stored.values().iter().zip(values).enumerate() {
+        if let (Value::Number(old), Value::Number(new)) = (old, new)
+            && new < old
+        {
+            lost.push(format!("warning: steps {} to {old} of task {} become NOP", new + 1, task + 1));
+        }
+    }
+    if total(values) > BESIDE_EASY && total(stored.values()) <= BESIDE_EASY {
+        lost.push(format!("warning: with more than {BESIDE_EASY} steps, all easy programs are erased"));
+    }
+    lost
+}
+
+fn total(values: &[Value]) -> i32 {
+    values.iter().map(|value| if let Value::Number(steps) = value { *steps } else { 0 }).sum()
+}

@@ -1,0 +1,362 @@
+//! `toyo param`: parameters.
+
+mod machine;
+
+pub use machine::{POWER_CYCLE, consequence_of};
+
+use std::hash::{Hash, Hasher};
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::complete;
+use super::eeprom::{Cell, parameter_cell, parameter_sketch};
+use super::items::{Answers as Records, read_each_twice};
+use super::link::{Link, Toyo, wrong};
+use super::numbers::Numbers;
+use super::rows::{EepromRow, Listed, unlisted};
+use super::values::{self, NamedValue};
+use armctl_client::toyo::Letters;
+use armctl_controller::nearest::nearest;
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::layout::{Layout, Record};
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table::parameters::PARAMETERS;
+use armctl_controller::toyo::table::{Group, Parameter};
+use armctl_frame::ValueKind;
+use armctl_frame::commands;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::Screen;
+use armctl_frame::output::view;
+use armctl_frame::store::{
+    Answers, Differing, Dump, Field, Get, Ids, List, Restore, Set, Single, Store, TableWords, ids,
+};
+use armctl_frame::watch::Watch;
+
+commands! {
+    /// Commands for parameters.
+    pub enum Param {
+        /// Read parameters by name, id or group: soft-limit-plus P01 axis
+        Get(Get<Parameters>),
+        /// Read all parameters, or a group of them
+        List(List<Parameters>),
+        /// Print each change
+        Watch(Watch<Get<Parameters>>),
+        /// Change a parameter: soft-limit-plus 100 200 0 0
+        Set(Set<Parameters>),
+        /// Save all parameters and tables to a CSV file
+        Dump(Dump<Parameters>),
+        /// Write parameters and tables from a CSV file
+        Restore(Restore<Parameters>),
+    }
+}
+
+/// All parameters, and the rows of parameters that are tables.
+#[derive(Debug)]
+pub struct Parameters;
+
+/// A parameter, or a row of a parameter that is a table.
+#[derive(Debug, Clone, Copy)]
+pub struct Key {
+    /// The parameter.
+    pub parameter: &'static Parameter,
+    /// Row of a table.
+    pub row: Option<i32>,
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        (self.parameter.id, self.row) == (other.parameter.id, other.row)
+    }
+}
+
+impl Eq for Key {}
+
+impl Hash for Key {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        (self.parameter.id, self.row).hash(state);
+    }
+}
+
+impl Key {
+    const fn single(parameter: &'static Parameter) -> Self {
+        Self { parameter, row: None }
+    }
+}
+
+/// Additional keys of a parameter.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct About {
+    /// `P01`.
+    pub id: &'static str,
+    /// `mode`, `axis`, `machine`, `special` or `table`.
+    pub group: &'static str,
+    /// Content.
+    pub about: &'static str,
+    /// Controllers with the parameter; empty for all.
+    pub only_on: &'static [&'static str],
+    #[serde(flatten)]
+    listed: Listed,
+}
+
+/// Groups, in the order of the writes: after a machine parameter, a controller can refuse all others.
+const GROUPS: [Group; 5] = [Group::Mode, Group::Axis, Group::Table, Group::Special, Group::Machine];
+
+/// The table of points, which `point` reads.
+const POINTS: &str = "T1";
+
+/// Rows of all tables except the points.
+fn rows() -> impl Iterator<Item = Key> {
+    let tables = PARAMETERS.iter().filter(|parameter| parameter.id != POINTS);
+    tables.filter_map(|table| Some((table, table.row()?))).flat_map(|(table, field)| {
+        Numbers::of(&[], field).into_iter().map(move |row| Key { parameter: table, row: Some(row) })
+    })
+}
+
+/// Whether a parameter describes the machine itself (E), or is not for normal use (U).
+pub fn is_machine(key: Key) -> bool {
+    matches!(key.parameter.group(), Group::Machine | Group::Special)
+}
+
+/// Parameters without rows.
+fn singles() -> impl Iterator<Item = &'static Parameter> {
+    PARAMETERS.iter().filter(|parameter| parameter.row().is_none())
+}
+
+/// A parameter by name or id, a row of a table such as `T2.5`, or all of a group.
+fn parse(name: &str) -> Result<Vec<Key>, String> {
+    if let Some(group) = GROUPS.iter().find(|group| group.name().eq_ignore_ascii_case(name)) {
+        if *group == Group::Table {
+            return Ok(rows().collect());
+        }
+        return Ok(singles().filter(|parameter| parameter.group() == *group).map(Key::single).collect());
+    }
+    if let Some(row) = rows().find(|row| key_text(*row).eq_ignore_ascii_case(name)) {
+        return Ok(vec![row]);
+    }
+    match Parameter::named(name) {
+        Some(parameter) if parameter.row().is_some() => {
+            Err(format!("{} is a table; `toyo {} get` reads its rows", parameter.name, command_of(parameter)))
+        }
+        Some(parameter) => Ok(vec![Key::single(parameter)]),
+        None => {
+            let known = singles().flat_map(|parameter| [parameter.name, parameter.id]);
+            let known = known.chain(GROUPS.iter().map(|group| group.name()));
+            let near = nearest(name, known).map_or(String::new(), |near| format!("; did you mean {near}?"));
+            Err(format!("unknown parameter{near}"))
+        }
+    }
+}
+
+/// `P01`, or a row as `T2.5`.
+pub fn key_text(Key { parameter, row }: Key) -> String {
+    match row {
+        Some(row) => format!("{}.{row}", parameter.id),
+        None => parameter.id.to_owned(),
+    }
+}
+
+/// Values of a parameter, without the number of a row.
+fn values_of(record: &Record) -> Vec<NamedValue> {
+    let table = PARAMETERS.iter().find(|parameter| parameter.row().is_some() && parameter.layout == record.layout());
+    let body = table.and_then(|table| {
+        let values = record.values()[table.key.fields.len()..].to_vec();
+        table.body().record(values).ok()
+    });
+    values::named_values(body.as_ref().unwrap_or(record))
+}
+
+/// Command name for the rows of a table.
+fn command_of(table: &Parameter) -> &'static str {
+    match &table.id[..2] {
+        "T1" => "point",
+        "T2" => "speed-table",
+        "T3" => "accel-table",
+        "T4" => "mvm",
+        _ => "torque-table",
+    }
+}
+
+/// Reads parameters and rows, each with its own result. A refused read has a second attempt, because a busy controller
+/// also refuses.
+pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Records, Failure> {
+    let request = |key: &Key| Request::read_parameter(key.parameter, key.row);
+    let requests = keys.iter().map(request).collect::<Result<Vec<Request>, _>>().map_err(|error| wrong(&error))?;
+    let rare = |key: &Key, failure: Failure| match &failure.hint {
+        Some(hint) if failure.kind == Kind::Refused && !key.parameter.only_on.is_empty() => {
+            let (id, models) = (key.parameter.id, key.parameter.only_on.join(", "));
+            let hint = format!("only some controllers have {id}: {models}; {hint}");
+            failure.hint(hint)
+        }
+        _ => failure,
+    };
+    let answers = read_each_twice(link, screen, "reading parameters", &requests).await;
+    match (answers, keys) {
+        (Ok(answers), _) => {
+            Ok(keys.iter().zip(answers).map(|(key, answer)| answer.map_err(|failure| rare(key, failure))).collect())
+        }
+        (Err(failure), [key, ..]) => Err(rare(key, failure)),
+        (Err(failure), []) => Err(failure),
+    }
+}
+
+impl Store for Parameters {
+    type Family = Toyo;
+    type Key = Key;
+    type Wire = Record;
+    type Value = Vec<NamedValue>;
+    type More = About;
+    type Options = Single;
+
+    const WORDS: TableWords = TableWords {
+        nouns: ["parameter", "parameters"],
+        placeholder: "NAME",
+        range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, table, machine, special",
+        reading: Some(
+            "`param list` shows the names of the parameters of this controller. In JSON, each value has its unit, \
+             its protocol text and its meaning.",
+        ),
+        writing: Some(
+            "All values in order, or some by name; the others stay: `param set soft-limit-plus 100 200 0 0`, \
+             `param set P01 ax2=150`. Words of the protocol or their meaning: `param set pendant-language english`. A bit \
+             of a port is STATION/PORT/BIT: 0/01/3.\n\nEqual values are not written, because the EEPROM takes \
+             about a million rewrites. After a change of machine parameters (E) the controller executes nothing before a \
+             restart.",
+        ),
+    };
+    const IDS: Ids = ids!("toyo.param");
+    const COMPLETE: ValueKind = complete::PARAMETER;
+
+    fn keys(text: &str) -> Result<Vec<Key>, String> {
+        parse(text)
+    }
+
+    fn all() -> Vec<Key> {
+        singles().map(Key::single).collect()
+    }
+
+    fn saved() -> Vec<Key> {
+        let mut keys: Vec<Key> = singles().map(Key::single).chain(rows()).collect();
+        keys.sort_by_key(|key| Self::rank(*key));
+        keys
+    }
+
+    fn name(key: Key) -> String {
+        if key.row.is_some() { key_text(key) } else { key.parameter.name.to_owned() }
+    }
+
+    fn asked(key: Key) -> String {
+        if key.row.is_some() { key_text(key) } else { format!("{} ({})", key.parameter.id, key.parameter.name) }
+    }
+
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+        Ok(Self)
+    }
+
+    fn fields(&self) -> Vec<Field> {
+        vec![Field::text("value", "value")]
+    }
+
+    fn texts(&self, record: &Record) -> Vec<String> {
+        vec![values::as_typed(&values_of(record))]
+    }
+
+    fn headings(&self) -> Vec<&'static str> {
+        vec!["id", "value"]
+    }
+
+    fn cells(&self, key: Key, record: &Record) -> Vec<view::Cell> {
+        let body = values_of(record);
+        vec![view::Cell::from(key.parameter.id).whole(), values::in_a_line(&body).into()]
+    }
+
+    fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
+        values::difference(old, new, &Letters::USUAL)
+    }
+
+    fn value(&self, record: &Record) -> Option<Vec<NamedValue>> {
+        Some(values_of(record))
+    }
+
+    fn more(&self, key: Key, record: Option<&Record>) -> About {
+        let Parameter { id, about, only_on, .. } = key.parameter;
+        About { id, group: key.parameter.group().name(), about, only_on, listed: Listed::of(record) }
+    }
+
+    fn is_undefined(failure: &Failure) -> bool {
+        failure.kind == Kind::Refused
+    }
+
+    fn unsaved(&self, key: Key, record: Option<&Record>) -> Option<String> {
+        let Some(record) = record else { return Some("the controller refused it".to_owned()) };
+        let values = &record.values()[key.parameter.key.fields.len()..];
+        let unwritable = || {
+            let error = self.cell(key, values.to_vec()).err()?;
+            let value = values::in_a_line(&values_of(record));
+            Some(format!("its value {value} cannot be written back: {}", error.message))
+        };
+        unlisted(Some(record)).or_else(unwritable)
+    }
+
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
+        Ok(Answers::of(read(link, screen, keys).await?))
+    }
+}
+
+impl EepromRow for Parameters {
+    const IS_MIXED: bool = true;
+    const NOT_RESTORED: &'static str = "machine and special parameters are written if their group is typed, such as \
+                                        `param restore FILE machine special`";
+
+    fn is_restored(key: Key) -> bool {
+        !is_machine(key)
+    }
+
+    fn is_absent(key: Key) -> bool {
+        !key.parameter.only_on.is_empty()
+    }
+
+    fn rank(key: Key) -> usize {
+        GROUPS.iter().position(|group| *group == key.parameter.group()).unwrap_or_default()
+    }
+
+    fn body(&self, key: Key) -> Layout {
+        key.parameter.body()
+    }
+
+    fn request(&self, key: Key) -> Result<Request, Failure> {
+        Request::read_parameter(key.parameter, key.row).map_err(|error| wrong(&error))
+    }
+
+    fn cell(&self, key: Key, values: Vec<Value>) -> Result<Cell, Failure> {
+        let values = key.row.map(Value::Number).into_iter().chain(values).collect();
+        parameter_cell(key.parameter, values).map_err(|error| {
+            Failure::usage(format!("{}: {error}", key.parameter.name))
+                .hint("the stored value cannot be written back; type all values")
+        })
+    }
+
+    fn sketch(&self, key: Key, values: &[Option<Value>]) -> String {
+        parameter_sketch(key.parameter, key.row, values)
+    }
+
+    fn check(&self, key: Key, values: &[Value]) -> Result<(), Failure> {
+        machine::check(key.parameter, values)
+    }
+
+    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+        let is_machine = |key: &Key| key.parameter.group() == Group::Machine;
+        let changed: Vec<&Parameter> =
+            rows.iter().filter(|(key, ..)| is_machine(key)).map(|(key, ..)| key.parameter).collect();
+        let machine = (!changed.is_empty()).then(|| consequence_of(&changed));
+        let warnings = rows.iter().flat_map(|(key, old, new)| machine::warnings(key.parameter, *old, new.values()));
+        warnings.chain(machine).collect()
+    }
+
+    fn follow_up_note(&self, written: &[Key]) -> Option<String> {
+        written.iter().any(|key| key.parameter.group() == Group::Machine).then(|| POWER_CYCLE.to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests;

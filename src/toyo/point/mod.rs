@@ -1,0 +1,252 @@
+//! `toyo point`: rows of the coordinate table. Each task has its own table.
+
+mod teach;
+
+pub use teach::Teach;
+
+use std::path::Path;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::eeprom::{Cell, parameter_cell, parameter_sketch};
+use super::items::{Answers as Records, read_each};
+use super::link::{Link, Toyo, wrong};
+use super::numbers::{Numbers, named, number};
+use super::position::{Coordinates, heading};
+use super::rows::{EepromRow, Listed, is_zero, texts, unlisted};
+use super::{complete, tasks, values};
+use armctl_client::toyo::Letters;
+use armctl_controller::Risk;
+use armctl_controller::names::Kind;
+use armctl_controller::toyo::field::{self, Value};
+use armctl_controller::toyo::layout::{Layout, Record};
+use armctl_controller::toyo::names as names_of;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table::Parameter;
+use armctl_frame::ValueKind;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::robot::position::Position;
+use armctl_frame::store::{Answers, Field, Ids, Store, TableWords, ids, table_commands};
+use armctl_frame::teach::parse_printed_position;
+
+table_commands! {
+    /// Commands for points.
+    Point of Points {}
+}
+
+/// Every point has four coordinates, regardless of the number of axes.
+pub const AXES: usize = 4;
+
+/// The coordinate table of a task.
+#[derive(Debug)]
+pub struct Points {
+    letters: Letters,
+    selected_task: Option<u8>,
+    /// Task of the points.
+    task: u8,
+}
+
+impl Points {
+    /// Table of a task, or of the current task.
+    pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
+        Ok(Self { letters: link.letters().await?, selected_task: task, task: task.unwrap_or_default() })
+    }
+
+    /// Table of a task of a machine whose axes have these letters.
+    pub const fn with_letters(task: u8, letters: Letters) -> Self {
+        Self { letters, selected_task: Some(task), task }
+    }
+
+    /// The letters of the axes.
+    pub fn letters(&self) -> Letters {
+        self.letters
+    }
+
+    /// The task that was selected.
+    pub fn task(&self) -> u8 {
+        self.task
+    }
+}
+
+/// Task of the points.
+#[derive(Debug, Clone, Args)]
+pub struct TaskOptions {
+    /// Task, 1 to 4; default: the current task. armctl selects it temporarily, which a read-only robot does not allow
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub task: Option<u8>,
+}
+
+/// Additional keys of a point.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct OfTask {
+    /// Task of the point.
+    pub task: u8,
+    #[serde(flatten)]
+    listed: Listed,
+}
+
+/// The coordinate table, T1.
+pub fn table() -> &'static Parameter {
+    Parameter::named("T1").expect("the parameter table has the coordinate table")
+}
+
+/// Field of the point number, 1 to 999.
+fn field() -> field::Field {
+    table().key.fields[0].named("point")
+}
+
+/// Parses a point number or a name.
+pub fn parse_point(text: &str) -> Result<i32, String> {
+    named(Kind::Point, text, |text| number(&field(), text))
+}
+
+/// Request that reads a point.
+fn request(point: i32) -> Result<Request, Failure> {
+    Request::read_parameter(table(), Some(point)).map_err(|error| wrong(&error))
+}
+
+/// Reads points of the selected task, each with its own result.
+pub async fn read(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Records, Failure> {
+    let requests = points.iter().copied().map(request).collect::<Result<Vec<Request>, Failure>>()?;
+    read_each(link, screen, "reading points", &requests).await
+}
+
+impl Store for Points {
+    type Family = Toyo;
+    type Key = i32;
+    type Wire = Record;
+    type Value = Position;
+    type More = OfTask;
+    type Options = TaskOptions;
+
+    const WORDS: TableWords = TableWords {
+        nouns: ["point", "points"],
+        placeholder: "POINT",
+        range: "Rows of the coordinate table, 1 to 999: 1-10,20; or names",
+        reading: Some("999 points take a minute and a half at 9600 baud."),
+        writing: Some(
+            "Values are x, y, z and r in mm, all in this order or some by name; the others stay: z=12.5. Names are the \
+             letters on the teach pendant (E01). If they are not X, Y, Z and R in this order, names are necessary. \
+             ax1 to ax4 are axes 1 to 4 on every machine. @FILE reads the output of `position --json`, @- reads it from \
+             stdin, `here` is the current position. Equal values are not written, because the EEPROM takes about a \
+             million rewrites.",
+        ),
+    };
+    const IDS: Ids = ids!("toyo.point");
+    const LABELS: Option<Kind> = Some(Kind::Point);
+    const COMPLETE: ValueKind = complete::POINT;
+
+    fn keys(text: &str) -> Result<Vec<i32>, String> {
+        Ok(Numbers::of(&[Numbers::parse(&field(), text)?], &field()))
+    }
+
+    fn all() -> Vec<i32> {
+        Numbers::of(&[], &field())
+    }
+
+    fn name(point: i32) -> String {
+        point.to_string()
+    }
+
+    fn address(point: i32) -> String {
+        names_of::address_of(Kind::Point, point).unwrap_or_default()
+    }
+
+    async fn open(link: &mut Link, options: &TaskOptions) -> Result<Self, Failure> {
+        Self::of_task(link, options.task).await
+    }
+
+    fn risk_of_reading(options: &TaskOptions) -> Risk {
+        if options.task.is_some() { Risk::Write } else { Risk::Read }
+    }
+
+    async fn select(&mut self, link: &mut Link) -> Result<(), Failure> {
+        self.task = tasks::choose(link, self.selected_task).await?;
+        Ok(())
+    }
+
+    async fn deselect<T>(&self, link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
+        tasks::done(link, outcome).await
+    }
+
+    fn table_suffix(&self) -> String {
+        format!(" of task {}", self.task)
+    }
+
+    fn fields(&self) -> Vec<Field> {
+        const NUMBERED: [&str; AXES] = ["ax1_mm", "ax2_mm", "ax3_mm", "ax4_mm"];
+        let letters = self.letters.all();
+        let field = |(axis, alias): (usize, &'static str)| Field {
+            name: format!("{}_mm", self.letters.name(axis)).into(),
+            alias: Some(alias),
+            heading: heading(axis, &letters[axis]),
+            is_number: true,
+            is_optional: false,
+        };
+        NUMBERED.into_iter().enumerate().map(field).collect()
+    }
+
+    fn texts(&self, record: &Record) -> Vec<String> {
+        texts(record, AXES)
+    }
+
+    fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
+        values::difference(old, new, &self.letters)
+    }
+
+    fn value(&self, record: &Record) -> Option<Position> {
+        record.is_listed().then(|| Coordinates::of(record, self.letters).position())
+    }
+
+    fn more(&self, _point: i32, record: Option<&Record>) -> OfTask {
+        OfTask { task: self.task, listed: Listed::of(record) }
+    }
+
+    fn is_blank(&self, record: &Record) -> bool {
+        is_zero(record, AXES)
+    }
+
+    fn unsaved(&self, _point: i32, record: Option<&Record>) -> Option<String> {
+        unlisted(record)
+    }
+
+    async fn read(&self, link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Answers<Record>, Failure> {
+        Ok(Answers::of(read(link, screen, points).await?))
+    }
+}
+
+impl EepromRow for Points {
+    fn letters(&self) -> Letters {
+        self.letters
+    }
+
+    fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
+        let [only] = words else { return Ok(words.to_vec()) };
+        let Some(file) = only.strip_prefix('@') else { return Ok(words.to_vec()) };
+        let text = parse_printed_position(Path::new(file))?;
+        Ok(text.split_whitespace().map(ToOwned::to_owned).collect())
+    }
+
+    fn body(&self, _point: i32) -> Layout {
+        table().body()
+    }
+
+    fn request(&self, point: i32) -> Result<Request, Failure> {
+        request(point)
+    }
+
+    fn cell(&self, point: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+        let values = std::iter::once(Value::Number(point)).chain(values).collect();
+        parameter_cell(table(), values).map_err(|error| wrong(&error))
+    }
+
+    fn sketch(&self, point: i32, values: &[Option<Value>]) -> String {
+        parameter_sketch(table(), Some(point), values)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,106 @@
+//! `toyo teach`: stores the current position as a point. `point set 5 here` and `point teach 5` are equivalent.
+
+use clap::Args;
+
+use super::{AXES, Points, TaskOptions, parse_point};
+use crate::complete;
+use crate::link::{Link, Toyo};
+use crate::position::{Coordinates, UNIT};
+use crate::rows::EepromRow as _;
+use crate::values::Changes;
+use armctl_controller::Risk;
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table::Command as Word;
+use armctl_frame::dry_run::{Known as _, unknown};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::gate::{Confirmation, data_changed};
+use armctl_frame::store::{Store as _, Writable as _, describe_change};
+use armctl_frame::teach::Taught;
+use armctl_frame::{Command, Context};
+
+/// Store the current position as a point, and read it back.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The command stores the position of `toyo position`, with servo power on or off. It needs a completed return \
+                  to the origin. `toyo point set 5 here` and `toyo point teach 5` are \
+                  the same."
+)]
+pub struct Teach {
+    /// Row of the coordinate table, 1 to 999, or a name
+    #[arg(value_name = "POINT", value_parser = parse_point, add = complete::POINT)]
+    point: i32,
+    #[command(flatten)]
+    options: TaskOptions,
+}
+
+/// Position as text.
+fn position_text(coordinates: &Coordinates) -> String {
+    format!("{} (mm)", coordinates.in_a_line())
+}
+
+impl Command for Teach {
+    type Family = Toyo;
+    type Report = Taught;
+    const ID: &'static str = "toyo.teach";
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite a point";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Self::Report, Failure> {
+        if context.link.status_of(&[0]).await.known()?.is_some_and(|status| !status.homed()) {
+            return Err(Failure::new(
+                Kind::ConditionNotMet,
+                "the return to origin is not complete, so the position is unknown",
+            )
+            .hint("use `toyo home` first; nothing was stored"));
+        }
+        let mut points = Points::of_task(context.link, self.options.task).await?;
+        points.select(context.link).await?;
+        let link = &mut *context.link;
+        let taught = self.teach(Context { link, ..context }, &points).await;
+        points.deselect(context.link, taught).await
+    }
+}
+
+impl Teach {
+    async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<Taught, Failure> {
+        let Context { link, screen, authority, .. } = context;
+        let point = self.point;
+        let current = read_position(link).await.known()?;
+        let stored = link.ask(&points.request(point)?).await.known()?;
+        let Some((current, stored)) = current.zip(stored) else {
+            points.plan(link, &[(point, Changes::of(vec![None; AXES]))]).await?;
+            return Err(unknown());
+        };
+        let coordinates = Coordinates::of(&current, points.letters());
+        let old = Coordinates::of(&stored, points.letters());
+        let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(current.number(axis).unwrap_or_default()));
+        let new = points.cell(point, axes.into())?.wanted;
+        let needs_confirmation = authority.asks();
+        let change = describe_change(points, &[(point, Some(&stored), &new)]);
+        authority.confirm(&change).await?;
+        if needs_confirmation {
+            let moved_to = Coordinates::of(&read_position(link).await?, points.letters());
+            if moved_to != coordinates {
+                let message = format!("the axes moved after the confirmation, to {}", position_text(&moved_to));
+                return Err(data_changed(format!("{message}; nothing was stored")));
+            }
+        }
+        let is_stored = stored == new;
+        if !is_stored {
+            points.write(link, screen, &[(point, Some(&stored), &new)]).await?;
+        }
+        // The value was written and read back.
+        let name = point.to_string();
+        let taught =
+            Taught::new(name, Some(old.position()), coordinates.position(), coordinates.position().of_group(UNIT));
+        Ok(taught.unchanged(is_stored).with("point", point).with("task", points.task()))
+    }
+}
+
+/// Reads the position of the axes.
+async fn read_position(link: &mut Link) -> Result<Record, Failure> {
+    link.ask(&Request::bare(Word::Mpst)).await
+}

@@ -1,0 +1,162 @@
+//! `toyo position`: current position of the axes.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::Toyo;
+use armctl_client::toyo::Letters;
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Section, View};
+use armctl_frame::plot::SeriesHistory;
+use armctl_frame::robot::position::{self as robot, Positions};
+use armctl_frame::{Command, Context, Report};
+
+/// Show the current position.
+#[derive(Debug, Args)]
+pub struct Position {
+    /// Show a small chart of each axis over the rounds of --watch
+    #[arg(long)]
+    plot: bool,
+    #[arg(skip)]
+    past: SeriesHistory,
+}
+
+impl Command for Position {
+    type Family = Toyo;
+    type Report = Positions;
+    const ID: &'static str = "toyo.position";
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Positions, Failure> {
+        let link = context.link;
+        let letters = link.letters().await?;
+        let record = link.ask(&Request::bare(table::Command::Mpst)).await?;
+        let position = Coordinates::of(&record, letters).position();
+        Ok(Positions::one(UNIT, position).plotted(self.plot, &self.past))
+    }
+}
+
+/// Group of the axes; a controller has one robot.
+pub const UNIT: &str = "unit 1";
+
+/// Heading of the coordinates of an axis, 0 to 3.
+pub fn heading(index: usize, letter: &str) -> &'static str {
+    const HEADINGS: [[&str; 5]; 4] = [
+        ["X (mm)", "axis 1: Y (mm)", "axis 1: Z (mm)", "axis 1: R (mm)", "axis 1 (mm)"],
+        ["axis 2: X (mm)", "Y (mm)", "axis 2: Z (mm)", "axis 2: R (mm)", "axis 2 (mm)"],
+        ["axis 3: X (mm)", "axis 3: Y (mm)", "Z (mm)", "axis 3: R (mm)", "axis 3 (mm)"],
+        ["axis 4: X (mm)", "axis 4: Y (mm)", "axis 4: Z (mm)", "R (mm)", "axis 4 (mm)"],
+    ];
+    let column = ["X", "Y", "Z", "R"].iter().position(|usual| *usual == letter).unwrap_or(4);
+    HEADINGS[index.min(3)][column]
+}
+
+/// Title of an axis (0 to 3): its letter, and its number if the letter is at an unusual place.
+pub fn titled(index: usize, letter: &str) -> String {
+    match letter {
+        _ if ["X", "Y", "Z", "R"].get(index) == Some(&letter) => letter.to_owned(),
+        "" => format!("axis {}", index + 1),
+        _ => format!("axis {} ({letter})", index + 1),
+    }
+}
+
+/// Coordinates of the four axes with the letters of the teach pendant. The protocol calls axes 1 to 4 X, Y, Z and R,
+/// regardless of their letters. The manual gives no unit (ambiguity R13).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coordinates {
+    /// Coordinates of axes 1 to 4.
+    mm: [f64; 4],
+    letters: Letters,
+}
+
+/// Coordinates by the letters of the teach pendant (E01). If the machine does not report a letter, or repeats it, the
+/// keys are `ax1_mm` to `ax4_mm`.
+#[derive(JsonSchema)]
+#[schemars(rename = "Coordinates")]
+#[expect(dead_code, reason = "the shape of what is written below")]
+struct Shape {
+    /// Coordinate of axis X.
+    x_mm: Option<f64>,
+    /// Coordinate of axis Y.
+    y_mm: Option<f64>,
+    /// Coordinate of axis Z.
+    z_mm: Option<f64>,
+    /// Coordinate of axis R, in the same unit.
+    r_mm: Option<f64>,
+}
+
+impl JsonSchema for Coordinates {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        Shape::schema_name()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        Shape::json_schema(generator)
+    }
+
+    fn inline_schema() -> bool {
+        Shape::inline_schema()
+    }
+}
+
+impl Serialize for Coordinates {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map((0..4).map(|axis| (format!("{}_mm", self.letters.name(axis)), self.mm[axis])))
+    }
+}
+
+impl Coordinates {
+    /// Fields `x`, `y`, `z` and `r` of a record for axes with these letters; 0 for missing fields.
+    pub fn of(record: &Record, letters: Letters) -> Self {
+        let mm = |name| f64::from(record.number(name).unwrap_or(0)) / 100.0;
+        Self { mm: ["x", "y", "z", "r"].map(mm), letters }
+    }
+
+    /// Coordinates in mm of a machine with the usual letters, with the two decimals of a controller.
+    pub fn at(mm: [f64; 4]) -> Self {
+        // Adding 0 turns -0 into 0.
+        Self { mm: mm.map(|mm| (mm * 100.0).round() / 100.0 + 0.0), letters: Letters::USUAL }
+    }
+
+    /// Position for a report, with X, Y and Z by the letters of the axes.
+    pub fn position(&self) -> robot::Position {
+        let name = |axis: usize| match self.letters.of(axis) {
+            "" => (axis + 1).to_string(),
+            letter => letter.to_owned(),
+        };
+        let text = (0..4).map(|axis| format!("{}={:.2}", self.letters.name(axis), self.mm[axis]));
+        let position = robot::Position::of_axes([0, 1, 2, 3].map(name), self.mm, 2);
+        let [x_mm, y_mm, z_mm] = ["x", "y", "z"].map(|letter| self.of_letter(letter));
+        robot::Position { x_mm, y_mm, z_mm, text: Some(text.collect::<Vec<_>>().join(" ")), ..position }
+    }
+
+    /// Coordinates of axes 1 to 4 in mm.
+    pub fn mm(&self) -> [f64; 4] {
+        self.mm
+    }
+
+    /// Coordinate of the only axis with this letter.
+    pub fn of_letter(&self, letter: &str) -> Option<f64> {
+        self.letters.axis(letter).map(|axis| self.mm[axis])
+    }
+
+    /// Coordinates with names in one line.
+    pub fn in_a_line(&self) -> String {
+        let axes = self.mm.iter().enumerate().map(|(axis, mm)| match self.letters.name(axis) {
+            numbered if numbered.starts_with("ax") => format!("{} {mm:.2}", titled(axis, self.letters.of(axis))),
+            letter => format!("{} {mm:.2}", letter.to_uppercase()),
+        });
+        axes.collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl Report for Coordinates {
+    fn view(&self) -> View {
+        let axes = self.mm.iter().enumerate();
+        let fields = axes.map(|(axis, mm)| (heading(axis, self.letters.of(axis)), Cell::number(format!("{mm:.2}"))));
+        View { sections: vec![Section::Fields(fields.collect())] }
+    }
+}

@@ -1,0 +1,171 @@
+//! `toyo program insert`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::and_mode;
+use super::get::Step;
+use super::steps;
+use crate::complete;
+use crate::eeprom::{Cells, THERE};
+use crate::link::Link;
+use crate::link::Toyo;
+use crate::tasks;
+use armctl_controller::Risk;
+use armctl_controller::names::Names;
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::program::{Part, check_named};
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::authority::Authority;
+use armctl_frame::dry_run::{Reason, unknown};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::gate::{Change, Confirmation};
+use armctl_frame::names;
+use armctl_frame::output::Screen;
+use armctl_frame::output::view::View;
+use armctl_frame::{Command, Context, Report};
+
+/// Insert a step; this step and later ones move by one.
+#[derive(Debug, Args)]
+#[command(after_help = and_mode("The last step of the task is lost. If it is not a NOP, the command refuses."))]
+pub struct Insert {
+    /// Number of the new step
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
+    step: u16,
+    /// Instruction, such as MOVP pick or OUT STN=0 PN1=.......1; quote < and >
+    #[arg(num_args = 0.., default_value = "NOP", add = complete::INSTRUCTION)]
+    instruction: Vec<String>,
+    /// Task, 1 to 4; default: the current task
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+}
+
+impl Command for Insert {
+    type Family = Toyo;
+    type Report = Inserted;
+    const ID: &'static str = "toyo.program.insert";
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "insert a program step";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Inserted, Failure> {
+        let Context { robot, link, screen, authority, .. } = context;
+        let instruction = self.instruction(names::of_robot(robot, screen))?;
+        if link.is_dry() {
+            return self.dry_run(link, &authority, &instruction).await;
+        }
+        let outcome = self.insert(link, screen, &authority, &instruction).await;
+        tasks::done(link, outcome).await
+    }
+}
+
+impl Insert {
+    /// Instruction for the protocol. Its tag can be anywhere in the program.
+    fn instruction(&self, names: &Names) -> Result<Record, Failure> {
+        let text = self.instruction.join(" ");
+        let part = Part { first: self.step.into(), tags: None };
+        let checked = check_named(text.as_bytes(), 1, Some(&part), names);
+        let wrong = checked.errors().next().map(|finding| {
+            let hint = finding.hint.clone().unwrap_or_else(|| "nothing was sent".to_owned());
+            Failure::usage(format!("column {} of '{text}': {}", finding.column, finding.message)).hint(hint)
+        });
+        match (wrong, checked.program.and_then(|program| program.steps.into_iter().next())) {
+            (None, Some(step)) => Ok(step.record),
+            (wrong, _) => Err(wrong.unwrap_or_else(|| {
+                Failure::usage(format!("'{text}' is not a valid instruction")).hint(
+                    "type one instruction with its operands, such as JMP TAG=5; see `armctl toyo program insert --help`",
+                )
+            })),
+        }
+    }
+
+    fn order(&self) -> Request {
+        Request::of(table::Command::Istx, [Value::Number(self.step.into())])
+    }
+
+    async fn insert(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        authority: &Authority<'_>,
+        instruction: &Record,
+    ) -> Result<Inserted, Failure> {
+        let step = self.step;
+        let task = tasks::choose(link, self.task).await?;
+        let room = steps::room(link, task, step).await?;
+        let before = link.ask(&steps::read_request(step)).await?;
+        let last = link.ask(&steps::read_request(room)).await?;
+        if last != steps::nop() {
+            let message = format!("step {room}, the last of task {task}, would be lost: {}", last.written());
+            return Err(Failure::new(Kind::Rejected, message).hint(
+                "delete the step first, or increase the steps of the task with machine parameter E22 (task-steps)",
+            ));
+        }
+        authority.confirm(&self.change(task, &before)).await?;
+        steps::open(link).await?;
+        link.ask(&self.order()).await?;
+        if step < room {
+            let behind = link.ask(&steps::read_request(step + 1)).await?;
+            if behind != before {
+                return Err(moved_wrong(step + 1, &before, &behind));
+            }
+        }
+        let mut cells = Cells::default();
+        link.store(screen, &steps::cell(step, instruction)?, &mut cells).await?;
+        Ok(Inserted { task, inserted: Step::of(step.into(), instruction) })
+    }
+
+    fn change(&self, task: u8, before: &Record) -> Change {
+        let step = self.step;
+        let behind = format!("step {step} ({}) and later steps move by one", before.written());
+        Change::new(format!("insert a step before step {step} of task {task}")).item(behind)
+    }
+
+    async fn dry_run(
+        &self,
+        link: &mut Link,
+        authority: &Authority<'_>,
+        instruction: &Record,
+    ) -> Result<Inserted, Failure> {
+        tasks::choose(link, self.task).await?;
+        link.plan(&steps::rooms_request(), "number of steps of the task");
+        link.plan(&steps::read_request(self.step), "the steps that move");
+        let last = Reason::about("the last step, which must be a NOP").depending_on("number of steps of the task");
+        link.plan_depending("@RSTX ?", last);
+        authority.confirm(&Change::none()).await?;
+        steps::plan_open(link).await?;
+        link.ask(&self.order()).await?;
+        if self.step < 5000 {
+            link.plan_if(&steps::read_request(self.step + 1), "whether it is the last step");
+        }
+        let cell = steps::cell(self.step, instruction)?;
+        link.plan(&cell.read, THERE);
+        link.plan_overwriting(&cell.read, &cell.write.text()).await?;
+        link.put_back().await?;
+        Err(unknown())
+    }
+}
+
+/// Failure because steps did not move as expected.
+pub fn moved_wrong(step: u16, wanted: &Record, found: &Record) -> Failure {
+    let (wanted, found) = (wanted.written(), found.written());
+    Failure::new(Kind::Malformed, format!("the controller answered @OK, but step {step} is '{found}', not '{wanted}'"))
+        .hint("`toyo program get` shows the program")
+}
+
+/// Result of an insert.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Inserted {
+    task: u8,
+    inserted: Step,
+}
+
+impl Report for Inserted {
+    fn view(&self) -> View {
+        let Step { step, instruction, .. } = &self.inserted;
+        View::text(format!("inserted in task {}: {step:04} {instruction}", self.task))
+    }
+}

@@ -1,0 +1,200 @@
+//! Source texts of programs that were written, because a controller stores neither labels nor comments.
+//!
+//! The state folder of the user has one file per controller and task. A text is valid only for exactly the steps that
+//! it produced. If it cannot be saved or read, only labels and comments are lost.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::program::{tags, used};
+use armctl_controller::toyo::request::instruction;
+use armctl_controller::toyo::table::Op;
+use armctl_files as files;
+use armctl_frame::local_names::state_folder;
+use armctl_frame::settings::Robot;
+
+/// Beginning of each file.
+const FORMAT: &str = "armctl-toyo-source";
+/// Size limit of a file; 5000 steps with long comments need less.
+const MOST: u64 = 8 << 20;
+/// Tasks of a controller.
+const TASKS: std::ops::RangeInclusive<u8> = 1..=4;
+
+/// Source texts of a controller.
+#[derive(Debug, Clone, Default)]
+pub struct Sources {
+    /// Path prefix of the files; `None` if nothing is saved.
+    prefix: Option<PathBuf>,
+    address: String,
+    /// Whether the steps after the program can have changed.
+    is_doubted: bool,
+}
+
+/// A text that was written, with its steps.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Source {
+    format: String,
+    /// Address of the controller.
+    address: String,
+    task: u8,
+    /// Name of the file.
+    pub file: String,
+    /// Time of the write.
+    pub put_at: Timestamp,
+    /// The text.
+    pub text: String,
+    /// Steps in the controller, up to the last one that is not a NOP.
+    steps: Vec<String>,
+    /// Number of steps of the task.
+    room: u16,
+    /// Whether all later steps were NOP, and no command of this user has changed them since.
+    rest_is_nop: bool,
+}
+
+impl Source {
+    /// Number of steps.
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Whether steps from the first one on equal the steps of the text.
+    pub fn is(&self, steps: &[Record]) -> bool {
+        self.differences(steps) == 0
+    }
+
+    /// Number of steps that differ from the steps of the text.
+    pub fn differences(&self, steps: &[Record]) -> usize {
+        let used = used(steps);
+        let differing = steps[..used].iter().zip(&self.steps).filter(|(step, kept)| step.written() != **kept).count();
+        differing + used.abs_diff(self.steps.len())
+    }
+
+    /// Whether the steps after the program need not be read before these steps are written. Its own steps are
+    /// unchanged. An edit on the pendant after them can be missed. It must not matter: the new program defines no tag
+    /// that can exist twice, jumps only to its own tags, and does not run beyond its end.
+    pub fn knows_rest(&self, steps: &[Record], room: u16) -> bool {
+        let known: Vec<Record> = self.steps.iter().filter_map(|step| instruction(step).ok()).collect();
+        let known = tags(&known, 1);
+        let is_closed = ends(steps) && !steps.iter().any(computes_jump);
+        self.rest_is_nop && self.room == room && is_closed && tags(steps, 1).keys().all(|tag| known.contains_key(tag))
+    }
+}
+
+/// Whether the program ends before the later steps.
+fn ends(steps: &[Record]) -> bool {
+    let layouts = [Op::End, Op::Jmp, Op::Ret].map(|op| op.row().layout);
+    steps[..used(steps)].last().is_some_and(|last| layouts.contains(&last.layout()))
+}
+
+/// Whether a step jumps to a tag that is known only at run time.
+fn computes_jump(step: &Record) -> bool {
+    [Op::Brac, Op::Psel].iter().any(|op| step.layout() == op.row().layout)
+}
+
+impl Sources {
+    /// Source texts of a robot; nothing is saved for a simulator in this process.
+    pub fn of(robot: &Robot) -> Self {
+        let Some(address) = robot.target.value.address().key() else { return Self::default() };
+        let hash = Sha256::digest(address.as_bytes()).iter().take(8).fold(String::new(), |mut text, byte| {
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{byte:02x}");
+            text
+        });
+        let prefix = state_folder().map(|folder| folder.join("toyo-programs").join(hash));
+        Self { prefix, address, is_doubted: false }
+    }
+
+    fn path(&self, task: u8) -> Option<PathBuf> {
+        let mut path = self.prefix.clone()?.into_os_string();
+        path.push(format!("-{task}.json"));
+        Some(path.into())
+    }
+
+    /// The text that was last written as the whole program of a task; `None` if it does not exist or cannot be read.
+    pub fn get(&self, task: u8) -> Option<Source> {
+        let text = files::text(&self.path(task)?, MOST).ok()?;
+        let source: Source = serde_json::from_str(&text).ok()?;
+        (source.format == FORMAT && source.address == self.address && source.task == task).then_some(source)
+    }
+
+    /// Saves a text that was written, with all steps of its task.
+    pub fn keep(&mut self, task: u8, (file, text): (&str, &str), steps: &[Record], room: u16) -> std::io::Result<()> {
+        let steps = steps[..used(steps)].iter().map(Record::written).collect();
+        let now = Timestamp::now();
+        self.write(&Source {
+            format: FORMAT.to_owned(),
+            address: self.address.clone(),
+            task,
+            file: file.to_owned(),
+            put_at: now.round(jiff::Unit::Second).unwrap_or(now),
+            text: text.to_owned(),
+            steps,
+            room,
+            rest_is_nop: true,
+        })
+    }
+
+    fn write(&self, source: &Source) -> std::io::Result<()> {
+        let Some(path) = self.path(source.task) else { return Ok(()) };
+        std::fs::create_dir_all(files::folder_of(&path))?;
+        files::replace(&path, &serde_json::to_vec(source)?)
+    }
+
+    /// Marks the steps after the programs as unknown, before a command that changes steps.
+    pub fn doubt(&mut self) {
+        if std::mem::replace(&mut self.is_doubted, true) {
+            return;
+        }
+        for source in TASKS.filter_map(|task| self.get(task)).filter(|source| source.rest_is_nop) {
+            // The file is deleted if this fails, because a later put would otherwise read too few steps.
+            if self.write(&Source { rest_is_nop: false, ..source.clone() }).is_err()
+                && let Some(path) = self.path(source.task)
+            {
+                std::fs::remove_file(path).unwrap_or_default();
+            }
+        }
+    }
+
+    /// Marks the steps as known again.
+    pub fn trust(&mut self) {
+        self.is_doubted = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(texts: &[&str]) -> Vec<Record> {
+        texts.iter().map(|text| instruction(text).unwrap()).collect()
+    }
+
+    #[test]
+    fn a_text_counts_for_the_steps_that_it_was_put_as() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sources = Sources {
+            prefix: Some(folder.path().join("programs").join("x")),
+            address: "tcp 127.0.0.1 1".to_owned(),
+            is_doubted: false,
+        };
+        assert_eq!(sources.get(1), None);
+        let put = steps(&["SPD V=05", "END", "NOP", "NOP"]);
+        sources.keep(1, ("pick.toyo", "# text\nSPD V=5\nEND\n"), &put, 4).unwrap();
+        let source = sources.get(1).unwrap();
+        assert!(source.is(&put) && source.len() == 2 && source.knows_rest(&put, 4) && !source.knows_rest(&put, 5));
+        let tagged = steps(&["TAG TAG=001", "END"]);
+        assert!(!source.knows_rest(&tagged, 4), "the tag may be behind them already");
+        assert!(!source.knows_rest(&steps(&["SPD V=05"]), 4), "it runs on into what is behind it");
+        assert_eq!(source.differences(&steps(&["SPD V=06", "END", "TAG TAG=001"])), 2);
+        sources.doubt();
+        let source = sources.get(1).unwrap();
+        assert!(source.is(&put) && !source.knows_rest(&put, 4), "the text stays, what is behind it is unknown");
+        let other = Sources { address: "tcp 127.0.0.1 2".to_owned(), ..sources };
+        assert_eq!(other.get(1), None, "another controller");
+    }
+}

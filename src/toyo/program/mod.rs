@@ -1,0 +1,59 @@
+//! `toyo program`: sequential programs as files and step by step.
+
+mod check;
+mod copy;
+mod delete;
+mod diff;
+mod edit;
+mod get;
+mod insert;
+pub mod kept;
+mod list;
+mod put;
+mod search;
+mod show;
+pub mod steps;
+pub mod table;
+#[cfg(test)]
+mod tests;
+pub mod text;
+
+use armctl_frame::{Offline, commands};
+
+commands! {
+    /// Commands for sequential programs.
+    pub enum Program {
+        /// List tasks with the steps used and available
+        List(list::List),
+        /// Read a program as text
+        Get(get::Get),
+        /// Check a program file and write the program
+        Put(put::Put),
+        /// Compare a program in the controller with a file
+        Diff(diff::Diff),
+        /// Edit a program in your editor, and write it back
+        Edit(edit::Edit),
+        /// Insert a step; later steps move by one
+        Insert(insert::Insert),
+        /// Delete steps; later steps move up
+        Delete(delete::Delete),
+        /// Copy steps, also between tasks
+        Copy(copy::Copy),
+        /// Find the step of a tag
+        Search(search::Search),
+        /// Show the current step of the program
+        Show(show::Show),
+        /// Check program files; needs no robot
+        Check(Offline<check::Check>),
+    }
+}
+
+/// Adds to a help text that commands that write steps select program mode temporarily.
+fn and_mode(text: &str) -> String {
+    format!("{text}\n\n{MODE}")
+}
+
+const MODE: &str = "Steps are written in program mode, as in the sample session of the manual (TO 3-1). A controller \
+                    in automatic or step mode is switched to it for the time of writing, and back; while a program \
+                    runs or is paused, nothing is written. What is stored already is not written again: the EEPROM \
+                    takes about a million rewrites of a step.";

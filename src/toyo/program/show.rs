@@ -1,0 +1,68 @@
+//! `toyo program show`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::steps;
+use crate::link::Toyo;
+use crate::refusal;
+use armctl_client::toyo::Refusal;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::dry_run::unknown;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, View};
+use armctl_frame::robot::program::Program;
+use armctl_frame::{Command, Context, Report};
+
+/// Show the current step of the program of the current task.
+#[derive(Debug, Args)]
+pub struct Show {}
+
+impl Command for Show {
+    type Family = Toyo;
+    type Report = Current;
+    const ID: &'static str = "toyo.program.show";
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
+        let link = context.link;
+        let (which, request) = (Request::bare(table::Command::Mtsk), steps::read_request(0));
+        if link.is_dry() {
+            link.plan(&which, "the current task");
+            link.plan(&request, "the current step");
+            return Err(unknown());
+        }
+        let which = link.ask(&which).await?;
+        let answer = steps::numbered(link, 0).await?.map_err(|Refusal(request)| refusal::of_question(&request))?;
+        let task = which.number("task").unwrap_or_default();
+        let more = Instruction { task, instruction: answer.text("text").map(ToOwned::to_owned) };
+        let step = answer.number("step").map(i64::from);
+        Ok(Current(Program { program: Some(format!("task {task}")), step, more, ..Program::default() }))
+    }
+}
+
+/// Current step of a program.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Current(Program<Instruction>);
+
+/// Additional keys of the step.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+struct Instruction {
+    /// Task of the program.
+    task: i32,
+    /// Instruction of the step.
+    instruction: Option<String>,
+}
+
+impl Report for Current {
+    fn view(&self) -> View {
+        let Self(program) = self;
+        View::fields([
+            ("task", program.more.task.into()),
+            ("step", Cell::optional(program.step)),
+            ("instruction", Cell::optional(program.more.instruction.as_deref())),
+        ])
+    }
+}

@@ -1,0 +1,126 @@
+//! Steps of a task: their number, their reads, and the preparation of writes.
+
+use std::ops::RangeInclusive;
+
+use crate::eeprom::Cell;
+use crate::items::{Answers, read_until};
+use crate::link::{Link, Refusal, misuse};
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::request::{Answer, Request};
+use armctl_controller::toyo::status::RunMode;
+use armctl_controller::toyo::table::{Command, Op, Parameter};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::gate::Change;
+use armctl_frame::output::Screen;
+
+const READING: &str = "reading steps";
+
+/// Number of steps of each task (TO 2-4, E22).
+pub async fn rooms(link: &mut Link) -> Result<[u16; 4], Failure> {
+    let record = link.ask(&rooms_request()).await?;
+    let room = |task| record.number(task).and_then(|steps| u16::try_from(steps).ok()).unwrap_or_default();
+    Ok(["task1", "task2", "task3", "task4"].map(room))
+}
+
+/// Request for the number of steps of the tasks.
+pub fn rooms_request() -> Request {
+    let parameter = Parameter::named("E22").expect("the table has E22");
+    Request::read_parameter(parameter, None).expect("E22 has no rows")
+}
+
+/// Number of steps of a task; a failure if a command needs a step beyond it, up to `last`.
+pub async fn room(link: &mut Link, task: u8, last: u16) -> Result<u16, Failure> {
+    let room = rooms(link).await?.get(usize::from(task) - 1).copied().unwrap_or_default();
+    if last <= room {
+        return Ok(room);
+    }
+    let has = if room == 0 { "no steps".to_owned() } else { format!("{room} steps") };
+    Err(Failure::usage(format!("task {task} has {has}, but the command needs step {last}"))
+        .hint("the machine parameter E22 (task-steps) sets the number of steps of each task"))
+}
+
+/// Request for a step.
+pub fn read_request(step: u16) -> Request {
+    Request::read_step(step.into()).expect("steps are at most 5000")
+}
+
+/// Reads a step with its number. A refusal is a valid result. Step 0 is the current step.
+pub async fn numbered(link: &mut Link, step: u16) -> Result<Result<Record, Refusal>, Failure> {
+    let request = read_request(step);
+    Ok(match link.raw(&request).await? {
+        Answer::Data(record) => Ok(record),
+        Answer::Done | Answer::Refused => Err(Refusal(request)),
+    })
+}
+
+/// Reads steps up to the first for which `is_last` holds, each with its own result.
+pub async fn read_each(
+    link: &mut Link,
+    screen: &Screen,
+    steps: RangeInclusive<u16>,
+    is_last: impl Fn(&Record) -> bool,
+) -> Result<Answers, Failure> {
+    let requests: Vec<Request> = steps.map(read_request).collect();
+    read_until(link, screen, READING, &requests, is_last).await
+}
+
+/// Reads all steps of a range before they are overwritten; a missing answer is a failure.
+pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u16>) -> Result<Vec<Record>, Failure> {
+    let mut read = Vec::with_capacity(steps.len());
+    let mut progress = screen.items_progress(READING, steps.len() as u64);
+    for step in steps {
+        read.push(link.ask(&read_request(step)).await?);
+        progress.advance(1);
+    }
+    Ok(read)
+}
+
+/// EEPROM cell of a step.
+pub fn cell(step: u16, instruction: &Record) -> Result<Cell, Failure> {
+    let write = Request::write_step(step.into(), instruction).map_err(|error| misuse(&error.into()))?;
+    Ok(Cell { read: read_request(step), write, wanted: instruction.clone() })
+}
+
+/// Change to confirm: replaced steps with old and new text.
+pub fn overwriting(task: u8, replaced: &[[String; 3]]) -> Change {
+    let change = match replaced.len() {
+        0 => return Change::none(),
+        1 => Change::new(format!("overwrite a step of task {task}")),
+        many => Change::new(format!("overwrite {many} steps of task {task}")),
+    };
+    replaced.iter().fold(change, |change, [what, old, new]| change.replaces(what, old, new))
+}
+
+/// The instruction without effect.
+pub fn nop() -> Record {
+    Op::Nop.row().layout.record(Vec::new()).expect("NOP has no values")
+}
+
+/// Prepares for writes of steps: checks that nothing runs, and selects program mode temporarily.
+pub async fn open(link: &mut Link) -> Result<(), Failure> {
+    let status = link.status_of(&[0, 2]).await?;
+    let busy = |what: &str, hint: &str| {
+        Err(Failure::new(Kind::Rejected, format!("{what}, which prevents the write of steps")).hint(hint))
+    };
+    if status.executing() || status.homing() {
+        return busy("the controller executes a program or a command", "wait for the end, or use `toyo stop`");
+    }
+    if status.paused() {
+        return busy("a program is paused", "continue it with `toyo run sequential`, or reset it with `toyo reset`");
+    }
+    let back = match status.run_mode() {
+        Some(RunMode::Automatic) => Command::Maut,
+        Some(RunMode::Step) => Command::Mstp,
+        Some(RunMode::Program) | None => return Ok(()),
+    };
+    link.borrow(&Request::bare(Command::Mpro), Request::bare(back)).await
+}
+
+/// Records the requests of [`open`] in a dry run.
+pub async fn plan_open(link: &mut Link) -> Result<(), Failure> {
+    let page = |page| Request::of(Command::Stas, [Value::Number(page)]);
+    link.plan(&page(0), "whether a program runs");
+    link.plan(&page(2), "the current mode");
+    link.plan_to_borrow(&Request::bare(Command::Mpro), "@M?", "whether the mode differs").await
+}

@@ -1,0 +1,98 @@
+//! `copy` and `select` of `toyo easy` and `toyo palletizing`, whose programs have numbers.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use clap::Args;
+
+use super::copies::{self, Copied};
+use super::link;
+use super::link::Toyo;
+use super::numbers::{number, read_back, stored_otherwise};
+use armctl_controller::Risk;
+use armctl_controller::toyo::field::{Field, Value};
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::failure::Failure;
+use armctl_frame::gate::Confirmation;
+use armctl_frame::settings_report::{Done, NewValue, Old};
+use armctl_frame::{Command, Context};
+
+/// A type of numbered programs.
+pub trait Kind: Debug + 'static {
+    /// `easy program`.
+    const WHAT: &'static str;
+    /// `toyo.easy.copy`, `toyo.easy.select`.
+    const IDS: [&'static str; 2];
+    /// Text after "This will …" for a copy.
+    const INTENT: &'static str;
+    /// Help for the source, the target, and the selected program.
+    const HELP: [&'static str; 3];
+    /// Command that starts the selected program.
+    const RUN: &'static str;
+    /// Protocol commands that copy, select, and report the selected program.
+    const COMMANDS: [table::Command; 3];
+
+    /// Field of the program number.
+    fn field() -> &'static Field;
+    /// Requests that read a whole program.
+    fn reads(program: i32) -> Result<Vec<Request>, Failure>;
+}
+
+/// Copy a program to another number if they differ.
+#[derive(Debug, Args)]
+pub struct Copy<K: Kind> {
+    #[arg(value_name = "FROM", help = K::HELP[0], value_parser = |text: &str| number(K::field(), text))]
+    from: i32,
+    #[arg(value_name = "TO", help = K::HELP[1], value_parser = |text: &str| number(K::field(), text))]
+    to: i32,
+    #[arg(skip)]
+    of: PhantomData<K>,
+}
+
+/// Select the program that `toyo run` starts.
+#[derive(Debug, Args)]
+pub struct Select<K: Kind> {
+    #[arg(value_name = "PROGRAM", help = K::HELP[2], value_parser = |text: &str| number(K::field(), text))]
+    program: i32,
+    #[arg(skip)]
+    of: PhantomData<K>,
+}
+
+impl<K: Kind> Command for Copy<K> {
+    type Family = Toyo;
+    type Report = Copied;
+    const ID: &'static str = K::IDS[0];
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = K::INTENT;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
+        let Self { from, to, .. } = *self;
+        let order = Request::new(K::COMMANDS[0], vec![Value::Number(from), Value::Number(to)]);
+        let order = order.map_err(|error| link::wrong(&error))?;
+        let copy = copies::Copy { what: K::WHAT, from, to, order, reads: [K::reads(from)?, K::reads(to)?] };
+        copy.make(context.link, context.screen, &context.authority).await
+    }
+}
+
+impl<K: Kind> Command for Select<K> {
+    type Family = Toyo;
+    type Report = Done;
+    const ID: &'static str = K::IDS[1];
+    const RISK: Risk = Risk::Write;
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
+        let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
+        let selection_read = Request::bare(K::COMMANDS[2]);
+        let old = Old::read(link.before(&selection_read).await?.and_then(|record| record.number("program")));
+        link.ask(&order).await?;
+        let selected = read_back(link, &order, &selection_read).await?.number("program");
+        if let Some(selected) = selected.filter(|selected| *selected != self.program) {
+            return Err(stored_otherwise(&order, &format!("program {selected} is selected"))
+                .hint("a running program stays selected"));
+        }
+        let words = format!("{} {} is selected; `{}` starts it", K::WHAT, self.program, K::RUN);
+        Ok(NewValue::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
+    }
+}

@@ -1,0 +1,130 @@
+//! `toyo robot-type`: robot type of an axis.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::Toyo;
+use super::numbers::number;
+use armctl_controller::Risk;
+use armctl_controller::toyo::field::{Field, Value};
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table;
+use armctl_frame::dry_run::{Known as _, unknown};
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::gate::Confirmation;
+use armctl_frame::output::view::View;
+use armctl_frame::{Command, Context, Report};
+
+/// Set the robot type of an axis, which determines its parameters.
+#[derive(Debug, Args)]
+#[command(after_help = "A wrong type can cause wrong motion: use the type on the name plate. An unknown number \
+                        changes nothing (exit code 3). On a real controller, you confirm by typing the word 'type', \
+                        or with --yes. `toyo info` shows the type of the robot.")]
+pub struct RobotType {
+    /// 1 to 4
+    #[arg(value_name = "AXIS", value_parser = |text: &str| number(&fields()[0], text))]
+    axis: i32,
+    /// Up to six digits
+    #[arg(value_name = "TYPE", value_parser = |text: &str| number(&fields()[1], text))]
+    robot_type: i32,
+}
+
+/// Fields of TYPE AX1 RTYP=000000.
+fn fields() -> &'static [Field] {
+    table::Command::Type.row().requests[0].fields
+}
+
+impl Command for RobotType {
+    type Family = Toyo;
+    type Report = RobotTypeReport;
+    const ID: &'static str = "toyo.robot-type";
+    const RISK: Risk = Risk::Destroy;
+
+    fn intent(&self) -> String {
+        format!("set axis {} to robot type {:06}; its parameters can change", self.axis, self.robot_type)
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::Word("type")
+    }
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<RobotTypeReport, Failure> {
+        let Self { axis, robot_type } = *self;
+        let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
+        let Some(answer) = context.link.ask(&order).await.known()? else {
+            // Records the later requests of a dry run, which ends here.
+            context.link.status_of(&[0]).await?;
+            return Err(unknown());
+        };
+        let type_text = |number: i32| fields()[1].written(&Value::Number(number));
+        let in_force = type_text(answer.number("in_force").unwrap_or(0));
+        let status = context.link.status_of(&[0]).await.map_err(|failure| {
+            let message = format!("robot type {in_force} is active now, but then: {}", failure.message);
+            Failure { message, ..failure }
+        })?;
+        Ok(RobotTypeReport {
+            axis: u8::try_from(axis).unwrap_or(u8::MAX),
+            robot_type: in_force,
+            ordered_type: type_text(robot_type),
+            needs_power_cycle: status.needs_power_cycle(),
+        })
+    }
+}
+
+/// Robot type of an axis.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct RobotTypeReport {
+    #[serde(rename = "axis_number")]
+    axis: u8,
+    /// Active type: six digits.
+    robot_type: String,
+    /// Requested type.
+    ordered_type: String,
+    /// Whether the controller executes nothing before a restart.
+    needs_power_cycle: bool,
+}
+
+impl Report for RobotTypeReport {
+    fn view(&self) -> View {
+        let then = if self.needs_power_cycle { "; switch the controller's power off and on" } else { "" };
+        View::text(format!("axis {} has robot type {}{then}", self.axis, self.robot_type))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let Self { axis, robot_type, ordered_type, .. } = self;
+        let message = format!(
+            "the controller does not accept robot type {ordered_type}: axis {axis} still has type {robot_type}"
+        );
+        (robot_type != ordered_type)
+            .then(|| Failure::new(Kind::Refused, message).hint("check the number on the name plate"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{blocks, intent, objection};
+
+    #[test]
+    fn robot_type_sends_its_block() {
+        assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123", "@STAS SNO=0"]);
+        assert!(objection(&["robot-type", "5", "0"]).contains("1 to 4"));
+        assert!(objection(&["robot-type", "1", "1000000"]).contains("999999"));
+        assert!(intent(&["robot-type", "1", "123"]).contains("axis 1 to robot type 000123"));
+    }
+
+    #[test]
+    fn a_rejected_type_is_a_refusal() {
+        let of = |robot_type: &str| RobotTypeReport {
+            axis: 2,
+            robot_type: robot_type.into(),
+            ordered_type: "000123".into(),
+            needs_power_cycle: false,
+        };
+        assert_eq!(of("000123").failure(), None);
+        let failure = of("000000").failure().unwrap();
+        assert_eq!(failure.kind, Kind::Refused);
+        assert_eq!(failure.message, "the controller does not accept robot type 000123: axis 2 still has type 000000");
+    }
+}

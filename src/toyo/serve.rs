@@ -1,0 +1,123 @@
+//! `armctl sim toyo`: simulated controller on a TCP port, like a device server, or on a pseudo-terminal.
+
+use std::io;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::simulated::{self, Simulated};
+use armctl_frame::failure::{Failure, plain};
+use armctl_frame::interrupt::catch_interrupts;
+use armctl_frame::serve::terminal_link::TerminalLink;
+use armctl_frame::serve::{self, Serving, Started, address, bind_failure};
+use armctl_transport::fault::LineFaultSpec;
+use armctl_transport::line::Pace;
+use armctl_transport::stream_server::StreamServer;
+
+/// Simulate a Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal
+#[derive(Debug, Args)]
+#[command(after_help = "A line has one host: while a client is connected, other TCP clients are disconnected at once.")]
+pub struct Serve {
+    /// Address to listen on, with the TCP port; port 0 lets the system choose
+    #[arg(
+        long,
+        alias = "listen",
+        value_name = "ADDRESS[:PORT]",
+        default_value = "127.0.0.1:4001",
+        value_parser = |text: &str| address(text, PORT)
+    )]
+    bind: SocketAddr,
+    /// Use a pseudo-terminal and print its path (not on Windows)
+    #[arg(long, conflicts_with = "bind")]
+    pty: bool,
+    /// Create a symbolic link to the pseudo-terminal and remove it at the end
+    #[arg(long, value_name = "PATH", requires = "pty")]
+    link: Option<PathBuf>,
+    /// Number of axes
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    axes: Option<u8>,
+    /// Simulate the transmission time of a line with this baud rate, such as 9600 [default: no delay]
+    #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(50..=4_000_000))]
+    baud: Option<u32>,
+    /// Start state (TOML): modes, memory, inputs, errors, timed events
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Faults, such as noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
+    #[arg(long, value_name = "FAULTS")]
+    fault: Option<LineFaultSpec>,
+    /// Read console lines on stdin; `help` lists them
+    #[arg(long)]
+    console: bool,
+}
+
+/// Usual port of device servers.
+const PORT: u16 = 4001;
+
+/// Bits of a character with 8 data bits, parity and one stop bit (TO 1-2).
+const BITS: u32 = 11;
+
+impl serve::Serve for Serve {
+    const ID: &'static str = "sim.toyo";
+    const TARGET: &'static str = "tcp://127.0.0.1:4001";
+    type Report = Serving;
+    type Server = Toyo;
+
+    async fn start(self) -> Result<Started<Self>, Failure> {
+        let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
+        let speed = self.baud.map(|baud| Pace::new(baud, BITS));
+        let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
+        // From here on, Ctrl-C must remove the symbolic link.
+        catch_interrupts();
+        let (server, endpoint, address, link) = if self.pty {
+            let made = StreamServer::pseudo_terminal(speed, self.fault);
+            let (server, path) = made.map_err(|error| no_terminal(&error))?;
+            let link = self.link.map(|link| TerminalLink::create(&link, &path)).transpose()?;
+            let name = link.as_ref().map_or_else(|| path.clone(), |link| link.name().display().to_string());
+            (server, format!("serial://{name}"), None, link)
+        } else {
+            let made = StreamServer::tcp(self.bind, speed, self.fault).await;
+            let (server, local) = made.map_err(|error| bind_failure(&format!("TCP {}", self.bind), &error))?;
+            (server, format!("tcp://{local}"), Some(local), None)
+        };
+        let target = format!("{endpoint}{settings}");
+        Ok(Started {
+            reach: serve::connect_hint("toyo", &target),
+            report: Serving { family: "toyo", target },
+            server: Toyo { server, simulated: Simulated::new(start), _link: link },
+            address,
+            with_console: self.console,
+        })
+    }
+}
+
+/// A simulated controller with its server.
+#[derive(Debug)]
+pub struct Toyo {
+    server: StreamServer,
+    simulated: Simulated,
+    /// Removed with the server.
+    _link: Option<TerminalLink>,
+}
+
+impl serve::Server for Toyo {
+    async fn run_until_change(&mut self) -> io::Result<()> {
+        self.server.turn(&mut self.simulated).await
+    }
+
+    fn console(&mut self, line: &str) -> Result<String, String> {
+        self.simulated.0.console(self.server.now(), line)
+    }
+
+    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String> {
+        let faults: Option<LineFaultSpec> = faults.map(str::parse).transpose().map_err(|error| format!("{error}"))?;
+        self.simulated.0.set_busy(faults.as_ref().map_or(0.0, |faults| faults.busy.fraction()));
+        self.server.set_faults(faults);
+        Ok(())
+    }
+}
+
+fn no_terminal(error: &io::Error) -> Failure {
+    let failure = Failure::local(format!("cannot create a pseudo-terminal: {}", plain(error)));
+    failure.hint("remove --pty, and use TCP")
+}

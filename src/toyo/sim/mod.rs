@@ -1,0 +1,19 @@
+//! `toyo sim`: offline run of programs.
+
+mod run;
+#[cfg(test)]
+mod tests;
+mod trace;
+
+pub use self::run::rehearse;
+pub use self::trace::Stop;
+
+use armctl_frame::{Offline, commands};
+
+commands! {
+    /// Commands of the offline simulator; `armctl sim toyo` is the server.
+    pub enum Sim {
+        /// Run a program file offline and print its timeline
+        Run(Offline<run::Run>),
+    }
+}

@@ -1,0 +1,322 @@
+//! `toyo sim run`.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::Args;
+
+use super::trace::{End, Recorder, Source, Stop, Trace};
+use crate::files;
+use crate::param::{Parameters, key_text};
+use crate::point::Points;
+use crate::program::text;
+use crate::rows::EepromRow;
+use crate::values::Changes;
+use armctl_client::toyo::Letters;
+use armctl_controller::names::{Name, Names};
+use armctl_controller::toyo::field::Value;
+use armctl_controller::toyo::program::{MOST_STEPS, Program, check_named};
+use armctl_controller::toyo::simulator::{Simulator, Start, What};
+use armctl_frame::OfflineCommand;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::settings::duration;
+use armctl_frame::store::rows_of_file;
+
+/// Run a program in the simulator in virtual time, and print steps, outputs and positions.
+#[derive(Debug, Args)]
+#[command(after_help = "The controller is new, with known origin, position 0 and servo power on; --state, \
+                  --params and --points change its content. Task 1 runs the program.\n\nThe run ends \
+                  at END or a STOP of task 1 (exit code 0), with an error, when every task waits \
+                  without end, or after --for (8). A faulty file is a usage error (2).\n\n  \
+                  armctl toyo sim run pick.txt --points points.csv --input 'at 2s 0/01/3 on'")]
+pub struct Run {
+    /// Program of task 1; - is stdin
+    file: PathBuf,
+    /// Program of another task, such as 2=gate.txt, which a TSTR starts (repeatable)
+    #[arg(long, value_name = "TASK=FILE", value_parser = other_task)]
+    task: Vec<(usize, PathBuf)>,
+    /// Points (CSV) from `point dump`, for another task than 1 with its number: 2=gate.csv (repeatable)
+    #[arg(long, value_name = "[TASK=]FILE", value_parser = points_of)]
+    points: Vec<(usize, PathBuf)>,
+    /// Parameters and tables (CSV) from `param dump`
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// Start state of the simulator (TOML), as for `armctl sim toyo`
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Input event: "at 2s 0/01/3 on" sets one bit of an input port, "at 2s 0/01 00000100" all eight (repeatable)
+    #[arg(long, value_name = "EVENT", value_parser = input)]
+    input: Vec<Input>,
+    /// Name of a point, a counter or a timer, as in robots.toml: pick=PT1 (repeatable)
+    #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
+    name: Vec<Name>,
+    /// First step
+    #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
+    from: u16,
+    /// Time limit of the program [default: 10 minutes]
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse)]
+    within: Option<Duration>,
+    /// Print the position at this interval as well
+    #[arg(long = "trace-every", value_name = "TIME", value_parser = every)]
+    every: Option<Duration>,
+    /// Limit of rows; the last ones are printed
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    rows: usize,
+}
+
+/// A change of an input.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Input {
+    at: Duration,
+    /// Text for the console of the simulator: `0/01/3 on`.
+    what: String,
+}
+
+/// Default time limit.
+const WITHIN: Duration = Duration::from_secs(600);
+/// Time limit of a run for a check.
+const REHEARSAL: Duration = Duration::from_secs(30);
+/// Minimum interval of printed positions.
+const FINEST: Duration = Duration::from_millis(1);
+
+fn every(text: &str) -> Result<Duration, String> {
+    let every = duration::parse(text)?;
+    if every < FINEST { Err("the minimum is 1ms".to_owned()) } else { Ok(every) }
+}
+
+fn other_task(text: &str) -> Result<(usize, PathBuf), String> {
+    let parts = text.split_once('=').and_then(|(task, file)| Some((task.parse().ok()?, file)));
+    match parts {
+        Some((task, file)) if (2..=4).contains(&task) && !file.is_empty() => Ok((task, file.into())),
+        _ => Err("type a task from 2 to 4 and a file, such as 2=gate.txt".to_owned()),
+    }
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "internal error: the command line has no file")]
+fn points_of(text: &str) -> Result<(usize, PathBuf), String> {
+    let task = text.split_once('=').and_then(|(task, file)| Some((task.parse().ok()?, file)));
+    Ok(match task {
+        Some((task, file)) if (1..=4).contains(&task) => (task, file.into()),
+        _ => (1, text.into()),
+    })
+}
+
+fn input(text: &str) -> Result<Input, String> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let (at, rest) = match words.as_slice() {
+        ["at", at, rest @ ..] => (duration::parse(at)?, rest),
+        rest => (Duration::ZERO, rest),
+    };
+    let input = Input { at, what: rest.join(" ") };
+    // A controller with all ports checks the text.
+    let tried = Simulator::new(Start::default()).console(Duration::ZERO, &input.line());
+    tried.map(|_| input).map_err(|why| format!("{why}; type an event such as \"at 2s 0/01/3 on\""))
+}
+
+impl Input {
+    fn line(&self) -> String {
+        format!("input {}", self.what)
+    }
+}
+
+impl OfflineCommand for Run {
+    type Report = Trace;
+    const ID: &'static str = "toyo.sim.run";
+
+    fn run(&self, screen: &Screen) -> Result<Trace, Failure> {
+        let names = Names::new(self.name.clone());
+        let mut sources = vec![source(screen, &names, 1, &self.file)?];
+        for (task, file) in &self.task {
+            if sources.iter().any(|source| source.task == *task) {
+                return Err(Failure::usage(format!("--task {task}= appears twice"))
+                    .hint("use one file for each task; task 1 has no --task"));
+            }
+            sources.push(source(screen, &names, *task, file)?);
+        }
+        let trace = self.trace(sources)?;
+        screen.note(&trace.summary());
+        Ok(trace)
+    }
+}
+
+/// Location at which a controller with these points stops the program with an error within some seconds.
+pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<Option<Stop>, Failure> {
+    let run = Run {
+        file: PathBuf::new(),
+        task: Vec::new(),
+        points: points.map(|path| (1, path.to_owned())).into_iter().collect(),
+        params: None,
+        state: None,
+        input: Vec::new(),
+        name: Vec::new(),
+        from: 1,
+        within: Some(REHEARSAL),
+        every: None,
+        rows: 0,
+    };
+    let sources = vec![Source { task: 1, file: file.to_owned(), program: program.clone() }];
+    run.trace(sources).map(|trace| trace.stop().cloned())
+}
+
+impl Run {
+    /// Runs the programs.
+    fn trace(&self, sources: Vec<Source>) -> Result<Trace, Failure> {
+        let start = self.start(&sources)?;
+        let mut simulator = Simulator::new(start);
+        simulator.record_trace(true);
+        simulator.console(Duration::ZERO, &format!("start {}", self.from)).map_err(|why| {
+            Failure::usage(format!("the program cannot be started: {why}"))
+                .hint("check the step of --from, and the state of --state")
+        })?;
+        Ok(self.watch(&mut simulator, Recorder::new(sources, self.rows)))
+    }
+
+    /// The controller with the programs.
+    fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
+        let state = match &self.state {
+            Some(path) => {
+                let bytes = files::read(path)?;
+                let text = String::from_utf8(bytes).map_err(|_| {
+                    Failure::usage(format!("{}: this is not a text in UTF-8", path.display()))
+                        .hint("`armctl help simulator` shows the form of the file")
+                })?;
+                Start::parse(&text).map_err(|error| {
+                    Failure::usage(format!("{}: {error}", path.display()))
+                        .hint("`armctl help simulator` shows the form of the file")
+                })?;
+                text
+            }
+            None => "origin = true\n".to_owned(),
+        };
+        let mut written = Vec::new();
+        if let Some(path) = &self.params {
+            written.extend(writes(path)?);
+        }
+        // These writes precede the power-on, so that parameter 2 is active.
+        let mut document: toml::Table = state.parse().map_err(|error| {
+            Failure::usage(format!("{error}")).hint("`armctl help simulator` shows the form of the file")
+        })?;
+        if let toml::Value::Array(list) = document.entry("write").or_insert_with(|| toml::Value::Array(Vec::new())) {
+            list.extend(written.into_iter().map(toml::Value::String));
+        }
+        for (task, path) in &self.points {
+            let points = Points::with_letters(1, Letters::USUAL);
+            for (point, changes) in rows_of_file(&points, path)? {
+                let values = whole(path, &format!("point {point}"), &changes)?;
+                place(&mut document, *task, point, &values);
+            }
+        }
+        if let toml::Value::Table(steps) = document.entry("steps").or_insert_with(|| toml::Table::new().into()) {
+            for Source { task, program, .. } in sources {
+                let texts = program.steps.iter().map(|step| toml::Value::String(step.text()));
+                steps.insert(task.to_string(), toml::Value::Array(texts.collect()));
+            }
+        }
+        Start::parse(&document.to_string()).map_err(Failure::usage)
+    }
+
+    /// Runs the program and records the events.
+    fn watch(&self, simulator: &mut Simulator, mut recorder: Recorder) -> Trace {
+        let mut inputs: Vec<&Input> = self.input.iter().collect();
+        inputs.sort_by_key(|input| input.at);
+        let mut inputs = inputs.into_iter().peekable();
+        let mut sample = self.every.map(|_| Duration::ZERO);
+        let limit = self.within.unwrap_or(WITHIN);
+        let mut now = Duration::ZERO;
+        loop {
+            let mut end = None;
+            for event in simulator.take_trace() {
+                recorder.event(&event);
+                end = match event.what {
+                    What::Error(code) => Some(End::Error(code)),
+                    What::Stopped => Some(End::Stopped),
+                    What::Ended(_) if !simulator.state().executing => Some(End::Ended),
+                    _ => end,
+                };
+            }
+            let due = [simulator.wake(), inputs.peek().map(|input| input.at)].into_iter().flatten().min();
+            let outcome = match (end, due) {
+                (Some(end), _) => Some(end),
+                (None, None) => Some(End::Waits),
+                (None, Some(due)) if due > limit => Some(End::TimeUp),
+                _ => None,
+            };
+            if let Some(outcome) = outcome {
+                if outcome == End::TimeUp {
+                    now = limit;
+                    simulator.advance(now);
+                }
+                return recorder.ended(outcome, now, &simulator.state());
+            }
+            let due = due.unwrap_or(limit);
+            now = sample.map_or(due, |sample| sample.min(due));
+            simulator.advance(now);
+            if let Some((at, every)) = sample.zip(self.every).filter(|(at, _)| *at == now) {
+                recorder.position(now, simulator.state().position);
+                sample = Some(at + every);
+            }
+            while let Some(input) = inputs.next_if(|input| input.at <= now) {
+                let line = input.line();
+                recorder.input(now, simulator.state().position, &line);
+                // The port was checked before.
+                if let Err(why) = simulator.console(now, &line) {
+                    recorder.input(now, simulator.state().position, &why);
+                }
+            }
+        }
+    }
+}
+
+/// Commands that write the parameters of a file.
+fn writes(path: &Path) -> Result<Vec<String>, Failure> {
+    let mut start = Start::default();
+    let mut commands = Vec::new();
+    let mut rows = rows_of_file(&Parameters, path)?;
+    rows.sort_by_key(|(key, _)| Parameters::rank(*key));
+    for (key, changes) in rows {
+        let values = whole(path, &key_text(key), &changes)?;
+        let cell = Parameters.cell(key, values).map_err(|failure| in_file(path, &failure.message))?;
+        let command = cell.write.text().trim_start_matches('@').to_owned();
+        start = start.with_written(&command).map_err(|why| in_file(path, &why))?;
+        commands.push(command);
+    }
+    Ok(commands)
+}
+
+/// All values of a row of a file.
+fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failure> {
+    changes.whole().ok_or_else(|| in_file(path, &format!("{row}: values are missing")))
+}
+
+/// A row of a file that cannot be used.
+fn in_file(path: &Path, why: &str) -> Failure {
+    Failure::usage(format!("{}: {why}", files::display_path(path))).hint("`dump` writes a valid file")
+}
+
+/// Adds a point to a start state.
+fn place(state: &mut toml::Table, task: usize, point: i32, values: &[Value]) {
+    fn table(within: &mut toml::Table, key: String) -> Option<&mut toml::Table> {
+        within.entry(key).or_insert_with(|| toml::Table::new().into()).as_table_mut()
+    }
+    let millimetres = |value: &Value| {
+        let hundredths = if let Value::Number(hundredths) = value { *hundredths } else { 0 };
+        toml::Value::Float(f64::from(hundredths) / 100.0)
+    };
+    let coordinates = values.iter().map(millimetres).collect();
+    let rows = table(state, "points".to_owned()).and_then(|points| table(points, task.to_string()));
+    if let Some(rows) = rows {
+        rows.insert(point.to_string(), toml::Value::Array(coordinates));
+    }
+}
+
+/// The program in a file.
+fn source(screen: &Screen, names: &Names, task: usize, file: &Path) -> Result<Source, Failure> {
+    let name = files::display_path(file);
+    let bytes = files::read(file)?;
+    Ok(Source {
+        task,
+        program: text::program(&name, check_named(&bytes, MOST_STEPS, None, names), screen)?,
+        file: name,
+    })
+}

@@ -1,0 +1,36 @@
+//! Start of a simulated controller.
+
+use std::path::Path;
+
+use anyhow::Context as _;
+
+pub use armctl_client::toyo::Simulated;
+use armctl_controller::toyo::simulator::Start;
+use armctl_files as files;
+use armctl_frame::failure::Failure;
+use armctl_transport::fault::LineFaultSpec;
+
+/// Start state: from a file, or the built-in one with this number of axes, and the busy rate of the faults.
+pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpec>) -> Result<Start, Failure> {
+    let start = match (file, axes) {
+        (None, None) => Start::default(),
+        (None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
+        (Some(file), None) => load(file)?,
+        (Some(_), Some(_)) => {
+            return Err(Failure::usage("--axes and --state exclude each other")
+                .hint("write the number of axes into the state file"));
+        }
+    };
+    Ok(match faults {
+        Some(faults) => start.with_busy(faults.busy.fraction()),
+        None => start,
+    })
+}
+
+fn load(path: &Path) -> Result<Start, Failure> {
+    let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
+    Start::parse(&text).map_err(|error| {
+        Failure::usage(format!("{}: {error}", path.display()))
+            .hint("`armctl help simulator` shows the form of the file")
+    })
+}

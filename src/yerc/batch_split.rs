@@ -1,0 +1,133 @@
+//! Reads of many items in few requests. A refused run is read again in parts to find the refused items.
+
+use std::collections::{HashMap, VecDeque};
+
+use super::existing_items::{Batch, Outcome, ReadError};
+use super::link::Link;
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::variables::PlannedRead;
+use armctl_frame::dry_run::{Reason, unknown};
+use armctl_frame::failure::{Failure, Kind};
+
+/// Division of a refused run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BatchSplit {
+    /// Halves, because the valid numbers end somewhere.
+    Halves,
+    /// Single items, because each can be refused, or because the controller has no request for several items.
+    Single,
+}
+
+/// Sends the requests of a plan. A refused run is planned and read again in parts, down to the refused items. `parts`
+/// defines how a run is divided. `progress` receives the current items and the number of items known so far. A dry
+/// run notes the plan.
+pub async fn read_in_batches<S: PlannedRead>(
+    link: &mut Link,
+    mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
+    wanted: &[S::Item],
+    parts: impl Fn(&[S::Item]) -> BatchSplit,
+    mut progress: impl FnMut(&[S::Item], usize),
+) -> Result<HashMap<S::Item, Outcome<S::Value>>, Failure> {
+    if wanted.is_empty() {
+        return Ok(HashMap::new());
+    }
+    if link.is_dry() {
+        let purpose = link.take_purpose();
+        plan_in_batches(link, plan, wanted, parts, |_| purpose.map(ToOwned::to_owned))?;
+        return Err(unknown());
+    }
+    let mut steps: VecDeque<S> = plan(wanted)?.into();
+    let mut batch = Batch::default();
+    let mut known: HashMap<S::Item, Outcome<S::Value>> = HashMap::with_capacity(wanted.len());
+    while let Some(step) = steps.pop_front() {
+        let asked = step.wanted();
+        progress(asked, known.len());
+        let refused = match link.ask_in_batch(&mut batch, &step).await? {
+            Ok(values) => {
+                known.extend(values.into_iter().map(|(item, value)| (item, Ok(value))));
+                continue;
+            }
+            Err(denied) => denied,
+        };
+        let retry = if is_alone(&step, &mut plan)? { None } else { describe_reason(&refused, parts(asked)) };
+        let Some(parts) = retry else {
+            known.extend(asked.iter().map(|item| (*item, Err(refused.clone()))));
+            continue;
+        };
+        let size = if parts == BatchSplit::Single { 1 } else { asked.len().div_ceil(2) };
+        for part in asked.chunks(size).rev() {
+            for step in plan(part)?.into_iter().rev() {
+                steps.push_front(step);
+            }
+        }
+    }
+    Ok(known)
+}
+
+/// Whether a request is for one item; it may include others that are not requested.
+fn is_alone<S: PlannedRead>(
+    step: &S,
+    plan: &mut impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
+) -> Result<bool, Failure> {
+    let asked = step.wanted();
+    Ok(asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request()))
+}
+
+/// Notes in a dry run the requests of [`read_in_batches`], each run with the requests after a refusal. For a long run
+/// these are its halves, which are divided again, and one request for a single item as an example. `about` is the
+/// purpose of a run.
+pub fn plan_in_batches<S: PlannedRead>(
+    link: &mut Link,
+    mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
+    wanted: &[S::Item],
+    parts: impl Fn(&[S::Item]) -> BatchSplit,
+    about: impl Fn(&[S::Item]) -> Option<String>,
+) -> Result<(), Failure> {
+    for step in plan(wanted)? {
+        let asked = step.wanted();
+        let purpose = about(asked);
+        link.plan_if(&step.request(), Reason { about: purpose.as_deref(), depends_on: None });
+        if is_alone(&step, &mut plan)? {
+            continue;
+        }
+        let singles = asked.iter().map(|item| plan(&[*item]));
+        let singles = singles.collect::<Result<Vec<_>, _>>()?.into_iter().flatten();
+        let singles: Vec<Request> = singles.map(|single| single.request()).collect();
+        match (parts(asked), &singles[..]) {
+            (BatchSplit::Halves, [first, _, .., last]) => {
+                let (one, other) = asked.split_at(asked.len().div_ceil(2));
+                for (half, which) in [(one, "first"), (other, "second")] {
+                    let about = format!("its {which} half, if it is refused; divided again down to single items");
+                    for step in plan(half)? {
+                        link.plan_if(&step.request(), Reason::about(&about).depending_on(REFUSED));
+                    }
+                }
+                let about = "each item alone, if the controller has no request for several";
+                link.plan_depending(first, last, Reason::about(about).depending_on(REFUSED));
+            }
+            _ => {
+                for single in &singles {
+                    link.plan_if(single, Reason::about("each item alone, if the run is refused").depending_on(REFUSED));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Condition of the requests after a run.
+const REFUSED: &str = "whether the controller refuses the run";
+
+/// Division of a run after this refusal; `None` if a new read would not help.
+fn describe_reason(denied: &ReadError, usual: BatchSplit) -> Option<BatchSplit> {
+    /// Added status: "command error", "undefined command".
+    const UNKNOWN: [u32; 2] = [0x1010, 0xA000];
+    match denied {
+        ReadError::Refused(refusal) if refusal.status.code == 0x08 || UNKNOWN.contains(&refusal.status.added) => {
+            Some(BatchSplit::Single)
+        }
+        ReadError::Refused(_) => Some(usual),
+        ReadError::Failed(failure) => (failure.kind == Kind::Malformed).then_some(BatchSplit::Single),
+        ReadError::NotSent(_) => None,
+    }
+}

@@ -1,0 +1,70 @@
+//! Connections to the controller of a target: UDP, the simulator, or a session.
+
+use super::failure::failure;
+use super::link::Yerc;
+use super::overview::overview;
+use super::simulator_start;
+use armctl_client::yerc::{Client, Endpoint, Options};
+use armctl_controller::yerc::Model;
+use armctl_frame::attach::attach;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::settings::target::Place;
+use armctl_frame::settings::{Robot, Sessions};
+use armctl_frame::{Access, Family as _};
+use armctl_transport::fault::FaultSpec;
+use armctl_transport::session::host::shared_link::Datagrams;
+
+fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
+    match &robot.target.value.place {
+        Place::Udp(udp) => Ok(Endpoint::Udp { host: udp.host.clone(), ports: [udp.port, udp.file_port] }),
+        Place::Sim(sim) => {
+            let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose().map_err(|error| {
+                Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
+            })?;
+            let start = simulator_start::start(
+                sim.state.as_deref(),
+                robot.model.value.named().unwrap_or(Model::Dx200),
+                faults.as_ref(),
+            )?;
+            Ok(Endpoint::Simulator { start: Box::new(start), faults })
+        }
+        Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {
+            let message = format!("a yerc controller cannot be reached over {}:", robot.target.value.scheme());
+            Err(Failure::usage(message).hint("use udp:// or sim:"))
+        }
+    }
+}
+
+/// Connects to the controller of a target.
+pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
+    let options = Options {
+        model: robot.model.value.named(),
+        grant: access.grant.clone(),
+        timeout: robot.timeout.value,
+        retries: robot.retries.value,
+    };
+    if access.dry_run {
+        // A dry run knows the model of a simulator from its start state, but does not ask a controller.
+        let simulated = if robot.target.value.is_simulated() { endpoint(robot)?.model() } else { None };
+        return Ok(Client::dry_run(Options { model: simulated.or(options.model), ..options }));
+    }
+    let endpoint = endpoint(robot)?;
+    match Box::pin(attach(robot, access, screen)).await? {
+        Some(session) => {
+            let model = endpoint.model().or(options.model);
+            Ok(Client::in_session(session, Options { model, ..options }))
+        }
+        None => Client::connect(endpoint, options).await.map_err(|error| failure(&robot.label(), error)),
+    }
+}
+
+/// Opens a connection for a session. A first request checks that a controller answers, because UDP sends without a
+/// receiver as well.
+pub async fn hold_robot(robot: &Robot, access: &Access, screen: &Screen) -> Result<Datagrams, Failure> {
+    let robot = &Robot { sessions: Sessions::None, ..robot.clone() };
+    let mut link = Yerc::connect(robot, access.clone(), screen).await?;
+    overview(&mut link).await?;
+    Yerc::close(link, screen).await?;
+    endpoint(robot)?.hold().await.map_err(|error| failure(&robot.label(), error))
+}

@@ -1,0 +1,96 @@
+//! Implementation of the family interface for `yerc`.
+
+use super::alarm;
+use super::commands::Commands;
+use super::decode::Decode;
+use super::explain::Explain;
+use super::file::{Restore, back_up};
+use super::link::{Link, Yerc};
+use super::serve::Serve;
+use super::switch_commands::Hold;
+use super::top::Poller;
+use super::{check, connect, overview, teach_panel};
+use armctl_controller::yerc::{passing, simulator, status};
+use armctl_frame::backup::family_backup::Backups;
+use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use armctl_frame::face::HeldLink;
+use armctl_frame::face::layers::Layer;
+use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::face::registration::Declaration;
+use armctl_frame::face::sample::Traffic;
+use armctl_frame::face::teach_panel::Panel;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::robot::alarm::Alarm;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::Family;
+use armctl_frame::{Access, Context};
+use armctl_transport::session::host::Guard;
+use armctl_transport::session::host::shared_link::SharedLink;
+
+impl Declaration for Yerc {
+    type Commands = Commands;
+    type Decode = Decode;
+    type Explain = Explain;
+    type Alarms = alarm::List;
+    type AlarmHistory = alarm::History;
+    type AlarmReset = alarm::Reset;
+    type Position = super::position::Position;
+    type Stop = Hold;
+    type Serve = Serve;
+    type Poller = Poller;
+
+    const NAME: Family = Family::Yerc;
+    const TITLE: &'static str = "Yaskawa FS100, DX100, DX200, YRC1000";
+    const ABOUT: &'static str = "Yaskawa FS100, DX100, DX200 and YRC1000 over the high-speed Ethernet server (UDP)";
+    const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yerc-setup`.";
+    const SETUP: (&'static str, &'static str) = ("settings of a Yaskawa controller", include_str!("setup.txt"));
+    const START_STATE: &'static str = simulator::EXAMPLE;
+    const PANEL: Panel = teach_panel::PANEL;
+    const GUARD: Guard = Guard { is_harmless_data: passing::only_reads_or_stops, is_harmless_image: |_, _| false };
+
+    fn urls() -> Vec<(String, &'static str)> {
+        vec![("udp://".to_owned(), "yerc: name or address of the controller")]
+    }
+
+    fn codes() -> Vec<(String, String)> {
+        let statuses = status::all_statuses().map(|row| (format!("0x{:02X}", row.code), row.name.to_owned()));
+        statuses.chain(status::all_added().map(|row| (format!("0x{:04X}", row.code), row.name.to_owned()))).collect()
+    }
+
+    fn stop_command() -> Self::Stop {
+        Hold::on()
+    }
+
+    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
+        alarm::present(link, &mut true, alarm::SLOTS).await
+    }
+
+    fn traffic(link: &Link) -> Traffic {
+        link.traffic()
+    }
+
+    async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+        overview::overview(link).await
+    }
+
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+        check::check(robot, access, screen).await
+    }
+
+    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+        Ok(SharedLink::Datagrams(connect::hold_robot(robot, access, screen).await?).into())
+    }
+}
+
+impl Backups for Yerc {
+    const IDS: [&'static str; 3] = ["yerc.backup", "yerc.restore", "yerc.diff"];
+
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
+        back_up(context, making).await
+    }
+
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+        Restore::of(restoring).run(context).await
+    }
+}

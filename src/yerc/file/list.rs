@@ -1,0 +1,96 @@
+//! `yerc file list` (FS and DX 3.4.4).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::name::{Shown, TypeArg, name_of_type, type_word};
+use super::transfer;
+use crate::link::Yerc;
+use armctl_controller::yerc::files;
+use armctl_frame::backup;
+use armctl_frame::failure::Failure;
+use armctl_frame::items::ItemError;
+use armctl_frame::output::view::{Cell, Table, View};
+use armctl_frame::robot::file::{FileItem, Files};
+use armctl_frame::{Command, Context};
+
+/// Lists the files on the controller.
+#[derive(Debug, Args)]
+pub struct List {
+    /// File types, such as jbi,dat
+    #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true, default_value = "jbi")]
+    types: Vec<TypeArg>,
+    /// Raw filter to send instead, such as '', '*.*' or '*.JBI'
+    #[arg(long, value_name = "FILTER", conflicts_with = "types", value_parser = filter)]
+    filter: Option<String>,
+}
+
+fn filter(text: &str) -> Result<String, String> {
+    files::list_by(text).map(|_| text.to_owned()).map_err(|error| error.to_string())
+}
+
+impl Command for List {
+    type Family = Yerc;
+    type Report = Files<Listed>;
+    const ID: &'static str = "yerc.file.list";
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Files<Listed>, Failure> {
+        let Context { link, screen, .. } = context;
+        let filters = match &self.filter {
+            Some(filter) => vec![(filter.clone(), None)],
+            None => TypeArg::selected_types(&self.types).into_iter().map(|kind| (kind.filter(), Some(kind))).collect(),
+        };
+        let requests = filters.iter().map(|(filter, _)| files::list_by(filter));
+        let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| {
+            Failure::usage(error.to_string()).hint("a filter looks like *.JBI; remove --filter to list jobs")
+        })?;
+        if link.is_dry() {
+            transfer::plan_all(link, transfer::LISTS, requests)?;
+            return Ok(Files::new(Vec::new(), table));
+        }
+        let mut listed = Vec::new();
+        // The file service may still be busy with an aborted transfer of another client.
+        let _looking = screen.spinner("looking for files");
+        for ((filter, kind), request) in filters.iter().zip(&requests) {
+            match transfer::list_by(link, request).await {
+                Ok(names) => listed.extend(names.iter().map(|bytes| {
+                    let Shown { name, name_hex } = Shown::new(link.encoding, bytes);
+                    let file_type = name_of_type(bytes).or(kind.map(type_word));
+                    FileItem::new(name, Listed { name_hex, file_type }, Ok(()))
+                })),
+                // A controller may list jobs but refuse to list parameters.
+                Err(failure) if backup::continues_after(&failure) && filters.len() > 1 => {
+                    let more = Listed { name_hex: None, file_type: kind.map(type_word) };
+                    listed.push(FileItem::new(filter, more, Err(failure)));
+                }
+                Err(failure) => return Err(transfer::describe_request(&shown(filter), failure)),
+            }
+        }
+        Ok(Files::new(listed, table).asked(filters.len()))
+    }
+}
+
+/// Text of a filter.
+fn shown(filter: &str) -> String {
+    if filter.is_empty() { "the empty filter".to_owned() } else { filter.to_owned() }
+}
+
+/// Fields of a listed file, or of a type that could not be listed: its name is the filter.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Listed {
+    /// Bytes of the name, if the text does not convert back to them; as an argument, use them with the prefix `hex:`.
+    name_hex: Option<String>,
+    /// `jbi`, `dat`, `cnd`, `prm`, `sys` or `lst`; null for any other extension.
+    #[serde(rename = "type")]
+    file_type: Option<&'static str>,
+}
+
+fn table(files: &[FileItem<Listed>]) -> View {
+    let mut table = Table::new(&["name", "type", "error"], "no files of this type");
+    for file in files {
+        let error = file.error.as_ref().map(ItemError::cell);
+        table.row([file.name.as_str().into(), Cell::optional(file.more.file_type), Cell::optional(error)]);
+    }
+    View::table(table.without_blank("error"))
+}

@@ -1,0 +1,65 @@
+//! Reads small files of the controller for commands that need their content.
+
+use super::lists::{Existence, Lists};
+use super::transfer;
+use crate::link::Link;
+use armctl_controller::yerc::files::FileName;
+use armctl_frame::backup::continues_after;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::Screen;
+
+/// Result of reading a file.
+#[derive(Debug)]
+pub enum FileReading {
+    /// Content.
+    Read(Vec<u8>),
+    /// The controller has no such file.
+    Missing,
+    /// The file was not read.
+    Failed(Failure),
+}
+
+/// Reads files of at most `most` bytes, each with its own result, in order; `None` in a dry run, which notes the
+/// requests.
+pub async fn read_files(
+    link: &mut Link,
+    screen: &Screen,
+    names: &[&str],
+    most: u64,
+) -> Result<Option<Vec<FileReading>>, Failure> {
+    let files = names
+        .iter()
+        .map(|name| FileName::new(*name).map_err(|error| Failure::local(format!("internal error: {name}: {error}"))));
+    let files = files.collect::<Result<Vec<FileName>, Failure>>()?;
+    let looking = screen.spinner("looking for files");
+    let Some(lists) = Lists::ask(link, &files).await? else {
+        transfer::plan_all(link, "if the controller has it", files.iter().map(FileName::save))?;
+        return Ok(None);
+    };
+    drop(looking);
+    let mut answers = Vec::with_capacity(files.len());
+    for (file, name) in files.iter().zip(names) {
+        if lists.existence(file) == Existence::No {
+            answers.push(FileReading::Missing);
+            continue;
+        }
+        let mut bytes = Vec::new();
+        let mut progress = screen.bytes_progress(name, None);
+        let read = transfer::fetch_listed(link, file, |block| {
+            progress.advance(block.len() as u64);
+            bytes.extend_from_slice(block);
+            if bytes.len() as u64 > most {
+                return Err(Failure::new(Kind::Malformed, format!("{name} has more than {most} bytes"))
+                    .hint("no known controller has such a large file; record it with --trace and report it"));
+            }
+            Ok(())
+        });
+        match read.await {
+            Ok(0) => answers.push(FileReading::Missing),
+            Ok(_) => answers.push(FileReading::Read(bytes)),
+            Err(failure) if continues_after(&failure) => answers.push(FileReading::Failed(failure)),
+            Err(failure) => return Err(transfer::describe_request(name, failure)),
+        }
+    }
+    Ok(Some(answers))
+}

@@ -1,0 +1,196 @@
+//! `yerc restore`: upload of the files of a backup.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::content::Content;
+use super::lists::{Existence, Lists};
+use super::manifest::{Manifest, controller_file};
+use super::name::Shown;
+use super::transfer;
+use super::upload::{self, Delivery, UploadOptions, upload};
+use crate::link::Link;
+use crate::link::Yerc;
+use armctl_controller::yerc::files::{FileName, FileType};
+use armctl_frame::Context;
+use armctl_frame::authority::Authority;
+use armctl_frame::backup::manifest;
+use armctl_frame::backup::manifest::Entry;
+use armctl_frame::backup::{NOT_CHOSEN, Only, RestoreSelection, Restored, would_leave, would_write};
+use armctl_frame::dry_run::Reason;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::gate::Change;
+use armctl_frame::local_names::private_folder;
+use armctl_frame::output::Screen;
+use armctl_frame::robot::file::{FileItem, State};
+
+/// Files of a backup to upload.
+#[derive(Debug)]
+pub struct Restore {
+    folder: PathBuf,
+    /// Types of the files.
+    types: Vec<FileType>,
+    /// Patterns of file names.
+    patterns: Only,
+    /// Send a backup to another model.
+    force: bool,
+}
+
+/// Jobs that the controller does not overwrite by itself are replaced.
+const OPTIONS: UploadOptions = UploadOptions { verify: false, ignore_header: false, replace: true };
+
+/// Order of sending: jobs need their data and conditions first, and after parameters a controller may need a restart.
+const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
+/// Types that are sent by default. Parameters and system data change the controller itself.
+const DEFAULT_TYPES: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
+
+impl Restore {
+    /// Options from those of the `restore` command of all families.
+    pub fn of(restoring: &RestoreSelection) -> Self {
+        let RestoreSelection { folder, only: patterns, machine, force } = restoring.clone();
+        let mut types = DEFAULT_TYPES.to_vec();
+        if patterns != Only::default() || machine {
+            types.push(FileType::Lst);
+        }
+        if machine {
+            types.extend([FileType::Sys, FileType::Prm]);
+        }
+        Self { folder, types, patterns, force }
+    }
+
+    /// Sends what differs.
+    pub async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
+        let Context { link, screen, robot, several, authority } = context;
+        let folder = private_folder(&self.folder, &robot.name, several);
+        manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, robot, self.force)?;
+        let manifest: Manifest = manifest::open_existing(&folder)?;
+        let (taken_of, model) = (manifest.controller.description_of(), link.model().await?);
+        if taken_of != model.name() && !link.is_dry() && !self.force {
+            let message = format!("the backup is of a {taken_of}, {} is a {model}", robot.label());
+            return Err(Failure::new(Kind::Rejected, message)
+                .hint("check the model (?model=…); --force sends the files anyway"));
+        }
+        let chosen = self.select_entries(&manifest)?;
+        let (mut deliveries, mut results) = (Vec::with_capacity(chosen.len()), Vec::with_capacity(chosen.len()));
+        for (file, entry) in chosen {
+            let Some(copy) = &entry.copy else { continue };
+            copy.check(&folder)?;
+            if copy.bytes > 0 {
+                results.push(Shown::new(link.encoding, file.as_bytes()).pending().from_copy(&folder, copy));
+                deliveries.push(Delivery { file, content: Content::open(&folder.join(&copy.file))? });
+            } else {
+                screen.note(&format!("{} is empty and cannot be sent", entry.name));
+            }
+        }
+        if link.is_dry() {
+            Self::plan_items(link, &manifest, &deliveries);
+        }
+        let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
+        let Some(lists) = lists else {
+            plan(link, &mut deliveries, &authority).await?;
+            return Ok(Restored::new(&folder, results));
+        };
+        if !compare(link, screen, &lists, &mut deliveries, &mut results).await? {
+            return Ok(Restored::new(&folder, results));
+        }
+        // Equal files are skipped, and files that could not be compared are not sent.
+        let mut open: Vec<(Delivery, &mut FileItem)> = deliveries
+            .into_iter()
+            .zip(&mut results)
+            .filter(|(_, result)| result.more.state == State::NotTried)
+            .collect();
+        upload::confirm_uploads(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery))
+            .await?;
+        let mut sent = screen.parts_progress("files sent", open.len());
+        for (delivery, result) in &mut open {
+            // An unlisted file was not confirmed, so it is not deleted.
+            let replace = lists.existence(&delivery.file) != Existence::No;
+            let outcome =
+                upload(link, screen, delivery, UploadOptions { replace, ..OPTIONS }, &mut result.more.notes).await;
+            if !result.finish(outcome.map(Some)) {
+                break;
+            }
+            sent.advance(1);
+        }
+        drop(open);
+        Ok(Restored::new(&folder, results))
+    }
+}
+
+impl Restore {
+    /// Notes each file of the backup in a dry run.
+    fn plan_items(link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
+        let enabled = "whether the controller's file differs";
+        for entry in &manifest.files {
+            let Some(copy) = &entry.copy else { continue };
+            let file = controller_file(entry).ok();
+            let is_sent = deliveries.iter().any(|delivery| Some(&delivery.file) == file.as_ref());
+            let is_usual = file.and_then(|file| file.file_type()).is_some_and(|kind| DEFAULT_TYPES.contains(&kind));
+            link.plan_item(match (is_sent, is_usual) {
+                (true, _) => would_write(&entry.name, ("bytes", copy.bytes), enabled),
+                (false, true) => would_leave(&entry.name, NOT_CHOSEN),
+                (false, false) => would_leave(&entry.name, "parameters or system data; written only with --machine"),
+            });
+        }
+    }
+
+    /// Files to send, in the order of sending.
+    fn select_entries<'a>(&self, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
+        let copied = || manifest.files.iter().filter(|entry| entry.copy.is_some());
+        self.patterns.check(&copied().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
+        let mut chosen = Vec::new();
+        for entry in copied().filter(|entry| self.patterns.has(&entry.name)) {
+            let file = controller_file(entry)?;
+            if file.file_type().is_some_and(|kind| self.types.contains(&kind)) {
+                chosen.push((file, entry));
+            }
+        }
+        if chosen.is_empty() {
+            let message = "the backup has only lists, parameters or system data, which change the controller";
+            return Err(Failure::usage(message).hint("add --machine to send them"));
+        }
+        let place = |file: &FileName| ORDER.iter().position(|kind| Some(*kind) == file.file_type());
+        chosen.sort_by_key(|(file, _)| place(file));
+        Ok(chosen)
+    }
+}
+
+/// Finds the files that are equal on the controller; `false` if the work cannot continue.
+async fn compare(
+    link: &mut Link,
+    screen: &Screen,
+    lists: &Lists,
+    deliveries: &mut [Delivery],
+    results: &mut [FileItem],
+) -> Result<bool, Failure> {
+    for (Delivery { file, content }, result) in deliveries.iter_mut().zip(results) {
+        if lists.existence(file) == Existence::No {
+            continue;
+        }
+        match transfer::is_same(link, screen, file, content, OPTIONS.ignore_header).await {
+            Ok(true) => result.succeed(State::Kept),
+            Ok(false) => {}
+            Err(failure) => {
+                if !result.fail(failure) {
+                    return Ok(false);
+                }
+            }
+        }
+    }
+    Ok(true)
+}
+
+/// Notes in a dry run the requests after the lists.
+async fn plan(link: &mut Link, deliveries: &mut [Delivery], authority: &Authority<'_>) -> Result<(), Failure> {
+    authority.confirm(&Change::none()).await?;
+    for Delivery { file, .. } in &*deliveries {
+        let reason = Reason::about("if the file is listed: compares").depending_on("whether the file is listed");
+        link.plan_download(&file.save(), reason)?;
+    }
+    let reason = Reason::about("if it differs").depending_on("whether the file differs");
+    for delivery in deliveries {
+        upload::plan(link, delivery, OPTIONS, reason)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,344 @@
+//! File and list transfers over the link, with a message for every way in which a transfer can end.
+
+use std::time::Duration;
+
+use super::compare::Comparer;
+use super::content::Content;
+use crate::failure::refusal_failure;
+use crate::link::{Link, Refusal};
+use armctl_controller::yerc::files::{self, FileName, FileType, split_list};
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::session::{DownloadEnd, UploadEnd};
+use armctl_controller::yerc::table::service;
+use armctl_controller::yerc::wire::Status;
+use armctl_frame::backup::manifest::Hash;
+use armctl_frame::dry_run::Reason;
+use armctl_frame::failure::{Failure, Kind};
+pub use armctl_frame::items::describe_request;
+use armctl_frame::local_names::Target;
+use armctl_frame::output::Screen;
+use armctl_frame::output::progress::Progress;
+
+/// Maximum size of a file from a controller; real files have a few megabytes.
+const MAX_FILE: u64 = 1 << 30;
+/// Maximum size of a list: some hundred thousand names.
+const MAX_LIST: u64 = 4 << 20;
+
+/// No file of the requested type (DX 3.1).
+const NOTHING_LISTED: u32 = 0xE2A7;
+/// The file does not exist or is empty (DX 3.1).
+const NO_FILE_OR_EMPTY: u32 = 0xE29C;
+/// A job with this name exists.
+const JOB_EXISTS: &str = "0x4030";
+
+/// File names of one type, in the order of the controller.
+pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failure> {
+    list_by(link, &files::list(kind)).await
+}
+
+/// File names in the answer to a list request.
+pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>, Failure> {
+    let mut data = Vec::new();
+    let end = link
+        .download(request, MAX_LIST, None, |piece| {
+            data.extend_from_slice(piece);
+            Ok(())
+        })
+        .await?;
+    match end {
+        DownloadEnd::Finished => Ok(Vec::new()),
+        DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } if status.added == NOTHING_LISTED => {
+            Ok(Vec::new())
+        }
+        end => {
+            name_taken(service::LIST, &end)?;
+            let names = split_list(&data).map_err(|error| {
+                Failure::new(Kind::Malformed, error.to_string()).hint("record it with --trace and report it")
+            })?;
+            Ok(names.into_iter().map(<[u8]>::to_vec).collect())
+        }
+    }
+}
+
+/// Downloads a file; every block is passed to `take`.
+pub async fn fetch(
+    link: &mut Link,
+    file: &FileName,
+    take: impl FnMut(&[u8]) -> Result<(), Failure>,
+) -> Result<u64, Failure> {
+    name_taken(service::SAVE, &link.download(&file.save(), MAX_FILE, None, take).await?)
+}
+
+/// Like [`fetch`], for a file that was just listed: without content it is empty, not missing.
+pub async fn fetch_listed(
+    link: &mut Link,
+    file: &FileName,
+    take: impl FnMut(&[u8]) -> Result<(), Failure>,
+) -> Result<u64, Failure> {
+    match link.download(&file.save(), MAX_FILE, None, take).await? {
+        DownloadEnd::Nothing(Status { added: NO_FILE_OR_EMPTY, .. }) => Ok(0),
+        end => name_taken(service::SAVE, &end),
+    }
+}
+
+/// Whether the controller has a file with this content. A file that it does not send counts as different.
+pub async fn is_same(
+    link: &mut Link,
+    screen: &Screen,
+    file: &FileName,
+    content: &mut Content,
+    ignore_header: bool,
+) -> Result<bool, Failure> {
+    let name = link.encoding.decode(file.as_bytes());
+    let mut progress = screen.bytes_progress(&format!("{name} (comparing)"), Some(content.size()));
+    let mut comparer = Comparer::new(content.pieces()?, ignore_header);
+    let fetched = fetch(link, file, |block| {
+        progress.advance(block.len() as u64);
+        comparer.take(block)
+    });
+    match fetched.await {
+        Ok(_) => Ok(comparer.finish()?.0.first_difference.is_none()),
+        Err(failure) if failure.kind == Kind::Refused => Ok(false),
+        Err(failure) => Err(failure),
+    }
+}
+
+/// Downloads a file to a local one.
+pub async fn save(
+    link: &mut Link,
+    screen: &Screen,
+    label: &str,
+    target: &Target,
+    download: Download<'_>,
+) -> Result<Hash, Failure> {
+    let mut draft = target.begin()?;
+    let mut progress = screen.bytes_progress(label, None);
+    let mut hash = Hash::default();
+    let take = |block: &[u8]| {
+        progress.advance(block.len() as u64);
+        hash.take(block);
+        draft.write(block)
+    };
+    match download {
+        Download::Named(file) => fetch(link, file, take).await?,
+        Download::Listed(file) => fetch_listed(link, file, take).await?,
+    };
+    draft.commit()?;
+    Ok(hash)
+}
+
+/// A file to download.
+#[derive(Debug, Clone, Copy)]
+pub enum Download<'a> {
+    /// A file that may be missing.
+    Named(&'a FileName),
+    /// A file that was just listed; it may be empty.
+    Listed(&'a FileName),
+}
+
+/// Batch backup: `None` if the controller has created it, its size if it was received.
+pub async fn fetch_backup(
+    link: &mut Link,
+    wait: Duration,
+    take: impl FnMut(&[u8]) -> Result<(), Failure>,
+) -> Result<Option<u64>, Failure> {
+    match link.download(&files::batch_backup(), MAX_FILE, Some(wait), take).await? {
+        DownloadEnd::Finished => Ok(None),
+        end => name_taken(service::SAVE, &end).map(Some),
+    }
+}
+
+/// Deletes a file.
+pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
+    let reply = link.raw(&file.delete()).await.map_err(|failure| match failure.kind {
+        Kind::OutcomeUnknown => failure.hint("`yerc file list` shows whether the file still exists"),
+        _ => failure,
+    })?;
+    match reply.status {
+        // Success with an added status means that the file does not exist (DX 3.1).
+        status if status.is_ok() && status.added == 0 => Ok(()),
+        status => Err(refusal_failure(Refusal::of_file(service::DELETE, status))),
+    }
+}
+
+/// Uploads a file. Returns the content that was sent.
+pub async fn send(
+    link: &mut Link,
+    file: &FileName,
+    content: &mut Content,
+    progress: &mut Progress,
+) -> Result<Hash, Failure> {
+    let total = content.size();
+    let path = content.path().display().to_string();
+    let mut pieces = content.pieces()?;
+    let end = link
+        .upload(&file.load(), || {
+            let piece = pieces.next_piece()?;
+            progress.advance(piece.len() as u64);
+            Ok(piece)
+        })
+        .await?;
+    let name = link.encoding.decode(file.as_bytes());
+    match end {
+        UploadEnd::Unnumbered { .. } if is_listed(link, file).await => {}
+        end => drop(name_sent(&end, total, &name, &path)?),
+    }
+    Ok(pieces.hash)
+}
+
+/// Whether the controller lists a file with this name.
+async fn is_listed(link: &mut Link, file: &FileName) -> bool {
+    let Some(kind) = file.file_type() else { return false };
+    list(link, kind).await.is_ok_and(|names| names.iter().any(|name| name.eq_ignore_ascii_case(file.as_bytes())))
+}
+
+/// Notes in a dry run the requests of [`send`].
+pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason: Reason<'_>) -> Result<(), Failure> {
+    let mut pieces = content.pieces()?;
+    link.plan_upload(&file.load(), reason, || pieces.next_piece())?;
+    let Some(kind) = file.file_type() else { return Ok(()) };
+    let without_block_number =
+        Reason::about("whether the file exists, if the last acknowledgement has no block number");
+    let mark = "whether the last acknowledgement has a block number";
+    let depends_on = reason.depends_on.map_or_else(|| mark.to_owned(), |before| format!("{before}, and {mark}"));
+    Ok(link.plan_download(&files::list(kind), without_block_number.depending_on(&depends_on))?)
+}
+
+/// Notes in a dry run several downloads, one after the other.
+pub fn plan_all(link: &mut Link, about: &str, requests: impl IntoIterator<Item = Request>) -> Result<(), Failure> {
+    Ok(requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::about(about)))?)
+}
+
+/// Purpose of list requests in dry runs.
+pub const LISTS: &str = "existing files";
+
+/// Whether the controller refused a file because a job with that name exists.
+pub fn is_job_exists(failure: &Failure) -> bool {
+    failure.kind == Kind::Refused && failure.code.as_deref() == Some(JOB_EXISTS)
+}
+
+/// Failure for a file that the controller does not list.
+pub fn not_listed() -> Failure {
+    Failure::new(Kind::Refused, "the file does not exist on the controller")
+        .hint("`yerc file list` shows the names; names are case-sensitive")
+}
+
+/// Received size, or the failure of the transfer.
+pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
+    match *end {
+        DownloadEnd::Complete { bytes, .. } => Ok(bytes),
+        DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => {
+            Err(refusal_failure(Refusal::of_file(service, status)))
+        }
+        DownloadEnd::Refused { status, bytes } => Err(describe_request(
+            &format!("aborted after {bytes} bytes"),
+            refusal_failure(Refusal::of_file(service, status)),
+        )),
+        DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller reported success but sent nothing")
+            .hint("`yerc file list` shows whether the file exists; it may be empty")),
+        DownloadEnd::Violated { violation, bytes } => {
+            Err(Failure::new(Kind::Malformed, format!("the transfer failed after {bytes} bytes: {violation}"))
+                .hint("no data was saved; repeat the command, and record it with --trace if the problem persists"))
+        }
+        DownloadEnd::TooLarge { limit, .. } => {
+            Err(Failure::new(Kind::Malformed, format!("the controller sends more than {limit} bytes"))
+                .hint("no known controller has such large files; record it with --trace and report it"))
+        }
+        DownloadEnd::NoAnswer { bytes, counters } => {
+            Err(Failure::new(Kind::NoAnswer, format!("no answer after {bytes} bytes ({counters})"))
+                .hint("repeat the command (no data was saved), or set a longer --timeout"))
+        }
+    }
+}
+
+fn name_sent(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Failure> {
+    let unknown = |message: String| {
+        Err(Failure::new(Kind::OutcomeUnknown, message)
+            .hint(format!("`yerc file diff {name} {path}` shows what the controller has now")))
+    };
+    match *end {
+        UploadEnd::Complete { bytes, .. } => Ok(bytes),
+        UploadEnd::Unnumbered { .. } => unknown(format!(
+            "all data was sent, but the last acknowledgement has no block number and {name} is not listed"
+        )),
+        UploadEnd::Empty => Err(Failure::usage("an empty file cannot be sent").hint("check that it is the right file")),
+        UploadEnd::TooLong { .. } => {
+            Err(Failure::usage("the file is too long for a transfer").hint("check that it is the right file"))
+        }
+        UploadEnd::Refused { status, sent, repeated: true, .. } if sent >= total => {
+            let Failure { message, .. } = refusal_failure(Refusal::of_file(service::LOAD, status));
+            unknown(format!("the last block was sent again and then refused: {message} The file may exist"))
+        }
+        // Refused at the start, or the whole file at the end.
+        UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => {
+            Err(refusal_failure(Refusal::of_file(service::LOAD, status)))
+        }
+        UploadEnd::Refused { status, taken, .. } => Err(describe_request(
+            &format!("after {taken} of {total} bytes"),
+            refusal_failure(Refusal::of_file(service::LOAD, status)),
+        )),
+        UploadEnd::OutcomeUnknown { sent: 0, counters, .. } => {
+            let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
+            unknown(format!(
+                "the request was sent once without an answer{seen}: no data was sent, but the controller may wait for \
+                 it"
+            ))
+        }
+        UploadEnd::OutcomeUnknown { sent, .. } if sent >= total => {
+            unknown("all data was sent, but the last acknowledgement is missing: the file may exist".to_owned())
+        }
+        UploadEnd::OutcomeUnknown { taken, .. } => {
+            unknown(format!("no acknowledgement after {taken} of {total} bytes: part of the file may exist"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use armctl_controller::yerc::session::Counters;
+    use armctl_controller::yerc::table::service;
+
+    #[test]
+    fn refused_repeat_of_the_last_block_leaves_the_outcome_unknown() {
+        let status = Status::refused(0xE4A1);
+        let end = |sent, repeated| {
+            name_sent(&UploadEnd::Refused { status, sent, taken: 0, repeated }, 9, "A.JBI", "a.jbi").unwrap_err()
+        };
+        assert_eq!(end(9, true).kind, Kind::OutcomeUnknown);
+        assert_eq!(
+            end(9, true).hint.as_deref(),
+            Some("`yerc file diff A.JBI a.jbi` shows what the controller has now")
+        );
+        assert_eq!(end(9, false).kind, Kind::Refused);
+        assert_eq!(end(0, true).kind, Kind::Refused);
+        let counters = Counters::default();
+        let lost = name_sent(&UploadEnd::OutcomeUnknown { sent: 9, taken: 0, counters }, 9, "A.JBI", "a.jbi");
+        assert_eq!(lost.unwrap_err().kind.exit(), 6);
+    }
+
+    #[test]
+    fn missing_file_is_a_refusal_with_a_hint() {
+        for status in
+            [Status { code: 0, added_size: 1, added: 0xE29C }, Status::refused(0x4040), Status::refused(0xE2B3)]
+        {
+            let end =
+                if status.is_ok() { DownloadEnd::Nothing(status) } else { DownloadEnd::Refused { status, bytes: 0 } };
+            let failure = name_taken(service::SAVE, &end).unwrap_err();
+            assert_eq!(failure.kind, Kind::Refused);
+            assert!(failure.hint.unwrap().contains("file list"));
+        }
+    }
+
+    #[test]
+    fn broken_transfer_creates_no_file() {
+        let status = Status::refused(0xE28B);
+        for (end, kind) in [
+            (DownloadEnd::Refused { status, bytes: 479 }, Kind::Refused),
+            (DownloadEnd::Finished, Kind::Malformed),
+            (DownloadEnd::TooLarge { limit: 5, bytes: 4 }, Kind::Malformed),
+        ] {
+            assert_eq!(name_taken(service::SAVE, &end).unwrap_err().kind, kind);
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! `yerc job list`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::file::{LISTS, Shown, list, plan_all};
+use crate::link::Yerc;
+use crate::selected_job::SelectedJob;
+use armctl_controller::yerc::files::{self, FileType};
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Table, View};
+use armctl_frame::{Command, Context, Report};
+
+/// Lists the jobs of the controller (FS and DX 3.4.4), and marks the selected job.
+#[derive(Debug, Args)]
+pub struct List {}
+
+impl Command for List {
+    type Family = Yerc;
+    type Report = Listing;
+    const ID: &'static str = "yerc.job.list";
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
+        let Context { link, screen, .. } = context;
+        let selected = SelectedJob::ask(link).await?;
+        if link.is_dry() {
+            plan_all(link, LISTS, [files::list(FileType::Jbi)])?;
+            return Ok(Listing::default());
+        }
+        let _looking = screen.spinner("looking for jobs");
+        let jobs = list(link, FileType::Jbi).await?.into_iter().map(|file| {
+            let name = super::stem(&file);
+            Listed { name: Shown::new(link.encoding, name), selected: selected.is(name) }
+        });
+        Ok(Listing { jobs: jobs.collect() })
+    }
+}
+
+/// Jobs of a controller.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+pub struct Listing {
+    /// In the order of the controller.
+    jobs: Vec<Listed>,
+}
+
+/// A job.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Listed {
+    /// Name without `.JBI`.
+    #[serde(flatten)]
+    name: Shown,
+    /// Whether a start would run this job.
+    selected: bool,
+}
+
+impl Report for Listing {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["job", "state"], "no jobs");
+        for Listed { name, selected } in &self.jobs {
+            table.row([name.name.as_str().into(), Cell::from(if *selected { "selected" } else { "" })]);
+        }
+        View::table(table)
+    }
+}

@@ -1,0 +1,66 @@
+//! Text of the current line of a job, from the job file (`job show --source`).
+//!
+//! The protocol has no dates, sizes or hashes of files, so a cached file could be outdated. The file is downloaded
+//! each time, and its hash identifies the version.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::file::{exact, fetch};
+use crate::link::Link;
+use armctl_controller::yerc::payload::JobInfo;
+use armctl_frame::backup::manifest::Hash;
+use armctl_frame::failure::Failure;
+
+/// A line of a job file.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Source {
+    /// File on the controller.
+    file: String,
+    /// SHA-256 of the file, as in backups.
+    sha256: String,
+    /// Text of the line; null if the file has no such line.
+    text: Option<String>,
+}
+
+impl Source {
+    /// Downloads the file of a job and extracts the line.
+    pub async fn read(link: &mut Link, job: &JobInfo) -> Result<Self, Failure> {
+        let name = [job.name.as_bytes(), b".JBI"].concat();
+        let (mut hash, mut content) = (Hash::default(), Vec::new());
+        fetch(link, &exact(name.clone())?, |piece| {
+            hash.take(piece);
+            content.extend_from_slice(piece);
+            Ok(())
+        })
+        .await?;
+        let text = line(&content, job.line).map(|line| link.encoding.decode(line));
+        Ok(Self { file: link.encoding.decode(&name), sha256: hash.hex(), text })
+    }
+
+    /// Text of the line.
+    pub fn text(&self) -> Option<&str> {
+        self.text.as_deref()
+    }
+}
+
+/// Line by the controller's number: NOP, the first instruction, is 0.
+fn line(content: &[u8], number: u32) -> Option<&[u8]> {
+    let lines = content.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
+    lines.skip_while(|line| *line != b"NOP").nth(usize::try_from(number).ok()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_lines_from_nop() {
+        let file = b"/JOB\r\n//NAME A\r\n//INST\r\nNOP\r\nMOVJ C00000 VJ=0.78\r\n'NOTE\r\nEND\r\n";
+        assert_eq!(line(file, 0), Some(&b"NOP"[..]));
+        assert_eq!(line(file, 1), Some(&b"MOVJ C00000 VJ=0.78"[..]));
+        assert_eq!(line(file, 3), Some(&b"END"[..]));
+        assert_eq!(line(file, 9), None);
+        assert_eq!(line(b"/JOB\r\n", 0), None);
+    }
+}

@@ -1,0 +1,61 @@
+//! `yerc stop` and `yerc job stop`.
+
+use clap::Args;
+
+use crate::link::Yerc;
+use armctl_controller::Risk;
+use armctl_controller::yerc::query::{self, Query as _};
+use armctl_frame::failure::Failure;
+use armctl_frame::settings_report::{Done, NewValue, Old};
+use armctl_frame::{Command, Context};
+
+/// Stops the running job and all motion: HOLD on, as `yerc hold on` (FS and DX 3.3.20).
+#[derive(Debug, Args)]
+pub struct Stop {}
+
+impl Command for Stop {
+    type Family = Yerc;
+    type Report = Done;
+    const ID: &'static str = "yerc.job.stop";
+
+    fn risk(&self) -> Risk {
+        query::Hold(true).risk()
+    }
+
+    fn is_stop(&self) -> bool {
+        true
+    }
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
+        hold(context).await
+    }
+}
+
+/// Stops all motion, for `yerc stop`.
+#[derive(Debug, Args)]
+pub struct Halt {}
+
+impl Command for Halt {
+    type Family = Yerc;
+    type Report = Done;
+    const ID: &'static str = "yerc.stop";
+
+    fn risk(&self) -> Risk {
+        query::Hold(true).risk()
+    }
+
+    fn is_stop(&self) -> bool {
+        true
+    }
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
+        hold(context).await
+    }
+}
+
+async fn hold(context: Context<'_, Yerc>) -> Result<Done, Failure> {
+    context.link.ask(&query::Hold(true)).await?;
+    let words = "HOLD is on and the job is stopped; to continue it, use `yerc hold off` and `yerc job start`";
+    // A stop must not be delayed by a read, as in `hold on`.
+    Ok(NewValue::of("held", true, words).replaces(Old::UNREAD))
+}

@@ -1,0 +1,56 @@
+//! Stored model of a controller: used for a day, and dropped if the controller reports a different model.
+
+use armctl_client::yerc::Client;
+use armctl_frame::output::Screen;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::model::{ModelCache, ReportedModel};
+use armctl_frame::settings::target::Address;
+
+/// Location and content of the stored model.
+#[derive(Debug)]
+pub(super) struct CachedModel {
+    store: Option<ModelCache>,
+    address: Address,
+    stored: Option<ReportedModel>,
+}
+
+impl CachedModel {
+    /// Passes the stored model to a client, if the user selects no model and the stored one is recent. A dry run,
+    /// which asks no controller, also uses an older one.
+    pub(super) fn recall(robot: &Robot, client: &mut Client) -> Self {
+        let target = &robot.target.value;
+        let address = target.address();
+        let store = if target.is_simulated() { None } else { ModelCache::of_user() };
+        let is_open = client.known_model().is_none();
+        let stored = store.as_ref().filter(|_| is_open).and_then(|store| store.find(&address));
+        if let Some(kept) = stored.as_ref().filter(|kept| kept.is_fresh() || client.is_dry()) {
+            client.remember(kept.model());
+        }
+        Self { store, address, stored }
+    }
+
+    /// Stores the model that the controller reported, unless it is already stored and recent. `news` is `None` if its
+    /// software belongs to no known model: then the stored model is wrong.
+    pub(super) fn store_model(&mut self, news: Option<ReportedModel>, screen: &Screen, label: &str) {
+        let Some(store) = &self.store else { return };
+        let Some(news) = news else {
+            if self.stored.take().is_some()
+                && let Err(error) = store.forget(&self.address)
+            {
+                screen.detail(1, &format!("{label}: the stored model is wrong and could not be removed: {error}"));
+            }
+            return;
+        };
+        let is_same = |kept: &ReportedModel| kept.is_fresh() && kept.is_same_as(&news);
+        if self.stored.as_ref().is_some_and(is_same) {
+            return;
+        }
+        let (model, software) = (news.model(), news.software());
+        let unverified = model.unproven().map(|what| format!("; unproven: {what}")).unwrap_or_default();
+        screen.detail(1, &format!("{label}: {model}, from software {software}; stored for one day{unverified}"));
+        if let Err(error) = store.store(&self.address, news.clone()) {
+            screen.detail(1, &format!("{label}: the model could not be stored and is read each time: {error}"));
+        }
+        self.stored = Some(news);
+    }
+}

@@ -1,0 +1,38 @@
+//! Start of a simulated controller.
+
+use std::path::Path;
+
+use anyhow::Context as _;
+
+pub use armctl_client::yerc::Simulated;
+use armctl_controller::yerc::Model;
+use armctl_controller::yerc::simulator::Start;
+use armctl_files as files;
+use armctl_frame::failure::Failure;
+use armctl_transport::fault::FaultSpec;
+
+/// Start state: from a file, or the built-in state of the model, with the busy rate of the faults.
+pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> Result<Start, Failure> {
+    let start = file.map_or_else(|| Ok(Start::for_model(model)), load)?;
+    Ok(match faults {
+        Some(faults) => start.with_busy(faults.busy.fraction()),
+        None => start,
+    })
+}
+
+/// Maximum size of a file: more than a controller can store.
+const MAX_FILE_SIZE: u64 = 256 << 20;
+
+fn load(path: &Path) -> Result<Start, Failure> {
+    let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
+    // Files that the state refers to are relative to its folder.
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let read = |name: &str| {
+        let path = folder.join(name);
+        files::read(&path, MAX_FILE_SIZE).map_err(|error| format!("{}: {error}", path.display()))
+    };
+    Start::parse(&text, read).map_err(|error| {
+        Failure::usage(format!("{}: {error}", path.display()))
+            .hint("`armctl help simulator` shows the form of the file")
+    })
+}

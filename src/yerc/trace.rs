@@ -1,0 +1,47 @@
+//! Trace of datagrams.
+
+use std::net::SocketAddr;
+
+use armctl_controller::yerc::describe::{Sender, summary};
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::wire::RequestFrame;
+use armctl_frame::Access;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::trace;
+use armctl_transport::tap::Direction;
+
+/// Trace of one link.
+#[derive(Debug)]
+pub struct Trace {
+    record: trace::Trace,
+    /// Last request, because an answer does not identify its command.
+    asked: Option<Request>,
+}
+
+impl Trace {
+    /// Opens the trace that the options request.
+    pub fn open(access: &Access, screen: &Screen) -> Result<Self, Failure> {
+        Ok(Self { record: trace::Trace::of_network(access, screen)?, asked: None })
+    }
+
+    /// Records a datagram; `ends` has the own address first.
+    pub fn record(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
+        if self.record.level() > 0 {
+            let sender = match direction {
+                Direction::Sent => Sender::Client,
+                Direction::Received => Sender::Controller,
+            };
+            self.record.message(direction, &summary(bytes, sender, self.asked.as_ref()), bytes);
+            if direction == Direction::Sent {
+                self.asked = RequestFrame::parse(bytes).ok().map(Request::from);
+            }
+        }
+        self.record.datagram(direction, ends, bytes);
+    }
+
+    /// Closes the trace and reports whether it is complete.
+    pub fn finish(&mut self) -> Result<(), Failure> {
+        self.record.finish()
+    }
+}

@@ -1,0 +1,263 @@
+//! `yrcx alarm list|history|reset` (4.7.7, 4.8.3).
+
+use clap::Args;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::info::{Part, entry};
+use super::link::{Link, Yrcx};
+use super::numbers::Numbers;
+use super::several::read_numbers;
+use crate::refusal::BuildOrder as _;
+use armctl_controller::Risk;
+use armctl_controller::yrcx::signal::output;
+use armctl_controller::yrcx::table;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::dry_run::{Known as _, Reason, unknown};
+use armctl_frame::face::shared_commands::CommonReport;
+use armctl_frame::failure::{self, Failure};
+use armctl_frame::output::view::View;
+use armctl_frame::robot::alarm::{AlarmEntry, AlarmState, Alarms, Kind, Nothing, Row};
+use armctl_frame::settings::{Robot, alarms};
+use armctl_frame::settings_report::{Done, NewValue, Old};
+use armctl_frame::watch::{Watch, Watchable, Watched};
+use armctl_frame::{Command, Context, Report, commands};
+
+commands! {
+    /// Alarms.
+    pub enum Alarm {
+        /// Show the present alarm and what to do
+        List(List),
+        /// Alarm history, latest first
+        History(History),
+        /// Print alarms when they occur and when they clear
+        Watch(Watch<List>),
+        /// Reset the alarm
+        Reset(Reset),
+    }
+}
+
+/// Present alarm: the latest entry of the history while SO(03) or SO(15) is on.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. It may have been reset since."
+)]
+pub struct List {}
+
+impl Command for List {
+    type Family = Yrcx;
+    type Report = Alarms<Part, Signals>;
+    const ID: &'static str = "yrcx.alarm.list";
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part, Signals>, Failure> {
+        let link = context.link;
+        let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).order()?;
+        if link.is_dry() {
+            link.plan_depending(
+                &latest,
+                &latest,
+                Reason::about("which").depending_on("the signals: it is read if SO(03) or SO(15) is on"),
+            );
+        }
+        let image = link.look().await?;
+        let (alarm, warning) = (output::ALARM.is_on(&image), output::WARNING.is_on(&image));
+        let mut alarms = Vec::new();
+        if alarm || warning {
+            let kind = if alarm { Kind::Alarm } else { Kind::Warning };
+            if let Some(entry) = entry(&link.ask(&latest).await?.values, kind) {
+                alarms.push(Row::new(1, "alarm 1", explained(entry, context.robot)));
+            }
+        }
+        Ok(Alarms { alarms, standing: Signals { alarm, warning }, asked: 1 })
+    }
+}
+
+/// Latest entry of the history; `None` if it is empty or was not read. It has no time, so the same alarm a second time
+/// is the same entry.
+pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, Failure> {
+    let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).order()?;
+    if link.is_dry() {
+        link.plan(&latest, "latest alarm, to recognize a new one");
+        return Ok(None);
+    }
+    match link.ask(&latest).await {
+        Ok(answer) => Ok(entry(&answer.values, Kind::Alarm)),
+        Err(failure) if failure.kind == failure::Kind::Refused => Ok(None),
+        Err(failure) => Err(failure),
+    }
+}
+
+/// Adds the text of `alarms.toml`.
+fn explained(entry: AlarmEntry<Part>, robot: &Robot) -> Result<AlarmEntry<Part>, Failure> {
+    let code = entry.alarm.code.clone().unwrap_or_default();
+    Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
+}
+
+impl Watchable for List {
+    const WATCH: &'static str = "yrcx.alarm.watch";
+    const WATCHED: Watched =
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
+}
+
+/// Alarm signals.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Signals {
+    /// SO(03): alarm present.
+    alarm: bool,
+    /// SO(15): warning present.
+    warning: bool,
+}
+
+impl AlarmState for Signals {
+    fn none(&self) -> &'static str {
+        match (self.alarm, self.warning) {
+            (true, _) => "an alarm (SO(03) is on) that is not in the history",
+            (false, true) => "a warning (SO(15) is on) that is not in the history",
+            (false, false) => "no alarm",
+        }
+    }
+}
+
+/// Reads entries of the alarm history, one request per entry (4.7.7).
+#[derive(Debug, Args)]
+#[command(after_help = "`armctl explain yrcx CODE` shows what to do about an alarm.")]
+pub struct History {
+    /// Numbers in the history, 1 (the latest) to 500: 10, or 1..50
+    #[arg(value_name = "N", value_delimiter = ',', default_value = "1..10",
+        value_parser = |text: &str| Numbers::parse(table::Command::AlarmHistory, Key::History, text))]
+    numbers: Vec<Numbers>,
+}
+
+impl Command for History {
+    type Family = Yrcx;
+    type Report = Alarms<Part>;
+    const ID: &'static str = "yrcx.alarm.history";
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part>, Failure> {
+        let robot = context.robot;
+        let field = (table::Command::AlarmHistory, Key::History);
+        let of = |values: &Values| entry(values, Kind::Alarm);
+        let read = read_numbers(context, ["alarm", "alarms"], field, &self.numbers, of).await?;
+        let mut alarms = Vec::new();
+        for (number, outcome) in read {
+            let Some(mut outcome) = outcome.with_defaults() else { continue };
+            if let Some(entry) = outcome.data_mut() {
+                *entry = explained(entry.clone(), robot)?;
+            }
+            alarms.push(Row { list: None, index: u16::try_from(number).unwrap_or(u16::MAX), outcome });
+        }
+        Ok(Alarms { asked: alarms.len(), alarms, standing: Nothing {} })
+    }
+}
+
+/// Resets the alarm.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works when remote commands \
+                  are not accepted."
+)]
+pub struct Reset {}
+
+impl Command for Reset {
+    type Family = Yrcx;
+    type Report = WasReset;
+    const ID: &'static str = "yrcx.alarm.reset";
+
+    fn risk(&self) -> Risk {
+        table::Command::AlarmReset.row().risk
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
+        let Context { link, screen, .. } = context;
+        let order = link.draft(table::Command::AlarmReset)?.order()?;
+        let old = Old::read(link.look().await.known()?.map(|image| output::ALARM.is_on(&image)));
+        link.ask(&order).await?;
+        let Some(image) = link.look().await.known()? else { return Err(unknown()) };
+        let (alarm, servo_on) = (output::ALARM.is_on(&image), output::SERVO_ON.is_on(&image));
+        let words = if alarm { "alarm reset accepted; an alarm is still present" } else { "alarm reset" };
+        let report = WasReset { done: NewValue::of("alarm", alarm, words).replaces(old), alarm, servo_on };
+        if !report.servo_on {
+            if link.is_held() {
+                screen.note(POWER_OFF);
+            } else {
+                let alarm = link.link_alarm();
+                screen.note(&format!(
+                    "hint: motor power is off, and closing this connection raises alarm {alarm} again. Keep it open \
+                     with `armctl session open`, then `yrcx alarm reset` and `yrcx recover`"
+                ));
+            }
+        }
+        Ok(report)
+    }
+}
+
+/// Next step when an alarm has switched the motors off.
+const POWER_OFF: &str = "hint: motor power is off. `yrcx recover` clears the emergency stop and switches the servos on";
+
+/// Result of an alarm reset.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct WasReset {
+    #[serde(flatten)]
+    done: Done,
+    /// SO(03) after the reset: an alarm is still present.
+    alarm: bool,
+    /// SO(02): motor power is on.
+    servo_on: bool,
+}
+
+impl CommonReport for WasReset {
+    type Core = Done;
+
+    fn core(&self) -> Done {
+        self.done.clone()
+    }
+}
+
+impl Report for WasReset {
+    fn view(&self) -> View {
+        self.done.view()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{Reply, Scripted, answer, example, objection, read_example, run_on, words};
+    use armctl_controller::yrcx::signal::output;
+
+    #[test]
+    fn the_history_is_asked_for_by_its_numbers() {
+        assert_eq!(words(&["alarm", "history", "10"]).unwrap(), [example("4.7.7-reference")]);
+        let past = &read_example("4.7.7-reference", &["alarm", "history", "10"])["alarms"];
+        assert_eq!((&past[0]["index"], &past[0]["code"]), (&json!(10), &json!("12.551")));
+        assert_eq!((&past[0]["place"], &past[0]["part"]), (&json!("controller 1"), &json!("option slot 1")));
+        assert_eq!(words(&["alarm", "history"]).unwrap().len(), 10);
+        assert!(objection(&["alarm", "history", "0"]).contains("allowed: 1 to 500"));
+        let mut end = [0; 16];
+        end[0] = 0x0200;
+        let (read, _) = run_on(Scripted::new([Reply::Ends(1, end)]), &["alarm", "history", "1"]);
+        assert_eq!(read.unwrap()["alarms"], json!([]), "an empty one is left out");
+    }
+
+    #[test]
+    fn what_is_present_is_the_latest_while_a_signal_says_so() {
+        let none = json!({ "alarm": false, "warning": false, "alarms": [] });
+        let (data, peer) = run_on(Scripted::new([]), &["alarm", "list"]);
+        assert_eq!((data.unwrap(), peer.taken.len()), (none, 0), "nothing is asked");
+        let mut shown = Scripted::new([Reply::Ends(1, answer("4.7.7-reference"))]);
+        output::ALARM.set(&mut shown.image, true);
+        let (data, peer) = run_on(shown, &["alarm", "list"]);
+        let data = data.unwrap();
+        assert_eq!((&data["alarm"], &data["alarms"][0]["code"]), (&json!(true), &json!("12.551")));
+        assert_eq!(peer.taken[0][2], 1, "the latest");
+    }
+
+    #[test]
+    fn the_example_of_the_manual() {
+        assert_eq!(words(&["alarm", "reset"]).unwrap(), [example("4.8.3-reset")]);
+        let read = read_example("4.8.3-reset", &["alarm", "reset"]);
+        assert_eq!((&read["alarm"], &read["servo_on"]), (&false.into(), &false.into()));
+    }
+}

@@ -1,0 +1,401 @@
+//! Arguments that motion commands share. Numbers stay text: the codec reads them in the unit of their field and
+//! checks their range.
+
+use clap::{Args, ValueEnum};
+
+use super::position::Unit;
+use armctl_controller::typed;
+use armctl_controller::yrcx::order::Draft;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::failure::Failure;
+use armctl_frame::wait_arguments::MotionEnd;
+
+/// Robot of the controller (`--unit`), for the question before a motion.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Which {
+    #[arg(from_global)]
+    unit: u8,
+}
+
+impl Which {
+    /// `robot 2`; robot 1 without `--unit`.
+    pub fn name(self) -> String {
+        format!("robot {}", self.unit.max(1))
+    }
+
+    /// `robot 2`; all robots without `--unit`.
+    pub fn name_or_all(self) -> String {
+        if self.unit == 0 { "all robots".to_owned() } else { self.name() }
+    }
+}
+
+/// Speed options.
+#[derive(Debug, Args)]
+pub struct Pace {
+    /// Percent, as in 50 or 50%, instead of the program speed
+    #[arg(long, value_name = "SPEED", value_parser = speed)]
+    pub speed: Option<Speed>,
+    /// Percent of the robot's maximum, in steps of 0.01
+    #[arg(long, value_name = "PERCENT", conflicts_with = "speed")]
+    pub speed_of_max: Option<String>,
+}
+
+/// A speed as typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Speed {
+    /// Percent, instead of the program speed.
+    Percent(String),
+    /// Speed of the tool.
+    MmS(String),
+}
+
+const WHOLE: &str = "a speed is whole percent as in 50 or 50%, or 200mm/s; --speed-of-max takes steps of 0.01 %";
+
+fn speed(text: &str) -> Result<Speed, String> {
+    let number = |text: &str| {
+        let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        if is_number { Ok(text.to_owned()) } else { Err(WHOLE) }
+    };
+    let speed = match text.strip_suffix("mm/s") {
+        Some(text) => number(text).map(Speed::MmS),
+        None => number(text.strip_suffix('%').unwrap_or(text)).map(Speed::Percent),
+    };
+    speed.map_err(str::to_owned)
+}
+
+impl Pace {
+    /// Sets the speed of axes.
+    pub fn put(&self, draft: Draft) -> Result<Draft, Failure> {
+        match &self.speed {
+            Some(Speed::MmS(_)) => Err(Failure::usage("a speed in mm/s needs a linear or circular move")
+                .hint("use percent, as in --speed 50, or add --linear")),
+            _ => Ok(self.put_linear(draft)),
+        }
+    }
+
+    /// Sets the speed of the tool along a line or an arc.
+    pub fn put_linear(&self, draft: Draft) -> Draft {
+        let draft = draft.with_some(Key::SpeedOfMax, self.speed_of_max.clone());
+        match self.speed.clone() {
+            None => draft,
+            Some(Speed::Percent(text)) => draft.with(Key::SpeedPercent, text),
+            Some(Speed::MmS(text)) => draft.with(Key::SpeedMmS, text),
+        }
+    }
+
+    /// `at 50 %`.
+    pub fn describe(&self) -> String {
+        match (&self.speed, &self.speed_of_max) {
+            (Some(Speed::Percent(percent)), _) => format!("at {percent} %"),
+            (Some(Speed::MmS(mm_s)), _) => format!("at {mm_s} mm/s"),
+            (None, Some(percent)) => format!("at {percent} % of the maximum"),
+            (None, None) => "at the program speed".to_owned(),
+        }
+    }
+}
+
+/// Acceleration and deceleration options.
+#[derive(Debug, Args)]
+pub struct Ramps {
+    /// Acceleration in percent
+    #[arg(long, value_name = "PERCENT")]
+    accel: Option<String>,
+    /// Deceleration in percent
+    #[arg(long, value_name = "PERCENT")]
+    decel: Option<String>,
+}
+
+impl Ramps {
+    /// Sets both, if the command has the fields.
+    pub fn put(&self, draft: Draft, command: Command) -> Result<Draft, Failure> {
+        let row = command.row();
+        if (self.accel.is_some() || self.decel.is_some()) && row.request().all(|field| field.key != Key::Accel) {
+            return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id)).hint(
+                "remove them: only moves to a point without an arch accept them. Other moves use the robot's \
+                 parameters",
+            ));
+        }
+        Ok(draft.with_some(Key::Accel, self.accel.clone()).with_some(Key::Decel, self.decel.clone()))
+    }
+}
+
+/// Selection of the axes that move.
+#[derive(Debug, Args)]
+pub struct Axes {
+    /// Axes that move, as in 1,3; default: all
+    #[arg(long, value_name = "AXES")]
+    axes: Option<String>,
+}
+
+impl Axes {
+    /// Sets the selection.
+    pub fn put(&self, draft: Draft) -> Draft {
+        draft.with_some(Key::Axes, self.axes.clone())
+    }
+
+    /// Sets the selection, with a number for each axis; see [`Axes::pairs`].
+    pub fn put_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft, Failure> {
+        let pairs = self.pairs(given)?;
+        let draft = if self.names_some(given) {
+            let axes: Vec<String> = pairs.iter().map(|(axis, _)| axis.to_string()).collect();
+            draft.with(Key::Axes, axes.join(","))
+        } else {
+            draft
+        };
+        Ok(pairs.into_iter().fold(draft, |draft, (axis, text)| draft.with(Key::AXES[axis - 1], text)))
+    }
+
+    /// Pairs of axis (1 to 4) and number, in the order typed: `--axes 3,2 --to 10,20` and `--to 3=10,2=20` mean the
+    /// same.
+    pub fn pairs<'a>(&self, given: &'a [String]) -> Result<Vec<(usize, &'a str)>, Failure> {
+        let named: Vec<Option<(&str, &str)>> = given.iter().map(|text| text.split_once('=')).collect();
+        let pairs: Vec<(usize, &str)> = match named.into_iter().collect::<Option<Vec<_>>>() {
+            Some(_) if self.axes.is_some() => {
+                return Err(Failure::usage("the axes are named twice: by --axes and with the numbers")
+                    .hint("name each axis once, as in --to 1=300,3=10"));
+            }
+            Some(named) => {
+                let pairs = named.into_iter().map(|(name, text)| axis(name).map(|axis| (axis, text.trim())));
+                pairs.collect::<Result<_, Failure>>()?
+            }
+            None if given.iter().any(|text| text.contains('=')) => {
+                return Err(Failure::usage("some numbers name their axis and some do not")
+                    .hint("name the axis of each, as in --to 1=300,3=10"));
+            }
+            None => {
+                let axes = self.numbers()?;
+                if axes.len() != given.len() {
+                    let message = format!("{} numbers for {} axes", given.len(), axes.len());
+                    return Err(Failure::usage(message)
+                        .hint("give one number for each axis, or name the axes that move, as in --to 1=300,3=10"));
+                }
+                axes.into_iter().zip(given.iter().map(|text| text.trim())).collect()
+            }
+        };
+        let mut seen = [false; 4];
+        for (axis, _) in &pairs {
+            if std::mem::replace(&mut seen[axis - 1], true) {
+                return Err(Failure::usage(format!("axis {axis} is named twice")).hint("name each axis once"));
+            }
+        }
+        Ok(pairs)
+    }
+
+    /// Whether the axes are named, so that all other axes do not move.
+    fn names_some(&self, given: &[String]) -> bool {
+        self.axes.is_some() || given.iter().any(|text| text.contains('='))
+    }
+
+    fn numbers(&self) -> Result<Vec<usize>, Failure> {
+        let Some(axes) = &self.axes else { return Ok((1..=4).collect()) };
+        let wrong = || format!("'{axes}' is not a valid list of axes of 1 to 4, as in 1,3");
+        let number = |text: &str| axis(text).map_err(|_| wrong());
+        let ranges = axes.split(',').map(|text| typed::range(text, number)).collect::<Result<Vec<_>, String>>();
+        let ranges = ranges.map_err(|why| Failure::usage(why).hint("give axis numbers with commas, as in 1,3"))?;
+        Ok(ranges.into_iter().flatten().collect())
+    }
+
+    /// Axes 1 and 2, if these numbers do not name them (4.2.1); empty if all axes move.
+    pub fn unnamed(&self, given: &[String]) -> Vec<usize> {
+        let named = self.pairs(given).unwrap_or_default();
+        let is_named = |axis: &usize| named.iter().any(|(named, _)| named == axis);
+        if named.is_empty() { Vec::new() } else { (1..=2).filter(|axis| !is_named(axis)).collect() }
+    }
+
+    /// Whether a motion to these points leaves out axis 1 or 2.
+    pub fn leaves_out(&self, points: &[String]) -> bool {
+        let named = self.numbers().unwrap_or_default();
+        !points.is_empty() && self.axes.is_some() && !(named.contains(&1) && named.contains(&2))
+    }
+
+    /// `axis 3: 10 mm, axis 2: 20 mm`.
+    pub fn told_numbers(&self, given: &[String], unit: Unit) -> String {
+        match self.pairs(given) {
+            Ok(pairs) => {
+                let told = pairs.iter().map(|(axis, text)| format!("axis {axis}: {text} {}", unit.symbol()));
+                told.collect::<Vec<_>>().join(", ")
+            }
+            // An invalid number is rejected before anything moves.
+            Err(_) => format!("{} {}", given.join(", "), unit.symbol()),
+        }
+    }
+
+    /// `all axes`, `axes 3, 1 alone`; `given` may name the axes.
+    pub fn describe(&self, given: &[String]) -> String {
+        let axes = match (&self.axes, self.pairs(given)) {
+            (_, Ok(pairs)) if !given.is_empty() && self.names_some(given) => {
+                pairs.iter().map(|(axis, _)| axis.to_string()).collect::<Vec<_>>().join(", ")
+            }
+            (Some(axes), _) => axes.clone(),
+            (None, _) => return "all axes".to_owned(),
+        };
+        let noun = if axes.contains(',') { "axes" } else { "axis" };
+        format!("{noun} {axes} alone")
+    }
+}
+
+/// Parses an axis number.
+fn axis(text: &str) -> Result<usize, Failure> {
+    match text.trim().parse() {
+        Ok(axis @ 1..=4) => Ok(axis),
+        _ => Err(Failure::usage(format!("'{text}' is not a valid axis of 1 to 4")).hint("use an axis number")),
+    }
+}
+
+/// Options of an arch motion.
+#[derive(Debug, Args)]
+pub struct Arch {
+    /// Arch motion: axis and position that it passes over, as in 3:10.0
+    #[arg(long = "arch", group = "way", value_name = "AXIS:POS", value_parser = peak)]
+    peak: Option<Peak>,
+    /// Start of the arch; default: 0
+    #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
+    arch_start: Option<String>,
+    /// End of the arch; default: 0
+    #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
+    arch_end: Option<String>,
+    /// Unit of the arch positions
+    #[arg(long, value_name = "UNIT", requires = "peak", default_value = "mm", hide_default_value = true)]
+    arch_unit: Unit,
+}
+
+/// An axis and a position as typed.
+#[derive(Debug, Clone)]
+struct Peak {
+    axis: String,
+    position: String,
+}
+
+fn peak(text: &str) -> Result<Peak, String> {
+    let (axis, position) = text.split_once(':').ok_or("an arch is an axis and a position, as in 3:10.0")?;
+    Ok(Peak { axis: axis.to_owned(), position: position.to_owned() })
+}
+
+impl Arch {
+    /// Whether an arch is requested.
+    pub fn is_wanted(&self) -> bool {
+        self.peak.is_some()
+    }
+
+    /// Sets the arch, if requested.
+    pub fn put(&self, draft: Draft) -> Draft {
+        let Some(Peak { axis, position }) = &self.peak else { return draft };
+        draft
+            .with(Key::ArchUnit, i32::from(self.arch_unit == Unit::Mm))
+            .with(Key::ArchAxis, axis.as_str())
+            .with(Key::ArchPosition, position.as_str())
+            .with_some(Key::ArchStart, self.arch_start.clone())
+            .with_some(Key::ArchEnd, self.arch_end.clone())
+    }
+
+    /// ` in an arch over axis 3 at 10.0 mm`; empty without an arch.
+    pub fn describe(&self) -> String {
+        let Some(Peak { axis, position }) = &self.peak else { return String::new() };
+        format!(" in an arch over axis {axis} at {position} {}", self.arch_unit.symbol())
+    }
+}
+
+/// Arm side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Hand {
+    /// Right-handed
+    Right,
+    /// Left-handed
+    Left,
+}
+
+impl Hand {
+    /// Value in a target in mm. The arm selection command uses other values.
+    pub fn of_target(self) -> i32 {
+        match self {
+            Self::Right => 1,
+            Self::Left => 2,
+        }
+    }
+}
+
+/// Coordinate system of a jog or an inch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum System {
+    /// A single axis of the robot
+    Pulse,
+    /// Along an axis of the Cartesian coordinates
+    Cartesian,
+    /// Along an axis of the tool coordinates
+    Tool,
+}
+
+impl System {
+    /// Unit of reported positions.
+    pub fn unit(self) -> Unit {
+        if self == Self::Pulse { Unit::Pulse } else { Unit::Mm }
+    }
+
+    /// ` in Cartesian coordinates`; empty for a single axis.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Pulse => "",
+            Self::Cartesian => " in Cartesian coordinates",
+            Self::Tool => " in tool coordinates",
+        }
+    }
+}
+
+/// Direction of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Direction {
+    /// Plus
+    #[value(name = "+", alias = "plus")]
+    Plus,
+    /// Minus
+    #[value(name = "-", alias = "minus")]
+    Minus,
+}
+
+impl Direction {
+    /// Field value.
+    pub fn value(self) -> i32 {
+        (self == Self::Minus).into()
+    }
+
+    /// `in plus direction`.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Plus => "in plus direction",
+            Self::Minus => "in minus direction",
+        }
+    }
+}
+
+/// Report after a motion.
+#[derive(Debug, Args)]
+pub struct Ending {
+    /// Report the position after the motion, in this unit
+    #[arg(long, value_name = "UNIT")]
+    pub report: Option<Unit>,
+    #[command(flatten)]
+    pub end: MotionEnd,
+}
+
+impl Ending {
+    /// Requests the position after the motion in this unit.
+    pub fn put(draft: Draft, unit: Option<Unit>) -> Draft {
+        draft.with_some(Key::Report, unit.map(Unit::report))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_say_what_they_are_of() {
+        assert_eq!(speed("50"), Ok(Speed::Percent("50".to_owned())));
+        assert_eq!(speed("50%"), Ok(Speed::Percent("50".to_owned())));
+        assert_eq!(speed("200mm/s"), Ok(Speed::MmS("200".to_owned())));
+        for wrong in ["", "%", "mm/s", "-5", "5.5", "fast", "5 %"] {
+            assert!(speed(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Old values before a remote command that sets a value: the command that reads them, and the field of its answer.
+
+use serde_json::Value as Json;
+
+use super::link::Link;
+use super::overwrite::there;
+use super::single::shown;
+use super::var::held;
+use crate::refusal::BuildOrder as _;
+use armctl_controller::yrcx::order::{Draft, Order};
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::failure::Failure;
+use armctl_frame::gate::Change;
+use armctl_frame::settings_report::{OLD_VALUE, Old, nothing_written};
+
+/// Reads the values that a command replaces. Without an answer they stay unknown. A dry run notes the request.
+pub async fn before(link: &mut Link, order: &Order) -> Result<Old, Failure> {
+    let Some(read) = reader(order) else { return Ok(Old::UNREAD) };
+    let values = there(link, &read.order()?, OLD_VALUE).await.map_err(nothing_written)?;
+    Ok(Old::read(values.and_then(|values| told(order, &values))))
+}
+
+/// Question before a command that sets a value: the intent, and old and new values if the old value was read.
+pub fn question(order: &Order, intent: String, old: &Old) -> Change {
+    let change = Change::new(if intent.is_empty() { order.row().name.to_owned() } else { intent });
+    let new = match order.command() {
+        Command::ServoOn => "on",
+        Command::ServoOff => "off",
+        Command::ServoFree => "free",
+        _ => return change,
+    };
+    match old.describe() {
+        Some(old) => change.replaces("servo", &old, new),
+        None => change,
+    }
+}
+
+/// Read command for the values that a command sets. There is none for a torque limit, a selected shift or hand, and
+/// motor power.
+fn reader(order: &Order) -> Option<Draft> {
+    let values = order.values();
+    let (read, keys): (_, &[Key]) = match order.command() {
+        Command::VarSet
+        | Command::VarSetVar
+        | Command::VarAdd
+        | Command::VarAddVar
+        | Command::VarSub
+        | Command::VarSubVar
+        | Command::VarMul
+        | Command::VarMulVar
+        | Command::VarDiv
+        | Command::VarDivVar => (Command::VarGet, &[Key::Variable]),
+        Command::PortSet | Command::PortSetBit => (Command::PortGet, &[Key::PortType, Key::Port]),
+        Command::SpeedManual | Command::SpeedAuto | Command::SpeedProgram => (Command::SpeedStatus, &[Key::Robot]),
+        Command::InchAmountSet => (Command::InchAmountGet, &[Key::Robot]),
+        Command::ArmSelect => (Command::ArmDesignation, &[Key::Robot]),
+        Command::ServoOn | Command::ServoOff | Command::ServoFree => (Command::ServoStatus, &[Key::Robot]),
+        _ => return None,
+    };
+    let given = keys.iter().filter_map(|key| Some((*key, values.int(*key)?)));
+    Some(given.fold(read.order(), |draft, (key, number)| draft.with(key, number)))
+}
+
+/// Old values from an answer, under the names of the command's report.
+fn told(order: &Order, answer: &Values) -> Option<Json> {
+    let number = |key| answer.int(key).map(Json::from);
+    match order.command() {
+        Command::PortSet => number(Key::Value),
+        Command::PortSetBit => {
+            let bit = order.values().int(Key::PortBit)?;
+            answer.int(Key::Value).map(|port| Json::from(port >> bit & 1))
+        }
+        Command::SpeedManual => number(Key::ManualSpeed),
+        Command::SpeedAuto => number(Key::AutoSpeed),
+        Command::SpeedProgram => number(Key::ProgramSpeed),
+        Command::InchAmountSet => number(Key::InchingAmount),
+        Command::ArmSelect => shown(Command::ArmDesignation, answer, Key::Arm).map(Json::from),
+        Command::ServoOn | Command::ServoOff | Command::ServoFree => servo(order.values(), answer),
+        _ => Some(held(answer.value(Key::Value))),
+    }
+}
+
+/// `on`, `off` or `free` if all selected axes agree; otherwise one value per axis, null for an axis that does not
+/// exist.
+fn servo(order: &Values, answer: &Values) -> Option<Json> {
+    let mask = order.int(Key::Axes).unwrap_or_default();
+    let state = |key| match shown(Command::ServoStatus, answer, key).as_deref() {
+        Some("servo") => Some("on"),
+        Some("brake") => Some("off"),
+        Some("free") => Some("free"),
+        _ => None,
+    };
+    let meant = Key::AXES.into_iter().enumerate().filter(|(at, _)| mask == 0 || mask >> at & 1 == 1);
+    let states: Vec<Option<&str>> = meant.map(|(_, key)| state(key)).collect();
+    let mut there = states.iter().flatten();
+    let first = there.next()?;
+    Some(if there.all(|state| state == first) { Json::from(*first) } else { Json::from(states) })
+}

@@ -1,0 +1,140 @@
+//! Connection to a controller: over a fieldbus, or a simulator in this process.
+
+use std::fmt;
+
+use super::buses::{self, BUSES};
+use super::fieldbus::{At, Board, Fieldbus, Purpose, Simulation};
+use super::link_error::not_open;
+use super::simulated;
+use super::trace::{Opening, Recorder};
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::bus::simulators;
+use armctl_frame::settings::target::{self, Bus, Place};
+use armctl_frame::{Access, ConnectMode};
+use armctl_transport::image::ImageLink;
+use armctl_transport::image::tap::Tap;
+
+/// Endpoint of a target.
+#[derive(Debug, Clone, Copy)]
+pub enum Endpoint<'a> {
+    /// A controller on a fieldbus.
+    Bus(&'a Bus, &'static Fieldbus),
+    /// The built-in simulator.
+    Sim(&'a target::Sim),
+}
+
+/// Endpoint of a robot's target.
+pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
+    match &robot.target.value.place {
+        Place::Bus(bus) => match buses::by_name(bus.scheme.bus) {
+            Some(fieldbus) => Ok(Endpoint::Bus(bus, fieldbus)),
+            None => Err(Failure::local(format!("internal error: fieldbus {} is not supported", bus.scheme.bus))),
+        },
+        Place::Sim(sim) => Ok(Endpoint::Sim(sim)),
+        Place::Udp(_) | Place::Serial(_) | Place::Tcp(_) => {
+            let schemes: Vec<String> = target::BUSES.iter().map(|scheme| format!("{}://", scheme.name)).collect();
+            let schemes = schemes.join(", ");
+            Err(Failure::usage(format!("a yrcx controller cannot be reached over {}:", robot.target.value.scheme()))
+                .hint(format!("use {schemes} or sim:")))
+        }
+    }
+}
+
+/// Explicit messaging client, with a simulator that must live as long.
+pub type OpenBoard = (Box<dyn Board>, Option<Box<dyn fmt::Debug>>);
+
+impl Endpoint<'_> {
+    /// Opens a link, with a packet recorder if requested.
+    pub async fn open(
+        &self,
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+    ) -> Result<(ImageLink, Option<Recorder>), Failure> {
+        let purpose = if access.mode == ConnectMode::Monitor { Purpose::Look } else { Purpose::Command };
+        match *self {
+            Self::Bus(bus, fieldbus) => {
+                let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
+                let (opening, watched) = Opening::watch(screen).filter(|_| tap.is_none()).unzip();
+                let at = At { robot, bus, tap: tap.or(watched).unwrap_or_default() };
+                match (fieldbus.open)(at, purpose).await {
+                    Ok(link) => Ok((link, recorder)),
+                    Err(error) => {
+                        if let Some(opening) = opening {
+                            opening.show(screen);
+                        }
+                        // The failure to open matters more than the failure to finish the recording.
+                        let _ = recorder.map_or(Ok(()), Recorder::finish);
+                        Err(not_open(&robot.label(), bus.scheme, &error))
+                    }
+                }
+            }
+            // Network faults need a network.
+            Self::Sim(sim) if sim.bus.is_some() || simulated::has_faults(sim) => {
+                let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
+                let opened = (fieldbus.open)(At { robot, bus: &bus, tap: Tap::default() }, Purpose::Command).await;
+                let link = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
+                Ok((link.with_owned(controller), None))
+            }
+            Self::Sim(sim) => Ok((ImageLink::in_process(Box::new(simulated::in_process(sim)?)), None)),
+        }
+    }
+
+    /// Opens the explicit messaging client.
+    pub async fn board(
+        &self,
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+    ) -> Result<(OpenBoard, Option<Recorder>), Failure> {
+        match *self {
+            Self::Bus(bus, fieldbus) => {
+                let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
+                let (opening, watched) = Opening::watch(screen).filter(|_| tap.is_none()).unzip();
+                let at = At { robot, bus, tap: tap.or(watched).unwrap_or_default() };
+                let opened = (fieldbus.board)(at).await;
+                if let (Err(_), Some(opening)) = (&opened, &opening) {
+                    opening.show(screen);
+                }
+                let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
+                Ok(((board, None), recorder))
+            }
+            Self::Sim(sim) => {
+                let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
+                let opened = (fieldbus.board)(At { robot, bus: &bus, tap: Tap::default() }).await;
+                let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
+                Ok(((board, Some(controller)), None))
+            }
+        }
+    }
+
+    /// Fieldbus of the endpoint; for a simulator, the fieldbus that it simulates.
+    pub fn fieldbus(&self) -> &'static Fieldbus {
+        match self {
+            Self::Bus(_, fieldbus) => fieldbus,
+            Self::Sim(sim) => simulated_on(sim),
+        }
+    }
+
+    /// Whether a link in control mode commands the controller.
+    pub fn is_owner(&self) -> bool {
+        match self {
+            Self::Bus(bus, _) => bus.is_owner,
+            Self::Sim(_) => true,
+        }
+    }
+}
+
+/// Fieldbus of a simulator.
+fn simulated_on(sim: &target::Sim) -> &'static Fieldbus {
+    let named = sim.bus.and_then(|wanted| simulators().find(|(name, _)| *name == wanted));
+    named.and_then(|(_, bus)| buses::by_name(bus)).unwrap_or(BUSES[0])
+}
+
+/// Starts a simulated controller on its fieldbus.
+fn simulate(sim: &target::Sim) -> Result<(&'static Fieldbus, Simulation), Failure> {
+    let fieldbus = simulated_on(sim);
+    Ok((fieldbus, (fieldbus.simulate)(sim)?))
+}

@@ -1,0 +1,67 @@
+//! `yrcx comment` (4.3.2).
+
+use crate::backup::{COMMENTS, Records};
+use crate::stores::{Kind, Numbered};
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::store::{Ids, TableWords, ids, table_commands};
+
+table_commands! {
+    /// Commands for point comments.
+    Comment of Numbered<Comments> {}
+}
+
+/// Comments of points.
+#[derive(Debug)]
+pub struct Comments;
+
+impl Kind for Comments {
+    type Value = String;
+    const WORDS: TableWords = TableWords {
+        nouns: ["comment of point", "comments"],
+        placeholder: "POINT",
+        range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",
+        reading: None,
+        writing: None,
+    };
+    const IDS: Ids = ids!("yrcx.comment");
+    const RECORDS: &'static Records = &COMMENTS;
+    const HEADINGS: &'static [&'static str] = &["comment"];
+    const IS_SMALL: bool = false;
+    const IS_TEXT: bool = true;
+
+    fn value(values: &Values) -> Option<String> {
+        Some(values.text(Key::Comment).unwrap_or_default().to_owned())
+    }
+
+    fn is_blank(values: &Values) -> bool {
+        values.text(Key::Comment).is_none_or(str::is_empty)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{example, read_example, words, written};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let set = ["comment", "set", "100", "WAIT ORG"];
+        assert_eq!(written(&set).unwrap(), [example("4.3.2-define")]);
+        assert_eq!(read_example("4.3.2-define", &set)["items"][0]["new"], "WAIT ORG");
+        let read = read_example("4.3.2-reference", &["comment", "get", "50"]);
+        let (name, kind) = ("50", "comment of point");
+        let item = json!({"name": name, "label": null, "kind": kind, "ok": true, "value": "WAIT ORG"});
+        assert_eq!(read["items"], json!([item]));
+    }
+
+    #[test]
+    fn comments_have_sixteen_characters_that_print() {
+        assert!(words(&["comment", "set", "1", "0123456789ABCDEF"]).is_ok());
+        assert_eq!(written(&["comment", "set", "1", ""]).unwrap()[0][4], "0x0000");
+        for wrong in ["0123456789ABCDEFG", "Größe", "a\tb"] {
+            let failure = words(&["comment", "set", "1", wrong]).unwrap_err();
+            assert!(failure.message.ends_with("allowed: up to 16 ASCII characters"), "{failure}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! `yrcx pallet-data` (4.3.3).
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::backup::{PALLETS, Records};
+use crate::stores::{Kind, Numbered, all_zero, int};
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::store::{Ids, TableWords, ids, table_commands};
+
+table_commands! {
+    /// Commands for pallets.
+    PalletData of Numbered<Pallets> {}
+}
+
+/// The pallets of the controller.
+#[derive(Debug)]
+pub struct Pallets;
+
+impl Kind for Pallets {
+    type Value = Places;
+    const WORDS: TableWords = TableWords {
+        nouns: ["pallet", "pallets"],
+        placeholder: "PALLET",
+        range: "Pallets, 0 to 39: 10, 0..39 or 1,5",
+        reading: None,
+        writing: Some(
+            "The controller stores the corners of a pallet in five points, starting with the first point. Set them with \
+             `yrcx point set` or `yrcx teach`.",
+        ),
+    };
+    const IDS: Ids = ids!("yrcx.pallet-data");
+    const RECORDS: &'static Records = &PALLETS;
+    const HEADINGS: &'static [&'static str] = &["nx", "ny", "nz", "first point"];
+
+    fn value(values: &Values) -> Option<Places> {
+        let [nx, ny, nz, first_point] =
+            [Key::CountX, Key::CountY, Key::CountZ, Key::FirstPoint].map(|key| int(values, key));
+        Some(Places { nx, ny, nz, first_point })
+    }
+
+    fn is_blank(values: &Values) -> bool {
+        all_zero(values, &[Key::CountX, Key::CountY, Key::CountZ])
+    }
+}
+
+/// A pallet.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Places {
+    /// Positions in X.
+    nx: i32,
+    /// Positions in Y.
+    ny: i32,
+    /// Positions in Z.
+    nz: i32,
+    /// The first of the five points that define it.
+    first_point: i32,
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{example, objection, read_example, words, written};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let set = ["pallet-data", "set", "10", "10", "15", "1", "100"];
+        assert_eq!(written(&set).unwrap(), [example("4.3.3-define")]);
+        assert_eq!(
+            read_example("4.3.3-define", &set)["items"][0]["new"],
+            json!({"nx": 10, "ny": 15, "nz": 1, "first_point": 100})
+        );
+        let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
+        assert_eq!(read["items"][0]["value"], json!({"nx": 10, "ny": 15, "nz": 1, "first_point": 100}));
+    }
+
+    #[test]
+    fn a_pallet_has_so_many_places_and_no_more() {
+        for (line, part) in [
+            ("1 256 128 1 1", "X times Y times Z is 32768; a pallet has 1 to 32767"),
+            ("1 0 1 1 1", "X times Y times Z is 0"),
+            ("1 1 1 1 29996", "allowed: 0 to 29995"),
+        ] {
+            let line: Vec<&str> = ["pallet-data", "set"].into_iter().chain(line.split(' ')).collect();
+            let failure = words(&line).unwrap_err();
+            assert!(failure.message.contains(part), "{failure}");
+        }
+        assert!(objection(&["pallet-data", "get", "40"]).contains("allowed: 0 to 39"));
+    }
+}

@@ -1,0 +1,72 @@
+//! `yrcx shift-data` (4.3.4).
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::backup::{Records, SHIFTS};
+use crate::stores::{Kind, Numbered, all_zero, mm as mm_of};
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::store::{Ids, TableWords, ids, table_commands};
+
+table_commands! {
+    /// Commands for shifts.
+    ShiftData of Numbered<Shifts> {}
+}
+
+/// The shifts of the controller.
+#[derive(Debug)]
+pub struct Shifts;
+
+impl Kind for Shifts {
+    type Value = Shift;
+    const WORDS: TableWords = TableWords {
+        nouns: ["shift", "shifts"],
+        placeholder: "SHIFT",
+        range: "Shifts, 0 to 39: 5, 0..39 or 1,5",
+        reading: None,
+        writing: None,
+    };
+    const IDS: Ids = ids!("yrcx.shift-data");
+    const RECORDS: &'static Records = &SHIFTS;
+    const HEADINGS: &'static [&'static str] = &["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"];
+
+    fn value(values: &Values) -> Option<Shift> {
+        Some(Shift { shift_mm: Key::AXES.map(|key| mm_of(values, key)) })
+    }
+
+    fn is_blank(values: &Values) -> bool {
+        all_zero(values, &Key::AXES)
+    }
+}
+
+/// A shift.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Shift {
+    /// Shift of axes 1 to 4 in mm, or degrees for rotary axes.
+    shift_mm: [f64; 4],
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{example, objection, read_example, words, written};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let set = ["shift-data", "set", "5", "10", "-20", "5", "-18"];
+        assert_eq!(written(&set).unwrap(), [example("4.3.4-define")]);
+        assert_eq!(
+            read_example("4.3.4-define", &set)["items"][0]["new"],
+            json!({"shift_mm": [10.0, -20.0, 5.0, -18.0]})
+        );
+        let read = read_example("4.3.4-reference", &["shift-data", "get", "5"]);
+        assert_eq!(read["items"][0]["value"], json!({"shift_mm": [10.0, -20.0, 5.0, -18.0]}));
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        assert!(objection(&["shift-data", "set", "40", "1", "2", "3", "4"]).contains("allowed: 0 to 39"));
+        assert!(words(&["shift-data", "set", "4", "1"]).unwrap_err().message.contains("4 values needed, 1 given"));
+    }
+}

@@ -1,0 +1,177 @@
+//! Images and remote commands in a capture, with the fieldbus messages around them.
+
+use std::collections::HashMap;
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use armctl_controller::text::hex;
+use armctl_controller::yrcx::answer::Status;
+use armctl_controller::yrcx::changes::{Change, changes};
+use armctl_controller::yrcx::describe::{Description, FieldNote, answer, command};
+use armctl_controller::yrcx::image::{Image, Words};
+use armctl_controller::yrcx::signal::Side;
+use armctl_frame::decode;
+use armctl_frame::decode::capture::{DecodedCapture, DecodedMessage, cut, note};
+use armctl_frame::output::view::Cell;
+use armctl_transport::capture::Message;
+use armctl_transport::tap::Direction;
+
+/// Maximum number of connections and pending requests to remember. No plant has that many.
+pub const MOST: usize = 1 << 16;
+
+/// Decoder of one fieldbus.
+pub trait BusDecoder: fmt::Debug {
+    /// Handles a packet that may belong to this fieldbus.
+    fn take(&mut self, message: &Message<'_>, images: &mut Images);
+
+    /// Adds notes on missing data at the end.
+    fn finish(&mut self, images: &mut Images);
+}
+
+/// Decoded images and messages.
+#[derive(Debug, Default)]
+pub struct Images {
+    decoded: DecodedCapture<FieldRow>,
+    /// Whether images without new content are listed.
+    all: bool,
+    shown: HashMap<(String, String), Shown>,
+}
+
+/// Last images of a connection.
+#[derive(Debug, Default)]
+struct Shown {
+    /// Last image of the client and of the controller.
+    images: [Option<Image>; 2],
+    /// Command in progress, or the last one.
+    command: Option<(u64, Words)>,
+}
+
+impl Images {
+    /// Creates an empty result; `all` lists every image.
+    pub fn new(all: bool) -> Self {
+        Self { all, ..Self::default() }
+    }
+
+    /// Whether every image is listed.
+    pub fn lists_all(&self) -> bool {
+        self.all
+    }
+
+    /// Decoded messages.
+    pub fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+        &mut self.decoded
+    }
+
+    /// Counts a packet of the fieldbus.
+    pub fn count(&mut self) {
+        self.decoded.packets += 1;
+    }
+
+    /// Adds a message of the fieldbus.
+    pub fn message(&mut self, message: DecodedMessage<FieldRow>) {
+        self.decoded.messages.push(message);
+    }
+
+    /// Adds a note on the whole capture.
+    pub fn note(&mut self, text: String) {
+        note(&mut self.decoded.notes, text);
+    }
+
+    /// Handles an image from one end.
+    pub fn image(&mut self, message: &Message<'_>, direction: Direction, link: &(String, String), image: &Image) {
+        if self.shown.len() >= MOST {
+            self.shown.clear();
+        }
+        let shown = self.shown.entry(link.clone()).or_default();
+        let (at, side) = match direction {
+            Direction::Sent => (0, Side::Input),
+            Direction::Received => (1, Side::Output),
+        };
+        let before = shown.images[at].replace(*image);
+        let changes = changes(side, before.as_ref(), image);
+        if changes.is_empty() && self.all {
+            let decoded = decoded(message, direction, link.clone(), "image: nothing new".to_owned());
+            self.decoded.messages.push(DecodedMessage { raw: hex(&image.to_bytes()), ..decoded });
+        }
+        for change in changes {
+            let mut decoded = decoded(message, direction, link.clone(), change.line(false));
+            match &change {
+                Change::Words { side: Side::Input, words, .. } => {
+                    let was = before.map_or(0, |before| before.0[0]);
+                    if words[0] != 0 && (words[0] != was || shown.command.is_none()) {
+                        shown.command = Some((message.number, *words));
+                    }
+                    // Without a command, the words are data of the next command and not yet a problem.
+                    if words[0] != 0 {
+                        describe(&mut decoded, command(words));
+                    }
+                }
+                Change::Words { words, .. } => {
+                    let answered = shown.command.filter(|_| Status::from_word(words[0]) != Status::Ready);
+                    decoded.answers = answered.map(|(number, _)| number);
+                    describe(&mut decoded, answer(words, answered.as_ref().map(|(_, words)| words)));
+                }
+                Change::Signal { signal, on } => {
+                    let side = if side == Side::Input { "WI" } else { "WO" };
+                    let place = format!("{side}{} bit {}", signal.word(), signal.bit());
+                    let meaning = signal.dedicated().map(|dedicated| dedicated.text).unwrap_or_default();
+                    decoded.fields.push(FieldRow(FieldNote::of_message(
+                        &place,
+                        &signal.to_string(),
+                        u8::from(*on).to_string(),
+                        meaning,
+                    )));
+                }
+            }
+            self.decoded.messages.push(decoded);
+        }
+    }
+}
+
+/// A message with this text.
+pub fn decoded(
+    message: &Message<'_>,
+    direction: Direction,
+    link: (String, String),
+    text: String,
+) -> DecodedMessage<FieldRow> {
+    let raw = text.split("  # ").next().unwrap_or_default().to_owned();
+    let (number, time) = (message.number, message.time);
+    let problem = message.is_cut.then(cut);
+    DecodedMessage {
+        number,
+        time,
+        direction,
+        link,
+        text,
+        answers: None,
+        section: None,
+        raw,
+        fields: Vec::new(),
+        problem,
+    }
+}
+
+fn describe(decoded: &mut DecodedMessage<FieldRow>, description: Description) {
+    decoded.section = description.section.map(str::to_owned);
+    decoded.fields = description.fields.into_iter().map(FieldRow).collect();
+    if !description.problems.is_empty() {
+        decoded.problem = Some(description.problems.join("; "));
+    }
+}
+
+/// A field of a message, as a row of a table.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct FieldRow(pub FieldNote);
+
+impl decode::Field for FieldRow {
+    const COLUMNS: &'static [&'static str] = &["word", "field", "raw", "meaning"];
+
+    fn cells(&self) -> Vec<Cell> {
+        let FieldNote { place, name, raw, meaning, .. } = &self.0;
+        [place, name, raw, meaning].map(|text| text.as_str().into()).into()
+    }
+}

@@ -1,0 +1,112 @@
+//! Server for a simulated controller behind SLCAN adapters.
+
+use std::iter;
+use std::net::SocketAddr;
+use std::path::Path;
+
+use clap::Args;
+
+use super::simulated::{self, Controller, FAULTS, size};
+use crate::fieldbus::{Operator, Serve, Served};
+use crate::simulated::{faults, faults_of_option};
+use armctl_controller::yrcx::simulator::Start;
+use armctl_frame::failure::Failure;
+#[cfg(unix)]
+use armctl_frame::serve::terminal_link::TerminalLink;
+use armctl_frame::serve::{address, bind_failure};
+use armctl_frame::settings::target::devicenet::SLCAN;
+use armctl_transport::devicenet::can::Bitrate;
+use armctl_transport::devicenet::device::Setup;
+use armctl_transport::devicenet::hub::{Hub, Listen};
+use armctl_transport::devicenet::wire::Mac;
+
+/// SLCAN adapters and node of the simulator.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct ServeArgs {
+    /// DeviceNet: address of the SLCAN adapters, one for each TCP client; port 0 lets the system choose
+    #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:0", value_parser = listen)]
+    slcan_bind: SocketAddr,
+    /// DeviceNet: MAC ID of the controller
+    #[arg(long, value_name = "MAC", default_value = "5")]
+    mac: Mac,
+    /// DeviceNet: bit rate of the bus
+    #[arg(long, value_name = "RATE", default_value = "500k", value_parser = bitrate)]
+    bitrate: Bitrate,
+}
+
+fn listen(text: &str) -> Result<SocketAddr, String> {
+    address(text, 0)
+}
+
+fn bitrate(text: &str) -> Result<Bitrate, String> {
+    let found = Bitrate::ALL.into_iter().find(|bitrate| bitrate.name() == text);
+    found.ok_or_else(|| format!("there are {}, not '{text}'", Bitrate::ALL.map(Bitrate::name).join(", ")))
+}
+
+impl Serve for ServeArgs {
+    fn has_terminal(&self) -> bool {
+        cfg!(unix)
+    }
+
+    fn serve(
+        &self,
+        simulator: Option<&str>,
+        start: Start,
+        link: Option<&Path>,
+        faults: Option<&str>,
+    ) -> Result<Served, Failure> {
+        let setup = Setup::stand_in(self.mac, self.bitrate, size(simulator));
+        #[cfg(unix)]
+        let terminal = link.map(|_| Listen::Pty);
+        #[cfg(not(unix))]
+        let terminal = None;
+        let listen: Vec<Listen> = iter::once(Listen::Tcp(self.slcan_bind)).chain(terminal).collect();
+        let hub = simulated::serve(start, setup, &listen, faults_of_option(faults, &FAULTS)?);
+        let hub = hub.map_err(|error| bind_failure(&format!("TCP {}", self.slcan_bind), &error))?;
+        let place = hub.places().first().map(String::as_str).unwrap_or_default();
+        let address: Option<SocketAddr> = place.parse().ok();
+        let mut target = format!("{}://{place}?mac={}", SLCAN.name, self.mac);
+        if self.bitrate != Bitrate::K500 {
+            target.push_str(&format!("&bitrate={}", self.bitrate.name()));
+        }
+        let link = terminal_link(link, &hub)?;
+        Ok(Served { target, address, operator: Box::new(Adapters { hub, _link: link }) })
+    }
+}
+
+/// Creates the symbolic link to the pseudo-terminal, if requested.
+#[cfg(unix)]
+fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Link, Failure> {
+    let (Some(path), Some(terminal)) = (path, hub.places().get(1)) else { return Ok(None) };
+    TerminalLink::create(path, terminal).map(Some)
+}
+
+#[cfg(not(unix))]
+fn terminal_link(_path: Option<&Path>, _hub: &Hub<Controller>) -> Result<Link, Failure> {
+    Ok(None)
+}
+
+/// Symbolic link to the pseudo-terminal.
+#[cfg(unix)]
+type Link = Option<TerminalLink>;
+#[cfg(not(unix))]
+type Link = Option<()>;
+
+/// SLCAN adapters. The symbolic link is removed with them.
+struct Adapters {
+    hub: Hub<Controller>,
+    _link: Link,
+}
+
+impl Operator for Adapters {
+    fn console(&self, line: &str) -> Result<String, String> {
+        let result = self.hub.with(|device, now| device.application().0.0.console(now, line));
+        result.unwrap_or_else(|| Err("no controller is connected".to_owned()))
+    }
+
+    fn set_faults(&self, text: Option<&str>) -> Result<(), String> {
+        simulated::set_faults(&self.hub, faults(text, &FAULTS)?);
+        Ok(())
+    }
+}

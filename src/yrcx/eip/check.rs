@@ -1,0 +1,93 @@
+//! Layers of `armctl robots check` for a network board: from the host name to the image of the controller.
+
+use super::board::{Board, MAKER};
+use armctl_controller::yrcx::image::Image;
+use armctl_frame::face::layers::Layers;
+use armctl_frame::settings::target::eip::Eip;
+use armctl_transport::eip::probe::Presence;
+
+/// Layers in the order of the check.
+pub(super) const LAYERS: &[&str] = &["name", "board", "identity", "connection", "owner", "inputs"];
+
+/// Checks the layers. Returns the image of the controller, if it can be read.
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+    layers.ok("name", format!("{} is {}", board.settings().host, board.address()));
+    match board.services().await {
+        Err(failure) => {
+            layers.fail("board", &failure);
+            return None;
+        }
+        Ok(None) => layers.warn(
+            "board",
+            "it accepts sessions but lists no services",
+            "check that the address is that of a robot's network board",
+        ),
+        Ok(Some(services)) if services.len() == 2 => layers.ok("board", services.join(", ")),
+        Ok(Some(_)) => layers.warn(
+            "board",
+            "it does not support cyclic images",
+            "check that the address is that of a robot's network board",
+        ),
+    }
+    let identity = match board.identity().await {
+        Err(failure) => {
+            layers.fail("identity", &failure);
+            return None;
+        }
+        Ok(identity) => identity,
+    };
+    match &identity {
+        Some(identity) => {
+            let told = format!("{}, vendor {}, revision {}", identity.name, identity.vendor, identity.revision);
+            layers.judge("identity", identity.vendor == MAKER, (&told, &told), "the vendor id of a YRCX is 636");
+        }
+        None => layers.warn("identity", "the board has no identity", "check the address"),
+    }
+    match board.assemblies().await {
+        Err(failure) => layers.fail("connection", &failure),
+        Ok(found) => connection(board.settings(), found, layers),
+    }
+    let owned = identity.is_some_and(|identity| identity.owned);
+    layers.judge(
+        "owner",
+        !owned,
+        ("no master", "another master, such as a PLC or a session, commands it"),
+        "to send commands, stop that connection; read-only commands work in parallel",
+    );
+    match board.image().await {
+        Err(failure) => {
+            layers.fail("inputs", &failure);
+            None
+        }
+        Ok(image) => {
+            layers.ok("inputs", format!("assembly {} is readable", board.settings().input));
+            Some(image)
+        }
+    }
+}
+
+/// Compares the URL with the assemblies of the board. It requests no connection, because that could take control.
+fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) {
+    let layer = "connection";
+    if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == Presence::Absent) {
+        let what = format!("the board has no assembly {instance}");
+        return layers.fail_with(layer, what, "find in and out with `yrcx eip probe`");
+    }
+    let [(input, from), (output, to)] = found.map(|(instance, presence)| match presence {
+        Presence::Readable(assembly) => (instance, assembly.size),
+        Presence::Absent | Presence::Unknown => (instance, None),
+    });
+    let differs = |size: Option<u16>, said: u16| size.is_some_and(|size| size != said);
+    if differs(from, settings.input_size) || differs(to, settings.output_size) {
+        let size = |size: Option<u16>| size.map_or_else(|| "?".to_owned(), |size| size.to_string());
+        let (from, to) = (size(from), size(to));
+        let what = format!("the board has {from} bytes from it and {to} bytes to it; the URL has other sizes");
+        return layers.fail_with(layer, what, format!("set in_size={from} and out_size={to} in the URL"));
+    }
+    let instances = format!("in {input}, out {output}");
+    if from.is_none() || to.is_none() {
+        let advice = "`yrcx eip probe --try` requests a connection, which may take control";
+        return layers.warn(layer, format!("{instances}: the board does not report their sizes"), advice);
+    }
+    layers.ok(layer, format!("{instances}, {} and {} bytes fit", settings.input_size, settings.output_size));
+}

@@ -1,0 +1,111 @@
+//! `yrcx eip probe`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::board::{self, Probed, warned};
+use super::{NO_UNIT, board_of};
+use crate::link::Yrcx;
+use armctl_controller::Risk;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::csv::RowsOf;
+use armctl_frame::output::view::{Cell, Section, Table, View};
+use armctl_frame::{Command, ConnectMode, Context, Report};
+
+/// Finds the assemblies of the board: reads every assembly from 1 to 255. No connection is requested.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Use the resulting target with -t or `armctl robots add`.\n\nWith --try, armctl also requests owner \
+                  connections with invalid sizes, starting with the instances of the URL. The board refuses them with \
+                  a reason that identifies instances and sizes. If the board accepts one, armctl commands the \
+                  controller until the connection closes, and the close stops the robot."
+)]
+pub struct Probe {
+    /// Request connections to find fitting parameters
+    #[arg(long = "try")]
+    tries: bool,
+}
+
+impl Command for Probe {
+    type Family = Yrcx;
+    type Report = ProbeReport;
+    const ID: &'static str = "yrcx.eip.probe";
+    const INTENT: &'static str = "request owner connections that the board should refuse; if the board accepts one, \
+                                  armctl commands the controller, and the end of the connection stops the robot";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
+
+    fn risk(&self) -> Risk {
+        // A board can accept a connection that it should refuse.
+        if self.tries { Risk::Motion } else { Risk::Read }
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
+        context.link.no_unit(NO_UNIT)?;
+        context.link.then("messages that read the identity and the assemblies of the board");
+        if self.tries {
+            context.link.then("requests for owner connections (ForwardOpen) with invalid sizes");
+            context.link.authorize(Self::ID, self.risk())?;
+        }
+        let board = board_of(context.link)?;
+        let identity = board.identity().await?;
+        let probed =
+            if self.tries { board.probe(identity.as_ref()).await? } else { board.survey(identity.as_ref()).await? };
+        Ok(ProbeReport { identity, probed, has_tried: self.tries })
+    }
+}
+
+/// Result of the probe.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ProbeReport {
+    /// Null if the board does not report it.
+    identity: Option<board::Identity>,
+    #[serde(flatten)]
+    probed: Probed,
+    #[serde(skip)]
+    has_tried: bool,
+}
+
+impl Report for ProbeReport {
+    const ROWS: RowsOf = RowsOf::List("assemblies");
+
+    fn view(&self) -> View {
+        let mut view = match &self.identity {
+            Some(identity) => View::default().append(Section::Fields(identity.fields())),
+            None => View::text("the board has no identity"),
+        };
+        let mut assemblies = Table::new(&["assembly", "bytes"], "no readable assembly");
+        for assembly in &self.probed.assemblies {
+            assemblies.row([assembly.instance.into(), Cell::optional(assembly.bytes)]);
+        }
+        let mut attempts = Table::new(&["in", "out", "config", "answer"], "no connection was requested");
+        for attempt in &self.probed.attempts {
+            let config = Cell::optional(attempt.config);
+            attempts.row([attempt.input.into(), attempt.output.into(), config, attempt.answer.as_str().into()]);
+        }
+        view = view.append(Section::Table(assemblies));
+        if self.has_tried {
+            view = view.append(Section::Table(attempts));
+        }
+        let Some(found) = &self.probed.connectable else { return view };
+        let bytes = |size: Option<u16>| Cell::optional(size.map(|size| format!("{size} bytes")));
+        let owner = if self.probed.owned { warned("another master") } else { "free".into() };
+        view.append(Section::Fields(vec![
+            ("from the controller", bytes(found.in_size)),
+            ("to the controller", bytes(found.out_size)),
+            ("owner", owner),
+            ("target", found.target.as_str().into()),
+        ]))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.probed.connectable.is_none().then(|| {
+            let failure = Failure::new(Kind::ConditionNotMet, "no connection parameters found for the board");
+            if self.has_tried {
+                failure.hint("find the instances in the board's EDS file and set in, out and config in the URL")
+            } else {
+                failure.hint("when the cell is clear of people, add --try to request connections from the board")
+            }
+        })
+    }
+}

@@ -1,0 +1,87 @@
+//! `armctl explain yrcx`: meaning of alarms and of fieldbus error codes.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::buses::BUSES;
+use super::fieldbus::Explained;
+use super::info::told;
+use armctl_controller::yrcx::alarm::Alarm;
+use armctl_frame::ValueKind;
+use armctl_frame::face::explain::{self as face, Codes, Known};
+use armctl_frame::failure::Failure;
+use armctl_frame::robot::alarm::{Alarm as Told, ExtraColumns, Kind, Source};
+use armctl_frame::settings::alarms::{Alarms, Origin};
+use armctl_frame::settings::target::Family;
+
+/// Alarm number of a YRCX, or error of a PROFINET device
+#[derive(Debug, Args)]
+pub struct Explain {
+    /// Group and category, as in 12.600; or four bytes of PROFINET, as in 0xDB810209 or 'CF 81 FD 05'
+    #[arg(value_parser = code, add = ValueKind::Code(Family::Yrcx))]
+    code: Code,
+}
+
+/// Code to explain.
+#[derive(Debug, Clone)]
+enum Code {
+    Alarm(Alarm),
+    Bus(Explained),
+}
+
+/// Parses an alarm number or a fieldbus error code.
+fn code(text: &str) -> Result<Code, String> {
+    if let Some(explained) = BUSES.iter().find_map(|bus| (bus.explain)(text)) {
+        return Ok(Code::Bus(explained));
+    }
+    text.parse().map(Code::Alarm).map_err(|error| format!("{error}"))
+}
+
+impl face::Explain for Explain {
+    type Report = Codes<Group>;
+    const ID: &'static str = "explain.yrcx";
+
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Group>, Failure> {
+        let known = match &self.code {
+            Code::Alarm(alarm) => {
+                let site = alarms.find(origin, &alarm.to_string())?;
+                let known = alarm.known();
+                let (causes, remedies) = known.map_or((&[][..], LOOK), |known| (known.causes, known.remedies));
+                Known::new(known.is_some(), told(*alarm), [causes, remedies], site, Group { group: alarm.group_text() })
+            }
+            Code::Bus(Explained { code, meaning, refused, remedies }) => {
+                let text = meaning.clone().unwrap_or_else(|| "unknown error".to_owned());
+                let alarm = Told {
+                    code: Some(code.clone()),
+                    text: Some(text),
+                    kind: Some(Kind::Error),
+                    source: Source::Armctl,
+                    ..Told::default()
+                };
+                Known::new(meaning.is_some(), alarm, [&[], remedies], None, Group { group: Some(refused) })
+            }
+        };
+        Ok(Codes { codes: vec![known] })
+    }
+
+    fn alarm(&self) -> Option<String> {
+        if let Code::Alarm(alarm) = &self.code { Some(alarm.to_string()) } else { None }
+    }
+}
+
+/// Remedy for an alarm that only the controller's manual describes.
+const LOOK: &[&str] = &["look up the alarm in the controller's manual; `yrcx info alarm` shows the source"];
+
+/// Classification of a code.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Group {
+    /// Group of the alarm, or the refused operation; null for an unknown group.
+    group: Option<&'static str>,
+}
+
+impl ExtraColumns for Group {
+    fn cells(&self) -> Vec<(&'static str, Option<String>)> {
+        vec![("group", self.group.map(ToOwned::to_owned))]
+    }
+}

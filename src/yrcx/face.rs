@@ -1,0 +1,111 @@
+//! Implementation of the family interface for `yrcx`.
+
+use clap::{ArgMatches, Args as _, FromArgMatches as _};
+
+use super::alarm as alarms;
+use super::backup::{back_up, restore};
+use super::commands::Commands;
+use super::decode::Decode;
+use super::explain::Explain;
+use super::link::{Link, Yrcx};
+use super::procedures::Stop;
+use super::serve::ServeArgs;
+use super::top::Poller;
+use super::trace::Recorder;
+use super::unit::Unit;
+use super::{check, hold, overview, panel};
+use armctl_controller::yrcx::{alarm, passing, simulator};
+use armctl_frame::backup::family_backup::Backups;
+use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use armctl_frame::face::HeldLink;
+use armctl_frame::face::layers::Layer;
+use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::face::registration::Declaration;
+use armctl_frame::face::sample::Traffic;
+use armctl_frame::face::teach_panel::Panel;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::robot::alarm::Alarm;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::{BUSES, Family};
+use armctl_frame::{Access, Context, FamilyArguments};
+use armctl_transport::session::host::Guard;
+use armctl_transport::session::host::shared_link::SharedLink;
+
+impl Declaration for Yrcx {
+    type Commands = Commands;
+    type Decode = Decode;
+    type Explain = Explain;
+    type Alarms = alarms::List;
+    type AlarmHistory = alarms::History;
+    type AlarmReset = alarms::Reset;
+    type Position = super::info::Where;
+    type Stop = Stop;
+    type Serve = ServeArgs;
+    type Poller = Poller;
+
+    const NAME: Family = Family::Yrcx;
+    const TITLE: &'static str = "OMRON / Yamaha YRCX";
+    const ABOUT: &'static str = "OMRON / Yamaha YRCX over a fieldbus";
+    const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yrcx-setup`.";
+    const SETUP: (&'static str, &'static str) = ("settings of a YRCX", include_str!("setup.txt"));
+    const START_STATE: &'static str = simulator::EXAMPLE;
+    const PANEL: Panel = panel::PANEL;
+    const GUARD: Guard = Guard { is_harmless_data: |_| false, is_harmless_image: passing::only_stops };
+    const SESSION_RECORDS: bool = true;
+    const SESSION_COMMANDS: bool = true;
+
+    fn urls() -> Vec<(String, &'static str)> {
+        BUSES.iter().map(|bus| (format!("{}://", bus.name), bus.about)).collect()
+    }
+
+    fn codes() -> Vec<(String, String)> {
+        alarm::KNOWN.iter().map(|known| (known.alarm.to_string(), known.text.to_owned())).collect()
+    }
+
+    fn arguments(command: clap::Command) -> clap::Command {
+        Unit::augment_args(command)
+    }
+
+    fn read_arguments(matches: &mut ArgMatches) -> Result<FamilyArguments, clap::Error> {
+        Unit::from_arg_matches_mut(matches).map(FamilyArguments::of)
+    }
+
+    fn stop_command() -> Self::Stop {
+        Stop {}
+    }
+
+    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
+        overview::alarms(link).await
+    }
+
+    fn traffic(link: &Link) -> Traffic {
+        link.traffic()
+    }
+
+    async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+        overview::overview(link).await
+    }
+
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+        Box::pin(check::check(robot, access, screen)).await
+    }
+
+    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+        let (images, recorder) = hold::hold(robot, access, screen).await?;
+        let finish = recorder.map(|recorder| Box::new(|| Recorder::finish(recorder)) as Box<_>);
+        Ok(HeldLink { held: SharedLink::Images(images), finish })
+    }
+}
+
+impl Backups for Yrcx {
+    const IDS: [&'static str; 3] = ["yrcx.backup", "yrcx.restore", "yrcx.diff"];
+
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
+        back_up(context, making).await
+    }
+
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+        restore(context, restoring).await
+    }
+}

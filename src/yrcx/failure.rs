@@ -1,0 +1,233 @@
+//! Conversion of client errors to command failures: what failed on which robot, and what to do. Includes the result
+//! of a stop.
+
+use std::fmt;
+
+use super::position::Unit;
+use super::refusal::kept;
+use crate::refusal::refusal_failure;
+use armctl_client::yrcx::{Error, StopResult};
+use armctl_controller::yrcx::describe::command_summary;
+use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::sequence;
+use armctl_controller::yrcx::session::{NotSentReason, Silence};
+use armctl_controller::yrcx::table::{Command, Pace};
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::attach::session_busy;
+use armctl_frame::dry_run::unknown;
+use armctl_frame::failure::{Failure, Kind};
+
+/// Failure for an error of the client; `label` is the robot.
+pub fn failure(label: &str, error: Error) -> Failure {
+    let about = |kind, what: &dyn fmt::Display| Failure::new(kind, format!("{label}: {what}"));
+    match error {
+        Error::Refused(refusal) => refusal_failure(*refusal),
+        Error::NotSent { why, .. } => about(Kind::NoAnswer, &error).hint(match why {
+            NotSentReason::NoImage => {
+                "check the connection: `-v` counts received packets. The sizes in the URL may be wrong (`armctl robots \
+                 check`)"
+            }
+            NotSentReason::LinkLost => "check the controller; armctl reopens the connection automatically",
+            NotSentReason::NotReady(_) => "another command may still be running; `yrcx io set stop=off` stops a motion",
+            NotSentReason::Interrupted => "nothing was done",
+        }),
+        Error::NoAnswer { why, .. } => {
+            let kind = if let Silence::Undocumented(_) = why { Kind::Malformed } else { Kind::NoAnswer };
+            about(kind, &error).hint("`yrcx status` shows the state of the controller")
+        }
+        Error::OutcomeUnknown { command, why, stop, is_stop_held, ended } => {
+            let held = match (why, stop) {
+                (Silence::LinkLost, None) => match ended {
+                    Some(ended) => format!("; {ended}"),
+                    None => "; the connection is still down".to_owned(),
+                },
+                (Silence::LinkLost, Some(true)) => {
+                    "; the connection is up again, and the stop input SI(06) is on".to_owned()
+                }
+                (Silence::LinkLost, Some(false)) => {
+                    "; the connection is up again, and the stop input SI(06) is off".to_owned()
+                }
+                (_, Some(false)) if is_stop_held => "; the stop input SI(06) stays off".to_owned(),
+                _ => String::new(),
+            };
+            let id = command.row().id;
+            let what = format!("{id} was sent, but the result is unknown: {why}{held}");
+            about(Kind::OutcomeUnknown, &what).hint(verification_hint(command))
+        }
+        Error::Unfinished { name, outcome } => unfinished(label, name, outcome),
+        Error::Cut { by, order, ended } => {
+            let cut = failure(label, *by);
+            match ended {
+                Ok(values) => {
+                    let message = format!("{}; {STOPPED}{}", cut.message, place(&order, &values));
+                    Failure { message, ..cut }
+                }
+                Err(error) => {
+                    let failure = failure(label, *error);
+                    Failure { message: format!("{}; {}", cut.message, failure.message), ..failure }
+                }
+            }
+        }
+        Error::StillMoving { cut: by } => {
+            let why = by.map(|by| format!("{}; ", failure(label, *by).message)).unwrap_or_default();
+            let message = format!("{why}the axis may still move: the connection to the controller is down");
+            Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop")
+        }
+        Error::CommandRunning { .. } => about(Kind::NoAnswer, &error)
+            .hint("the controller executes one remote command at a time; `yrcx io set stop=off` stops a motion"),
+        Error::OtherClientRunning { words } => {
+            about(Kind::NoAnswer, &format!("another client's command is still running: {}", command_summary(&words)))
+                .hint(
+                    "wait until it ends; `yrcx stop` stops a motion, and `yrcx io get` shows the state of the \
+                     controller",
+                )
+        }
+        Error::ProcedureRunning => about(Kind::NoAnswer, &error).hint("wait until it ends"),
+        Error::WordsNotSent => about(Kind::NoAnswer, &error).hint("`yrcx io get SIW2` shows the current words"),
+        Error::SignalsOnly { command } => {
+            let id = command.row().id;
+            let what = "the fieldbus unit supports only signals (I/O size \"Compact\")";
+            about(Kind::Rejected, &format!("{what}, and {id} is a remote command")).hint(
+                "set the unit's I/O size to Normal to use remote commands. These commands use only signals: `yrcx \
+                 status`, `yrcx io`, `yrcx run`, `yrcx stop`, `yrcx recover`",
+            )
+        }
+        Error::MonitorOnly { .. } => Failure::usage(error.to_string())
+            .hint("remove role from the URL; input_only and listen_only can only read signals: `yrcx io get`"),
+        Error::NotHeld => Failure::usage(format!("without waiting, {error}"))
+            .hint("remove --no-wait, or keep a connection open with `armctl session open` first"),
+        Error::Silent => about(Kind::NoAnswer, &error).hint("check the connection: `-v` counts received packets"),
+        Error::NoImage { .. } => {
+            about(Kind::Malformed, &error).hint("check the sizes in the URL: `armctl robots check`")
+        }
+        Error::NotAuthorized(error) => error.into(),
+        Error::Session(busy) => session_busy(label, &busy),
+        Error::DryRun => unknown(),
+        Error::NoReport { .. } => Failure::local(format!("{label}: {error}")),
+        _ => Failure::local(error.to_string()),
+    }
+}
+
+/// Result of a stop.
+const STOPPED: &str = "the robot was stopped by the stop input SI(06), which is on again";
+
+/// Text for the result of a stop.
+pub fn stopped(stopped: StopResult) -> String {
+    match stopped {
+        StopResult::Nothing => "no motion command was sent".to_owned(),
+        StopResult::Motion { order, positions } => format!("{STOPPED}{}", place(&order, &positions)),
+        StopResult::Started => STOPPED.to_owned(),
+        StopResult::Command(command) => format!("{} was ended", command.row().id),
+        StopResult::AlreadyEnded(command, None) => format!("{} had already completed", command.row().id),
+        StopResult::AlreadyEnded(command, Some(alarm)) => {
+            format!("{} had already ended: alarm {alarm}, {}", command.row().id, alarm.text())
+        }
+    }
+}
+
+/// Known position after a command that the stop input ended, and the next step.
+fn place(order: &Order, values: &Values) -> String {
+    let position = match (values.axes(), order.values().int(Key::Report)) {
+        (Some(axes), Some(report)) if report == Unit::Mm.report() => {
+            let mm = axes.map(|steps| format!("{:.3}", f64::from(steps) / 1000.0));
+            format!("; position: {} mm", mm.join(", "))
+        }
+        (Some(axes), _) => format!("; position: {} pulses", axes.map(|pulses| pulses.to_string()).join(", ")),
+        (None, _) => String::new(),
+    };
+    format!("{position}{}", kept(order.row(), ""))
+}
+
+/// Failure for a procedure that did not complete.
+fn unfinished(label: &str, name: &str, outcome: sequence::Outcome) -> Failure {
+    use sequence::Outcome;
+
+    let here = |kind| Failure::new(kind, format!("{name}: {outcome}"));
+    let there = |kind| Failure::new(kind, format!("{label}: {name}: {outcome}"));
+    match outcome {
+        Outcome::NotPossible { hint, .. } => here(Kind::Refused).hint(hint),
+        Outcome::TimedOut { .. } => here(Kind::OutcomeUnknown)
+            .hint("`yrcx status` shows the state of the controller; --timeout sets how long to wait"),
+        Outcome::Broken { .. } => here(Kind::Refused).hint("`yrcx info alarm` shows the alarm"),
+        Outcome::NoImage => there(Kind::NoAnswer).hint("check the connection: `-v` counts received packets"),
+        Outcome::LinkLost { begun: false } => there(Kind::NoAnswer),
+        Outcome::LinkLost { begun: true } => {
+            there(Kind::OutcomeUnknown).hint("`yrcx status` shows the state of the controller")
+        }
+        // The client does not report this as a failure.
+        Outcome::Done => there(Kind::Local),
+    }
+}
+
+/// Hint how to find out whether a command took effect when its answer was lost.
+fn verification_hint(command: Command) -> String {
+    let row = command.row();
+    match (row.category(), row.pace) {
+        (1, Pace::Motion | Pace::Jog) => {
+            let kept = kept(row, "");
+            format!("keep clear; do not send it again; `yrcx position` shows where the robot is{kept}")
+        }
+        (1, Pace::Power) => "`yrcx status` shows whether servos and motor power are on".to_owned(),
+        (5, _) => "keep clear; `yrcx info tasks` shows the running tasks".to_owned(),
+        _ => match TELLTALES.iter().find(|(commands, _)| commands.contains(&command)) {
+            Some((_, words)) => format!("check with `yrcx {words}`"),
+            None => "`yrcx status` shows the state of the controller".to_owned(),
+        },
+    }
+}
+
+/// Read command for the values that other commands write.
+const TELLTALES: [(&[Command], &str); 12] = [
+    (&[Command::InchAmountSet], "info inch"),
+    (
+        &[
+            Command::Teach,
+            Command::PointSet,
+            Command::PointCopy,
+            Command::PointAdd,
+            Command::PointSub,
+            Command::PointPallet,
+            Command::PointElementPulse,
+            Command::PointElementMm,
+        ],
+        "point get",
+    ),
+    (&[Command::SpeedManual, Command::SpeedAuto, Command::SpeedProgram], "info speed"),
+    (&[Command::ArmSelect], "info arm"),
+    (&[Command::CommentSet], "comment get"),
+    (&[Command::PalletSet], "pallet-data get"),
+    (&[Command::ShiftSet, Command::ShiftElement], "shift-data get"),
+    (&[Command::HandSet], "hand-data get"),
+    (
+        &[
+            Command::VarSet,
+            Command::VarSetVar,
+            Command::VarAdd,
+            Command::VarAddVar,
+            Command::VarSub,
+            Command::VarSubVar,
+            Command::VarMul,
+            Command::VarMulVar,
+            Command::VarDiv,
+            Command::VarDivVar,
+        ],
+        "var get",
+    ),
+    (&[Command::ParamSet], "param get"),
+    (&[Command::PortSet, Command::PortSetBit], "port get"),
+    (&[Command::DateSet, Command::TimeSet], "clock get"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_changes_something_names_what_tells() {
+        assert_eq!(verification_hint(Command::PointAdd), "check with `yrcx point get`");
+        assert!(verification_hint(Command::MoveArch).contains("yrcx position"));
+        assert!(verification_hint(Command::ProgramRun).contains("info tasks"));
+        assert!(verification_hint(Command::MotorOn).contains("motor power"));
+        assert!(verification_hint(Command::AlarmReset).contains("status"));
+    }
+}

@@ -1,0 +1,219 @@
+//! Interface that each fieldbus implements. `buses.rs` lists the fieldbuses.
+
+use std::any::Any;
+use std::fmt;
+use std::net::SocketAddr;
+use std::path::Path;
+use std::time::Duration;
+
+use futures_util::future::LocalBoxFuture;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::decode::images::BusDecoder;
+use armctl_controller::yrcx::alarm::Alarm;
+use armctl_controller::yrcx::image::Image;
+use armctl_controller::yrcx::simulator::Start;
+use armctl_frame::face::layers::Layers;
+use armctl_frame::failure::Failure;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::{Address, Bus, Place, Sim, Target};
+use armctl_transport::image::tap::Tap;
+use armctl_transport::image::{ImageLink, LinkError};
+
+/// A fieldbus: connection, diagnosis and simulation.
+#[derive(Debug)]
+pub struct Fieldbus {
+    /// Name, as in its commands and URL schemes.
+    pub name: &'static str,
+    /// Alarm of the controller after loss of the link. The next number is the alarm for a permanent loss.
+    pub link_alarm: Alarm,
+    /// Link type of recorded packets in a capture file; [`LINKTYPE_RAW`] means IP packets.
+    ///
+    /// [`LINKTYPE_RAW`]: armctl_transport::tap::LINKTYPE_RAW
+    pub link_type: u16,
+    /// Layers of `robots check` between the name and the signals, in order. The first layer always exists.
+    pub layers: &'static [&'static str],
+    /// Whether other requests are possible while a session of this computer is open: true for a network, false for an
+    /// exclusive adapter.
+    pub has_room: bool,
+    /// Resolves all addresses of a controller; `None` if each controller has only one.
+    pub addresses: Option<Addresses>,
+    /// Opens a link: a commanding link, which sends the resting image first, or a read-only link, which does not
+    /// affect the master.
+    pub open: for<'a> fn(At<'a>, Purpose) -> Opening<'a, ImageLink>,
+    /// Opens the explicit messaging client of the device.
+    pub board: for<'a> fn(At<'a>) -> Opening<'a, Box<dyn Board>>,
+    /// Meaning of an error code of its devices; `None` for any other code.
+    pub explain: fn(code: &str) -> Option<Explained>,
+    /// Decoder for its images in captures.
+    pub decoder: fn() -> Box<dyn BusDecoder>,
+    /// Starts a simulated controller on this fieldbus, with the faults of the simulator's URL.
+    pub simulate: fn(&Sim) -> Result<Simulation, Failure>,
+}
+
+/// Resolves all addresses of a controller.
+pub type Addresses = fn(&Bus) -> Result<Vec<Address>, LinkError>;
+
+/// Future of an open operation.
+pub type Opening<'a, T> = LocalBoxFuture<'a, Result<T, LinkError>>;
+
+/// Meaning of an error code.
+#[derive(Debug, Clone)]
+pub struct Explained {
+    /// Code in normal form.
+    pub code: String,
+    /// Meaning; `None` if unknown.
+    pub meaning: Option<String>,
+    /// Refused operation.
+    pub refused: &'static str,
+    /// Remedies.
+    pub remedies: &'static [&'static str],
+}
+
+/// Address of a controller on a fieldbus.
+#[derive(Debug, Clone)]
+pub struct At<'a> {
+    /// Robot, for its timeout and its name.
+    pub robot: &'a Robot,
+    /// Parsed URL of the robot or of a simulator.
+    pub bus: &'a Bus,
+    /// Recorder of the packets.
+    pub tap: Tap,
+}
+
+/// Purpose of a link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// Use as the URL requests: usually to command.
+    Command,
+    /// Read-only use.
+    Look,
+}
+
+/// Explicit messaging client of a device, for the commands of its fieldbus and for `robots check`.
+pub trait Board: fmt::Debug + Any {
+    /// Checks the layers up to the signals, and reads the image of the controller; `None` after a failure.
+    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>>;
+
+    /// Closes the connection.
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()>;
+}
+
+/// Converts a client to a trait object.
+pub fn boxed(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, LinkError> {
+    Ok(Box::new(board?))
+}
+
+/// Simulated controller on a fieldbus in this process.
+#[derive(Debug)]
+pub struct Simulation {
+    /// Address.
+    pub bus: Bus,
+    /// Controller.
+    pub controller: Box<dyn fmt::Debug>,
+}
+
+impl Simulation {
+    /// Simulation at a URL.
+    pub fn at(url: &str, controller: impl fmt::Debug + 'static) -> Result<Self, Failure> {
+        Ok(Self { bus: bus_of(url)?, controller: Box::new(controller) })
+    }
+}
+
+/// Search of one fieldbus, with its command-line arguments.
+pub trait Search {
+    /// Scope of the search.
+    fn scope(&self) -> Scope;
+
+    /// Collects answers for the time `wait`.
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>>;
+}
+
+/// Scope of a search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Scope {
+    /// Nothing, because the fieldbus needs an address.
+    Nothing,
+    /// Default scope. If it cannot be searched, only a warning is printed.
+    Usual,
+    /// A network or an adapter that the user named.
+    Network,
+    /// Only the devices that the user named.
+    Devices,
+}
+
+/// A device that answered. Its identity is untrusted.
+#[derive(Debug)]
+pub struct Device {
+    /// Address of the device.
+    pub address: String,
+    /// URL for `-t`.
+    pub target: String,
+    /// Whether the vendor id is that of a yrcx.
+    pub is_yrcx: bool,
+    /// Identity in one line.
+    pub device: String,
+    /// Identity as data, as its fieldbus defines it.
+    pub identity: Map<String, Value>,
+}
+
+/// Identity of a device as data.
+pub fn fields(identity: &impl Serialize) -> Result<Map<String, Value>, Failure> {
+    match serde_json::to_value(identity) {
+        Ok(Value::Object(fields)) => Ok(fields),
+        Ok(_) => Err(Failure::local("internal error: an identity has no fields")),
+        Err(error) => Err(Failure::local(error.to_string())),
+    }
+}
+
+/// Simulator server of one fieldbus, with its command-line arguments.
+pub trait Serve {
+    /// Whether the server has a pseudo-terminal, which can have a name.
+    fn has_terminal(&self) -> bool {
+        false
+    }
+
+    /// Starts the server in its own threads or tasks. `simulator` selects one of several simulators of the fieldbus.
+    /// `link` is the name of the pseudo-terminal, `faults` the text of `--fault`.
+    fn serve(
+        &self,
+        simulator: Option<&str>,
+        start: Start,
+        link: Option<&Path>,
+        faults: Option<&str>,
+    ) -> Result<Served, Failure>;
+}
+
+/// Operations of the console of a simulator on its fieldbus.
+pub trait Operator {
+    /// Executes a console line and returns the result or the reason for a failure.
+    fn console(&self, line: &str) -> Result<String, String>;
+
+    /// Sets the faults of link and device; `None` removes all faults.
+    fn set_faults(&self, faults: Option<&str>) -> Result<(), String>;
+}
+
+/// A served controller; it stops when this value is dropped.
+pub struct Served {
+    /// URL of the controller.
+    pub target: String,
+    /// Address that a network server listens on.
+    pub address: Option<SocketAddr>,
+    /// Server with its console.
+    pub operator: Box<dyn Operator>,
+}
+
+impl fmt::Debug for Served {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.target)
+    }
+}
+
+/// Parses the URL of a fieldbus.
+pub fn bus_of(url: &str) -> Result<Bus, Failure> {
+    match url.parse::<Target>()?.place {
+        Place::Bus(bus) => Ok(bus),
+        _ => Err(Failure::local(format!("internal error: {url} is not a fieldbus URL"))),
+    }
+}

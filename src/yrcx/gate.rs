@@ -1,0 +1,495 @@
+//! Tests of every leaf command at the confirmation gate: risk, read-only robot, no terminal to ask on, dry run
+//! compared with sent frames.
+
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use serde_json::Value;
+
+use super::commands::Commands;
+use super::link::Link;
+use super::link::Yrcx;
+use super::simulated::in_process;
+use super::testing::{planned_line, resolved};
+use armctl_controller::Risk;
+use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
+use armctl_controller::yrcx::signal::{Side, Signal, resting};
+use armctl_controller::yrcx::table::Row;
+use armctl_frame::authority::Authority;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::gate::{Gate, Grant};
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::Sim;
+use armctl_frame::testing::{self, QUIET};
+use armctl_frame::{Access, AnyCommand, CommandSet as _, ConnectMode, Context};
+use armctl_transport::image::ImagePeer;
+
+const READS: &[&str] = &[
+    "status",
+    "status --full",
+    "status-reset",
+    "point get 0..3",
+    "point dump @/new.csv 0..3",
+    "comment get 50",
+    "comment list 0..3",
+    "comment watch 50",
+    "comment dump @/comments.csv 0..3",
+    "point list 0..3",
+    "pallet-data get 10",
+    "pallet-data list 0..3",
+    "pallet-data watch 10",
+    "pallet-data dump @/pallets.csv 0..3",
+    "shift-data get 4,5",
+    "shift-data list 0..3",
+    "shift-data watch 4",
+    "shift-data dump @/shifts.csv 0..3",
+    "hand-data get 1",
+    "hand-data list 0..3",
+    "hand-data watch 1",
+    "hand-data dump @/hands.csv 0..3",
+    "var get SGI1",
+    "var list SGI0..SGI3",
+    "var dump @/vars.csv SGI0..SGI3",
+    "var watch SGI1",
+    "port watch DO2",
+    "param get WEIGHT",
+    "param list TOLE",
+    "param watch WEIGHT",
+    "param dump @/params.csv TOLE",
+    "port get DO2",
+    "program show --task 1",
+    "info version",
+    "info system",
+    "info servo",
+    "info tasks",
+    "info line",
+    "info alarm",
+    "info speed",
+    "info arm",
+    "info origin",
+    "info torque",
+    "info slots",
+    "info inch",
+    "alarm list",
+    "alarm watch",
+    "alarm history",
+    "position",
+    "clock get",
+    "io get",
+    "io list",
+    "io watch",
+    "auto-mode",
+    "backup @/new --only info,settings,pallets,shifts,hands,variables",
+    "diff @/saved",
+    "eip identity",
+    "eip probe",
+    "eip get 1 1 7",
+    "devicenet scan",
+    "devicenet identity",
+    "devicenet probe",
+    "profibus scan",
+    "profibus probe",
+    "profibus diag",
+    "profinet identify",
+    "profinet probe",
+];
+
+const WRITES: &[&str] = &[
+    "inch-distance 100",
+    "speed manual 20",
+    "shift select 4",
+    "hand select 1",
+    "arm select right",
+    "torque-limit --axis 1 50",
+    "var set SGI1 1",
+    "var copy SGI1 SGI2",
+    "var restore @/variables.csv",
+    "var add SGI1 1",
+    "var sub SGI1 1",
+    "var mul SGI1 1",
+    "var div SGI1 1",
+    "port set DO2 1",
+    "program select --program 1 --priority 32",
+    "program reset --all-programs",
+    "clock set 2026-03-01",
+    "alarm reset",
+    "io set SI20=on",
+    "io pulse SI20",
+    "emergency-stop",
+    "reset",
+    "stop",
+    "raw --wi 0x604",
+    "profinet blink",
+    "profinet set-name robot-7 --temporary",
+    "profinet set-ip 192.168.0.10/24 --temporary",
+];
+
+/// Settings of the device on the fieldbus, which are not remote commands.
+const BOARDS: [&str; 4] =
+    ["eip set 0xF5 1 3 00", "profinet set-name robot-7", "profinet set-ip 192.168.0.10/24", "profinet reset"];
+
+/// Pairs of lines: the first stores data that the second overwrites.
+const DESTROYS: &[(&str, &str)] = &[
+    ("point set 7 --mm 9,9,9,9", "teach 7 --in mm"),
+    ("point set 7 --mm 9,9,9,9", "point set 7 --mm 1,2,3,4"),
+    ("comment set 7 OLD", "comment set 7 NEW"),
+    ("pallet-data set 7 2 2 1 1", "pallet-data set 7 3 2 1 1"),
+    ("shift-data set 7 1 2 3 4", "shift-data set 7 axis_4=5"),
+    ("hand-data set 7 1 1 2 3 0", "hand-data set 7 1 1 2 4 0"),
+    ("param set TOLE.1 100", "param set TOLE.1 101"),
+    ("param set TOLE.1 100", "param copy TOLE.2 TOLE.1"),
+    ("param set TOLE.1 100", "param restore @/params-7.csv"),
+    ("point set 7 --mm 9,9,9,9", "point-calc copy 1 --to 7"),
+    ("point set 7 --mm 9,9,9,9", "point-calc add 1 --to 7"),
+    ("point set 7 --mm 9,9,9,9", "point-calc sub 1 --from 7"),
+    ("point set 7 --mm 9,9,9,9", "point-calc pallet 10 --place 1 --to 7"),
+    ("point set 7 --mm 9,9,9,9", "point-calc element 7 --element 1 --mm 1"),
+    ("shift-data set 7 1 2 3 4", "point-calc shift-element 7 --element 1 --mm 9"),
+    ("point set 7 --mm 9,9,9,9", "raw --wi 0x100,1,7,0,1"),
+    ("pallet-data set 10 3 3 1 1", "restore @/saved"),
+    ("point set 7 --mm 9,9,9,9", "point restore @/points.csv"),
+    ("point set 7 --mm 9,9,9,9", "point copy 1 7"),
+    ("comment set 7 OLD", "comment copy 50 7"),
+    ("comment set 7 OLD", "comment restore @/comments-7.csv"),
+    ("pallet-data set 7 2 2 1 1", "pallet-data copy 10 7"),
+    ("pallet-data set 7 2 2 1 1", "pallet-data restore @/pallets-7.csv"),
+    ("shift-data set 7 1 2 3 4", "shift-data copy 5 7"),
+    ("shift-data set 7 1 2 3 4", "shift-data restore @/shifts-7.csv"),
+    ("hand-data set 7 1 1 2 3 0", "hand-data copy 1 7"),
+    ("hand-data set 7 1 1 2 3 0", "hand-data restore @/hands-7.csv"),
+];
+
+const MOTIONS: &[&str] = &[
+    "move --point 19",
+    "movei --point 19",
+    "movet --point 19",
+    "drive --axis 3 --point 19",
+    "drivei --axis 3 --point 19",
+    "pallet --pallet 1 --position 21",
+    "push --axis 3 --point 19",
+    "jog pulse 1 + --for 100ms",
+    "inch pulse 1 +",
+    "origin",
+    "servo on",
+    "servo off",
+    "motor on",
+    "motor off",
+    "program run --all-programs",
+    "program run MAIN",
+    "program step --task 1",
+    "program skip --task 1",
+    "program next --task 1",
+    "power-on",
+    "recover",
+    "run",
+    "raw --wi 0x42",
+    "profinet probe --try",
+    "eip probe --try",
+];
+
+/// Commands without visible frames: `io watch` only reads, and the zeros of `status-reset` are the resting image.
+const SHOWN: [&str; 2] = ["io watch", "status-reset"];
+
+/// Command that requires a typed word, because its effect cannot be undone.
+const WORD: &str = "abs-reset --axis 2";
+
+/// Files from a backup that the lines refer to.
+struct Desk(tempfile::TempDir);
+
+impl Desk {
+    fn new() -> Self {
+        let desk = Self(tempfile::tempdir().unwrap());
+        let mut bench = Bench::new();
+        bench.run(&desk.line("backup @/saved --only pallets,shifts"), true).unwrap();
+        for (name, text) in [
+            ("points.csv", "name;unit;axis_2;comment\n7;mm;-2,5;SEVEN\n"),
+            ("comments-7.csv", "name,comment\n7,NEW\n"),
+            ("pallets-7.csv", "name,nx\n7,3\n"),
+            ("shifts-7.csv", "name,axis_4_mm\n7,5\n"),
+            ("params-7.csv", "name,value\nTOLE.1,101\n"),
+            ("hands-7.csv", "name,data_3_mm\n7,4\n"),
+            ("variables.csv", "name,value\nSGI1,1\n"),
+        ] {
+            std::fs::write(desk.0.path().join(name), text).unwrap();
+        }
+        desk
+    }
+
+    fn line(&self, line: &str) -> String {
+        line.replace('@', self.0.path().to_str().unwrap())
+    }
+}
+
+/// All lines with their expected risk.
+fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
+    let with = |lines: &'static [&'static str], risk| lines.iter().map(move |line| (*line, risk));
+    let destroys = DESTROYS.iter().map(|(_, line)| *line).chain([WORD]).chain(BOARDS);
+    let destroys = destroys.map(|line| (line, Risk::Destroy));
+    with(READS, Risk::Read).chain(with(WRITES, Risk::Write)).chain(destroys).chain(with(MOTIONS, Risk::Motion))
+}
+
+/// Commands that do not need a robot connection of the command line.
+const AT_DESK: [&str; 2] = ["yrcx.io.map", "yrcx.profinet.gsdml"];
+
+/// A robot that counts as a real controller, and the command of a line.
+fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {
+    let words: Vec<&str> = line.split(' ').collect();
+    resolved(url_for(line), &words).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
+}
+
+/// Whether a line uses the explicit messaging client.
+fn is_for_board(line: &str) -> bool {
+    ["eip ", "profibus ", "profinet "].iter().any(|bus| line.starts_with(bus))
+}
+
+/// Target URL of a line: commands of a fieldbus need one of that fieldbus.
+fn url_for(line: &str) -> &'static str {
+    match line.split(' ').next() {
+        Some("profibus") => "profibus:///dev/null?station=5",
+        Some("profinet") => "profinet://robot-1@eth0",
+        _ => "eip://127.0.0.1",
+    }
+}
+
+#[test]
+fn every_leaf_has_the_risk_that_it_shall_have() {
+    let mut seen: BTreeSet<&str> = AT_DESK.into();
+    for (line, risk) in lines() {
+        let (_, command) = real(line);
+        assert_eq!(command.intent(None).risk, risk, "{line}");
+        seen.insert(command.id());
+    }
+    let all: BTreeSet<&str> = Commands::schemas().iter().map(|entry| entry.id).collect();
+    assert_eq!(all.difference(&seen).collect::<Vec<_>>(), Vec::<&&str>::new(), "these have no line");
+}
+
+#[test]
+fn a_read_only_robot_is_read_and_stopped() {
+    for (line, risk) in lines() {
+        let (mut robot, command) = real(line);
+        robot.read_only.value = true;
+        let intent = command.intent(Some(&robot));
+        let passes = Gate { yes: true, ..Gate::default() }.must_ask(&QUIET, &robot, &intent);
+        if risk == Risk::Read || ["stop", "emergency-stop"].contains(&line) {
+            assert_eq!(passes, Ok(false), "{line}");
+        } else {
+            assert_eq!(passes.unwrap_err().kind, Kind::Rejected, "{line}");
+        }
+    }
+}
+
+#[test]
+fn what_overwrites_is_not_done_where_nobody_says_yes() {
+    let desk = Desk::new();
+    for (before, line) in DESTROYS {
+        let mut bench = Bench::new();
+        bench.run(before, true).unwrap();
+        bench.sent();
+        let failure = bench.run(&desk.line(line), false).unwrap_err();
+        assert_eq!((failure.kind.exit(), line), (7, line), "{failure}");
+        assert!(failure.message.contains(" -> ") && failure.message.contains("would overwrite "), "{line}: {failure}");
+        let risks = bench.sent().into_iter().map(|frame| frame.risk());
+        assert!(risks.clone().all(|risk| risk == Risk::Read) && risks.count() > 0, "{line}");
+        bench.run(&desk.line(line), true).unwrap();
+        assert_eq!(bench.sent().iter().map(Frame::risk).max(), Some(Risk::Destroy), "{line}");
+        // The second run overwrites nothing, except if the command adds, or if its result cannot be predicted.
+        if !["add", "sub", "--place"].iter().any(|word| line.contains(word)) {
+            bench.run(&desk.line(line), false).unwrap();
+        }
+    }
+    for line in MOTIONS.iter().chain([&WORD]) {
+        let (robot, command) = real(line);
+        let failure = Gate::default().must_ask(&QUIET, &robot, &command.intent(Some(&robot))).unwrap_err();
+        assert_eq!(failure.kind.exit(), 7, "{line}");
+    }
+}
+
+#[test]
+fn what_is_new_wants_no_yes() {
+    let desk = Desk::new();
+    for line in [
+        "teach --point 7 --in pulse",
+        "point set 7 --mm 1,2,3,4",
+        "comment set 7 NEW",
+        "pallet-data set 7 3 2 1 1",
+        "hand-data set 7 1 1 2 4 0",
+        "point-calc copy 1 --to 7",
+        "point-calc pallet 10 --place 1 --to 7",
+        "restore @/saved",
+    ] {
+        let mut bench = Bench::new();
+        bench.run(&desk.line(line), false).unwrap_or_else(|failure| panic!("{line}: {failure}"));
+    }
+}
+
+#[test]
+fn a_dry_run_shows_a_frame_of_its_own_risk() {
+    let desk = Desk::new();
+    for (line, risk) in lines() {
+        let plan = planned_line(url_for(line), &desk.line(line)).unwrap_or_else(|failure| panic!("{line}: {failure}"));
+        let risks: Vec<Risk> = frames(&plan).iter().map(|(frame, _)| frame.risk()).collect();
+        if is_for_board(line) {
+            assert!(plan["frames"][0]["hex"].is_string() || plan["then"].is_string(), "{line}: {plan}");
+        } else if risk > Risk::Read {
+            assert_eq!(risks.iter().max(), Some(&risk), "{line}: {plan}");
+        } else {
+            assert!(risks.iter().all(|risk| *risk == Risk::Read), "{line}: {plan}");
+        }
+        let is_complete = plan["complete"] == true;
+        assert_eq!(is_complete, plan["then"].is_null(), "{line}: {plan}");
+    }
+}
+
+#[test]
+fn a_dry_run_shows_what_is_sent() {
+    let desk = Desk::new();
+    let befores = DESTROYS.iter().map(|(before, line)| (Some(*before), *line));
+    let others = lines().filter(|(_, risk)| *risk != Risk::Destroy).map(|(line, _)| (None, line));
+    for (before, line) in befores.chain(others).filter(|(_, line)| !is_for_board(line) && !SHOWN.contains(line)) {
+        let line = desk.line(line);
+        let mut bench = Bench::new();
+        if let Some(before) = before {
+            bench.run(before, true).unwrap();
+        }
+        let plan = planned_line("sim:", &line).unwrap();
+        bench.sent();
+        let outcome = bench.run(&line, true);
+        let mut sent = bench.sent().into_iter().peekable();
+        for (frame, is_certain) in frames(&plan) {
+            if sent.peek().is_some_and(|sent| frame.fits(sent)) {
+                sent.next();
+            } else if is_certain && outcome.is_ok() {
+                panic!("{line}: {frame:?} is planned, {:?} is sent: {plan}", sent.peek());
+            }
+        }
+        let rest: Vec<Frame> = sent.collect();
+        assert!(rest.is_empty() || plan["complete"] == false, "{line}: {rest:?} is sent and not planned: {plan}");
+    }
+}
+
+/// A sent frame: a remote command, or the words of signals.
+#[derive(Debug, Clone, PartialEq)]
+enum Frame {
+    Words(Vec<String>),
+    Bits(Vec<String>),
+}
+
+impl Frame {
+    /// Whether this planned frame matches a sent frame. A planned word that is read first is `?`.
+    fn fits(&self, sent: &Self) -> bool {
+        let ((Self::Words(planned), Self::Words(sent)) | (Self::Bits(planned), Self::Bits(sent))) = (self, sent) else {
+            return false;
+        };
+        planned.len() == sent.len() && planned.iter().zip(sent).all(|(planned, sent)| planned == sent || planned == "?")
+    }
+
+    /// Highest risk of the frame; for signals, the risk of the bits that differ from the resting image.
+    fn risk(&self) -> Risk {
+        match self {
+            Self::Words(words) => Row::from_word(number(&words[0])).unwrap().risk,
+            Self::Bits(bits) => risk_of(bits),
+        }
+    }
+}
+
+fn number(word: &str) -> u16 {
+    u16::from_str_radix(word.trim_start_matches("0x"), 16).unwrap()
+}
+
+/// Risk of signals by the bits that differ from the resting image.
+fn risk_of(bits: &[String]) -> Risk {
+    let mut image = Image::default();
+    for (word, text) in image.0[COMMAND_WORDS..].iter_mut().zip(bits) {
+        *word = number(text);
+    }
+    let differ = Signal::all(Side::Input).filter(|signal| signal.is_on(&image) != signal.is_on(&resting()));
+    differ.map(|signal| signal.risk(signal.is_on(&image))).max().unwrap_or(Risk::Write)
+}
+
+/// Frames of a plan, and whether each is certain.
+fn frames(plan: &Value) -> Vec<(Frame, bool)> {
+    let texts =
+        |value: &Value| value.as_array().map(|all| all.iter().map(|text| text.as_str().unwrap().to_owned()).collect());
+    let frame = |frame: &Value| {
+        let words = texts(&frame["wi"]).map(Frame::Words).or_else(|| texts(&frame["bits"]).map(Frame::Bits))?;
+        let depends = frame["depends_on"].as_str();
+        assert!(depends.is_none_or(|on| on.contains(" if ")), "{frame}");
+        Some((words, depends.is_none()))
+    };
+    plan["frames"].as_array().unwrap().iter().filter_map(frame).collect()
+}
+
+/// Simulated controller that records the images it receives.
+struct Bench {
+    runtime: tokio::runtime::Runtime,
+    robot: Robot,
+    link: Link,
+    shown: Arc<Mutex<Vec<Frame>>>,
+}
+
+struct Noting<P>(P, Image, Arc<Mutex<Vec<Frame>>>);
+
+impl<P: std::fmt::Debug> std::fmt::Debug for Noting<P> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl<P: ImagePeer> ImagePeer for Noting<P> {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        if let Some(next) = image.and_then(Image::from_bytes) {
+            let (was, is) = (self.1.0, next.0);
+            let mut shown = self.2.lock().unwrap();
+            if is[COMMAND_WORDS..] != was[COMMAND_WORDS..] {
+                shown.push(Frame::Bits(super::link::hex(&is[COMMAND_WORDS..])));
+            }
+            if is[0] != 0 && is[..COMMAND_WORDS] != was[..COMMAND_WORDS] {
+                shown.push(Frame::Words(super::link::hex(&is[..COMMAND_WORDS])));
+            }
+            self.1 = next;
+        }
+        self.0.input(now, image);
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.0.output(now)
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0.wake()
+    }
+}
+
+impl Bench {
+    fn new() -> Self {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().unwrap();
+        let (simulated, _) = resolved("sim:", &["status"]).unwrap();
+        let shown = Arc::default();
+        let peer = Noting(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
+        let access = Access::reading(ConnectMode::Control);
+        let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
+        // The gate must treat the simulator as a real controller.
+        let (robot, _) = real("status");
+        Self { runtime, robot, link, shown }
+    }
+
+    /// Runs a line like the command frame, with `--yes` or without a terminal to ask on.
+    fn run(&mut self, line: &str, yes: bool) -> Result<Value, Failure> {
+        let (_, command) = real(line);
+        let intent = command.intent(Some(&self.robot));
+        let gate = Gate { yes, ..Gate::default() };
+        let grant = Grant::up_to(intent.initial_risk());
+        let Self { runtime, robot, link, .. } = self;
+        link.grant(grant.clone());
+        let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
+        let context = Context { robot, link, screen: &QUIET, several: false, authority };
+        let report = runtime.block_on(testing::run::<Yrcx>(&*command, context))?;
+        report.failure().map_or_else(|| report.data(), Err)
+    }
+
+    /// Images received since the last call.
+    fn sent(&mut self) -> Vec<Frame> {
+        std::mem::take(&mut *self.shown.lock().unwrap())
+    }
+}

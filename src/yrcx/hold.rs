@@ -1,0 +1,21 @@
+//! Link to a controller for a session.
+
+use tokio::time::Instant;
+
+use super::connect::endpoint;
+use super::failure::failure;
+use super::trace::Recorder;
+use armctl_client::yrcx;
+use armctl_frame::Access;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::settings::Robot;
+use armctl_transport::session::host::shared_link::Images;
+
+/// Opens the link.
+pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Images, Option<Recorder>), Failure> {
+    let endpoint = endpoint(robot)?;
+    let (link, recorder) = endpoint.open(robot, access, screen).await?;
+    let held = yrcx::hold(link, endpoint.is_owner(), Instant::now() + robot.timeout.value).await;
+    Ok((held.map_err(|error| failure(&robot.label(), error))?, recorder))
+}

@@ -1,0 +1,83 @@
+//! `yrcx info alarm` (4.7.17), and alarms in answers.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::single::{one_row, shown};
+use armctl_controller::yrcx::alarm;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Kind, Nothing, Row, Source};
+
+one_row! {
+    /// Reads the last alarm of a remote command.
+    Alarm(self) "yrcx.info.alarm" -> Alarms<Part> {}
+    gives Command::LatestAlarm,
+    done as answer => {
+        let row = entry(&answer.values, Kind::Alarm).map(|entry| Row::new(1, "alarm", Ok(entry)));
+        Alarms { alarms: row.into_iter().collect(), standing: Nothing {}, asked: 1 }
+    };
+}
+
+/// Source of an alarm.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Part {
+    /// Robot, controller or task.
+    place: Option<String>,
+    /// Axis, motor, option slot or program task.
+    part: Option<String>,
+}
+
+impl ExtraColumns for Part {
+    fn cells(&self) -> Vec<(&'static str, Option<String>)> {
+        vec![("place", self.place.clone()), ("part", self.part.clone())]
+    }
+}
+
+/// Alarm in an answer; none if the number is 0.0.
+pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
+    let number = |key| values.int(key).and_then(|number| u16::try_from(number).ok()).unwrap_or_default();
+    let found = alarm::Alarm::new(number(Key::AlarmGroup), number(Key::AlarmCategory));
+    if found == alarm::Alarm::new(0, 0) {
+        return None;
+    }
+    let place = |kind, count| {
+        let kind = shown(Command::LatestAlarm, values, kind)?;
+        match values.int(count) {
+            // No number means all, or a task without a number.
+            Some(0) | None => Some(kind),
+            Some(number) => Some(format!("{kind} {number}")),
+        }
+    };
+    let part = Part { place: place(Key::Place1, Key::Place1Number), part: place(Key::Place2, Key::Place2Number) };
+    Some(AlarmEntry { alarm: Told { kind: Some(kind), ..told(found) }, own: part })
+}
+
+/// Alarm text from the built-in table, if known.
+pub fn told(alarm: alarm::Alarm) -> Told {
+    let known = alarm.known();
+    let line = |lines: &[&str]| Some(lines.join("; ")).filter(|line| !line.is_empty());
+    Told {
+        code: Some(alarm.to_string()),
+        text: Some(alarm.text().to_owned()),
+        kind: Some(Kind::Alarm),
+        cause: known.and_then(|known| line(known.causes)),
+        remedy: known.and_then(|known| line(known.remedies)),
+        source: Source::Armctl,
+        ..Told::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{example, read_example, words};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        assert_eq!(words(&["info", "alarm"]).unwrap(), [example("4.7.17-reference")]);
+        let latest = &read_example("4.7.17-reference", &["info", "alarm"])["alarms"][0];
+        assert_eq!((&latest["code"], &latest["place"]), (&json!("2.334"), &json!("robot 1")));
+    }
+}

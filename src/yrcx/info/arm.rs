@@ -1,0 +1,98 @@
+//! `yrcx info arm` (4.7.9, 4.7.10).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::link::Yrcx;
+use crate::refusal::BuildOrder as _;
+use crate::several::ask_each;
+use crate::single::shown;
+use armctl_controller::yrcx::table;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::failure::Failure;
+use armctl_frame::items;
+use armctl_frame::items::ItemError;
+use armctl_frame::output::view::{Cell, View};
+use armctl_frame::{Command, Context, Report};
+
+/// Reads the selected and the current hand system.
+#[derive(Debug, Args)]
+#[command(after_help = "A robot without axes reports `right` for both. `yrcx arm select` changes the selection.")]
+pub struct Arm {}
+
+impl Command for Arm {
+    type Family = Yrcx;
+    type Report = Arms;
+    const ID: &'static str = "yrcx.info.arm";
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Arms, Failure> {
+        let link = context.link;
+        let selected = link.draft(table::Command::ArmDesignation)?.order()?;
+        let current = link.draft(table::Command::ArmStatus)?.order()?;
+        let answers = ask_each(link, context.screen, "reading hand systems", &[selected, current]).await?;
+        let commands = [table::Command::ArmDesignation, table::Command::ArmStatus];
+        let mut arms = [None, None];
+        let mut errors = Vec::new();
+        for (((arm, command), name), outcome) in
+            arms.iter_mut().zip(commands).zip(["selected", "current"]).zip(answers.outcomes)
+        {
+            match outcome {
+                Ok(values) => *arm = shown(command, &values, Key::Arm),
+                Err(failure) => errors.push(ItemError::new(format!("{name} hand system"), failure)),
+            }
+        }
+        items::all_failed(commands.len(), &errors)?;
+        let [selected, current] = arms;
+        Ok(Arms { selected, current, errors })
+    }
+}
+
+/// Hand systems.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Arms {
+    /// `right` or `left`: the system for motions.
+    selected: Option<String>,
+    /// `right` or `left`: the present system of the arm.
+    current: Option<String>,
+    /// Values that could not be read, and the reason.
+    errors: Vec<ItemError>,
+}
+
+impl Report for Arms {
+    fn view(&self) -> View {
+        View::fields([
+            ("selected", Cell::optional(self.selected.as_deref())),
+            ("current", Cell::optional(self.current.as_deref())),
+        ])
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(2, &self.errors)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{Reply, Scripted, answer, example, read_in_turn, report_on, words};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let ids = ["4.7.9-reference", "4.7.10-reference"];
+        assert_eq!(words(&["info", "arm"]).unwrap(), ids.map(example));
+        assert_eq!(read_in_turn(&ids, &["info", "arm"]), json!({"selected": "left", "current": "left", "errors": []}));
+    }
+
+    #[test]
+    fn one_that_is_refused_does_not_hide_the_other() {
+        let mut no = [0; 16];
+        no[..3].copy_from_slice(&[0x4000, 5, 1]);
+        let script = [Reply::Ends(1, no), Reply::Ends(1, answer("4.7.10-reference"))];
+        let (read, failure, _) = report_on(Scripted::new(script), &["info", "arm"]);
+        assert_eq!((&read["selected"], &read["current"]), (&json!(null), &json!("left")));
+        assert_eq!(read["errors"][0]["asked"], "selected hand system");
+        assert_eq!(failure.unwrap().kind.exit(), 9);
+    }
+}

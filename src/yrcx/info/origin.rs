@@ -1,0 +1,113 @@
+//! `yrcx info origin` (4.7.11).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::link::Yrcx;
+use crate::refusal::invalid_words;
+use crate::single::shown;
+use armctl_controller::yrcx::table;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Table, Tone, View};
+use armctl_frame::{Command, Context, Report};
+
+/// Reads the origin return status: of all robots together, or of each axis of the robot of --unit.
+#[derive(Debug, Args)]
+pub struct Origin {
+    /// Only axes of the robot of --unit with this type of motor
+    #[arg(long, value_name = "TYPE", value_parser = ["incremental", "absolute"])]
+    motor: Option<String>,
+}
+
+impl Command for Origin {
+    type Family = Yrcx;
+    type Report = Origins;
+    const ID: &'static str = "yrcx.info.origin";
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Origins, Failure> {
+        let link = context.link;
+        let draft = link.draft(table::Command::OriginStatus)?.with_some(Key::MotorType, self.motor.clone());
+        let order = draft.build().map_err(|error| match error.place.key {
+            Some(Key::MotorType) => Failure::usage("--motor needs one robot").hint("select the robot, as in --unit 1"),
+            _ => invalid_words(error),
+        })?;
+        let values = link.ask(&order).await?.values;
+        let state = |key| shown(table::Command::OriginStatus, &values, key);
+        let axes = (1..).zip(Key::AXES).filter_map(|(axis, key)| Some(AxisOrigin { axis, state: state(key)? }));
+        Ok(match state(Key::System) {
+            Some(system) => Origins { system: Some(system), axes: Vec::new() },
+            None => Origins { system: None, axes: axes.collect() },
+        })
+    }
+}
+
+/// Origin return status.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Origins {
+    /// `complete` or `incomplete`, of all robots together; null with --unit.
+    system: Option<String>,
+    /// Axes of the robot of --unit; empty without it.
+    axes: Vec<AxisOrigin>,
+}
+
+/// Origin return status of an axis.
+#[derive(Debug, Serialize, JsonSchema)]
+struct AxisOrigin {
+    /// 1 to 4.
+    #[serde(rename = "axis_number")]
+    axis: usize,
+    /// `complete`, `incomplete`, or `not applicable`.
+    state: String,
+}
+
+fn cell(state: &str) -> Cell {
+    let tone = match state {
+        "complete" => Tone::Good,
+        "incomplete" => Tone::Warning,
+        _ => Tone::Plain,
+    };
+    Cell::from(state).tone(tone)
+}
+
+impl Report for Origins {
+    fn view(&self) -> View {
+        if let Some(system) = &self.system {
+            return View::fields([("origin", cell(system))]);
+        }
+        let mut table = Table::new(&["axis", "origin"], "this robot has no axes");
+        for AxisOrigin { axis, state } in &self.axes {
+            table.row([(*axis).into(), cell(state)]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{Reply, Scripted, example, read_example, run_on, words};
+
+    #[test]
+    fn the_example_of_the_manual() {
+        let line = ["info", "origin", "--unit", "1"];
+        assert_eq!(words(&line).unwrap(), [example("4.7.11-reference")]);
+        let read = read_example("4.7.11-reference", &line);
+        let states: Vec<_> = read["axes"].as_array().unwrap().iter().map(|axis| axis["state"].clone()).collect();
+        assert_eq!(states, ["complete", "complete", "incomplete", "complete"]);
+        assert_eq!(read["system"], json!(null));
+    }
+
+    #[test]
+    fn without_a_robot_it_is_that_of_the_system() {
+        let mut end = [0; 16];
+        (end[0], end[2]) = (0x0200, 1);
+        let (read, peer) = run_on(Scripted::new([Reply::Ends(1, end)]), &["info", "origin"]);
+        assert_eq!(read.unwrap(), json!({"system": "complete", "axes": []}));
+        assert_eq!(peer.taken[0][0], 0x050F);
+        assert_eq!(words(&["info", "origin", "--unit", "2", "--motor", "absolute"]).unwrap()[0][2], "0x0002");
+        assert!(words(&["info", "origin", "--motor", "absolute"]).unwrap_err().message.contains("one robot"));
+    }
+}

@@ -1,0 +1,77 @@
+//! `yrcx info servo` (4.7.3).
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::single::{one_row, shown};
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::Report;
+use armctl_frame::output::view::{Cell, Table, Tone, View};
+
+one_row! {
+    /// Reads the states of the servos.
+    Servo(self) "yrcx.info.servo" -> Servos {}
+    gives Command::ServoStatus,
+    done as answer => Servos { axes: servos(&answer.values) };
+}
+
+/// The axes of a robot.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Servos {
+    axes: Vec<AxisServo>,
+}
+
+/// The servo of an axis.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct AxisServo {
+    /// 1 to 4.
+    #[serde(rename = "axis_number")]
+    pub axis: usize,
+    /// `servo` (on), `brake` (off), `free` (off, brake released).
+    pub state: String,
+}
+
+/// Servos of the axes that exist.
+pub fn servos(values: &Values) -> Vec<AxisServo> {
+    let states = Key::AXES.into_iter().map(|key| shown(Command::ServoStatus, values, key));
+    let states = (1..).zip(states).filter_map(|(axis, state)| Some(AxisServo { axis, state: state? }));
+    states.filter(|servo| servo.state != "no axis").collect()
+}
+
+impl AxisServo {
+    /// State with its tone.
+    pub fn cell(&self) -> Cell {
+        let tone = match &self.state[..] {
+            "servo" => Tone::Good,
+            "free" => Tone::Warning,
+            _ => Tone::Plain,
+        };
+        Cell::from(self.state.as_str()).tone(tone)
+    }
+}
+
+impl Report for Servos {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["axis", "servo"], "this robot has no axes");
+        for servo in &self.axes {
+            table.row([servo.axis.into(), servo.cell()]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{example, read_example, words};
+
+    #[test]
+    fn the_example_of_the_manual() {
+        assert_eq!(words(&["info", "servo"]).unwrap(), [example("4.7.3-reference")]);
+        let servos = read_example("4.7.3-reference", &["info", "servo"]);
+        let states: Vec<_> = servos["axes"].as_array().unwrap().iter().map(|axis| axis["state"].clone()).collect();
+        assert_eq!(states, [json!("servo"), json!("servo"), json!("free"), json!("servo")]);
+    }
+}

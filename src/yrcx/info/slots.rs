@@ -1,0 +1,75 @@
+//! `yrcx info slots` (4.7.15).
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::single::{one_row, shown};
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::Report;
+use armctl_frame::output::view::{Table, View};
+
+one_row! {
+    /// Reads the boards in the option slots.
+    #[command(after_help = "The manual defines no number for PROFINET.")]
+    Slots(self) "yrcx.info.slots" -> Modules {
+        /// Controller, 1 to 4
+        #[arg(long, value_name = "N", default_value = "1")]
+        controller: String,
+    }
+    gives Command::Slots,
+    with draft => draft.with(Key::Controller, self.controller.as_str()),
+    done as answer => {
+        let slots = (1..).zip(SLOTS).filter_map(|(slot, key)| {
+            let code = format!("0x{:04X}", answer.values.int(key)?);
+            Some(Slot { slot, module: shown(Command::Slots, &answer.values, key)?, code })
+        });
+        Modules { slots: slots.collect() }
+    };
+}
+
+const SLOTS: [Key; 4] = [Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4];
+
+/// Option slots of a controller.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Modules {
+    slots: Vec<Slot>,
+}
+
+/// An option slot.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Slot {
+    /// 1 to 4.
+    slot: usize,
+    /// Name of the board; `none` if the slot is empty.
+    module: String,
+    /// Code from the controller.
+    code: String,
+}
+
+impl Report for Modules {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["slot", "module", "code"], "no slots");
+        for Slot { slot, module, code } in &self.slots {
+            table.row([(*slot).into(), module.as_str().into(), code.as_str().into()]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{example, read_example, words};
+
+    #[test]
+    fn the_example_of_the_manual() {
+        assert_eq!(words(&["info", "slots", "--controller", "1"]).unwrap(), [example("4.7.15-reference")]);
+        let slots = &read_example("4.7.15-reference", &["info", "slots"])["slots"];
+        assert_eq!(slots[0], json!({"slot": 1, "module": "EtherNet/IP", "code": "0x0401"}));
+        assert_eq!(slots[1]["module"], "DIO NPN general-purpose input");
+        assert_eq!(slots[3], json!({"slot": 4, "module": "none", "code": "0x0000"}));
+        assert!(words(&["info", "slots", "--controller", "5"]).unwrap_err().message.contains("allowed: 1 to 4"));
+    }
+}

@@ -1,0 +1,180 @@
+//! `yrcx info tasks` (4.7.5) and `yrcx info line` (4.7.6): eight tasks per command.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::complete;
+use crate::link::Yrcx;
+use crate::program;
+use crate::refusal::BuildOrder as _;
+use crate::several::ask_each;
+use crate::single::shown;
+use armctl_controller::typed;
+use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::table;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Tone};
+use armctl_frame::robot::item::{Columns, Item, Items};
+use armctl_frame::{Command, Context};
+
+/// Tasks of one command.
+const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
+
+/// Selection of tasks.
+#[derive(Debug, Args)]
+struct Chosen {
+    /// Tasks, 1 to 16: 3, 1..8 or 1,9; default: all existing tasks
+    #[arg(value_name = "TASK", value_delimiter = ',', value_parser = tasks, add = complete::TASK)]
+    tasks: Vec<Span>,
+}
+
+/// First and last task of a range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Span(usize, usize);
+
+fn tasks(text: &str) -> Result<Span, String> {
+    let number = |text: &str| match text.parse() {
+        Ok(number @ 1..=16) => Ok(number),
+        _ => Err(format!("'{text}' is not a valid task (1 to 16)")),
+    };
+    let tasks = typed::range(text, number)?;
+    Ok(Span(*tasks.start(), *tasks.end()))
+}
+
+impl Chosen {
+    fn has(&self, task: usize) -> bool {
+        self.tasks.is_empty() || self.tasks.iter().any(|Span(first, last)| (*first..=*last).contains(&task))
+    }
+
+    /// Reads the halves with a selected task, and returns the tasks with their values.
+    async fn read<V: Clone>(
+        &self,
+        context: Context<'_, Yrcx>,
+        command: table::Command,
+        of: impl Fn(&Values, Key) -> Option<(V, Cell)>,
+        heading: &'static str,
+    ) -> Result<Items<V>, Failure> {
+        let Context { link, screen, .. } = context;
+        let halves: Vec<usize> =
+            (0..2).filter(|half| (1..=HALF.len()).any(|place| self.has(half * HALF.len() + place))).collect();
+        let order = |half: &usize| Ok(link.draft(command)?.with(Key::TaskRange, *half == 1).order()?);
+        let orders = halves.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let answers = ask_each(link, screen, "reading tasks", &orders).await?;
+        let task = |half: usize, place: usize| half * HALF.len() + place + 1;
+        let told = |half: &usize| format!("tasks {} to {}", task(*half, 0), task(*half, HALF.len() - 1));
+        if let ([half], [Err(failure)]) = (&halves[..], &answers.outcomes[..]) {
+            return Err(Failure { message: format!("{}: {}", told(half), failure.message), ..failure.clone() });
+        }
+        // The outcome of a half applies to each of its tasks.
+        let (mut items, mut asked) = (Vec::new(), 0);
+        for (at, (half, outcome)) in halves.iter().zip(&answers.outcomes).enumerate() {
+            for (place, key) in HALF.into_iter().enumerate().filter(|(place, _)| self.has(task(*half, *place))) {
+                let read = outcome.clone().map(|values| of(&values, key));
+                // Of all tasks, those that exist are reported.
+                if self.tasks.is_empty() && matches!(read, Ok(None)) {
+                    continue;
+                }
+                let cell = read.as_ref().ok().cloned().flatten().map(|(_, cell)| cell);
+                let value = read.map(|read| read.map(|(value, _)| value));
+                let item = Item::new("task", task(*half, place).to_string(), value);
+                items.push(Item { cells: cell.into_iter().collect(), ..item });
+                asked += usize::from(at < answers.asked);
+            }
+        }
+        let columns = Columns { name: "task", values: vec![heading], empty: "no tasks" };
+        Items::new(columns, items).asked(asked).single_failure()
+    }
+}
+
+/// Reads the task states.
+#[derive(Debug, Args)]
+pub struct Tasks {
+    #[command(flatten)]
+    chosen: Chosen,
+}
+
+impl Command for Tasks {
+    type Family = Yrcx;
+    type Report = Items<String>;
+    const ID: &'static str = "yrcx.info.tasks";
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<String>, Failure> {
+        let command = table::Command::TaskStatus;
+        let of = |values: &Values, key| {
+            let state = shown(command, values, key).filter(|state| state != NO_TASK)?;
+            let tone = if state == "execution" { Tone::Good } else { Tone::Plain };
+            Some((state.clone(), Cell::from(state).tone(tone)))
+        };
+        self.chosen.read(context, command, of, "state").await
+    }
+}
+
+const NO_TASK: &str = "no task";
+
+/// Reads the current line of each task.
+#[derive(Debug, Args)]
+pub struct Line {
+    #[command(flatten)]
+    chosen: Chosen,
+}
+
+impl Command for Line {
+    type Family = Yrcx;
+    type Report = Items<TaskLine>;
+    const ID: &'static str = "yrcx.info.line";
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<TaskLine>, Failure> {
+        let of = |values: &Values, key| {
+            let line = values.int(key).filter(|line| *line != 0).map(program::ProgramLine::of)?;
+            let cell = Cell::number(line.describe());
+            Some((TaskLine { line: line.line, in_common: line.in_common }, cell))
+        };
+        self.chosen.read(context, table::Command::TaskLines, of, "line").await
+    }
+}
+
+/// Current line of a task.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct TaskLine {
+    /// From 1.
+    line: i32,
+    /// Whether it is a line of the COMMON program.
+    in_common: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{example, objection, read_example, words};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        assert_eq!(words(&["info", "tasks", "1..8"]).unwrap(), [example("4.7.5-reference")]);
+        let read = read_example("4.7.5-reference", &["info", "tasks", "1..8"]);
+        let states: Vec<Option<&str>> =
+            read["items"].as_array().unwrap().iter().map(|task| task["value"].as_str()).collect();
+        let (runs, waits) = (Some("execution"), Some("suspend"));
+        assert_eq!(states, [runs, runs, None, None, waits, None, None, None]);
+        assert_eq!(words(&["info", "line", "1..8"]).unwrap(), [example("4.7.6-reference")]);
+        let read = read_example("4.7.6-reference", &["info", "line", "2-3,5"]);
+        let task = |task, line: Option<i32>| {
+            let value = line.map(|line| json!({"line": line, "in_common": false}));
+            json!({"name": task, "label": null, "kind": "task", "ok": true, "value": value})
+        };
+        assert_eq!(read["items"], json!([task("2", Some(19)), task("3", None), task("5", Some(99))]));
+    }
+
+    #[test]
+    fn only_the_halves_that_are_wanted_are_read() {
+        let halves = |line: &[&str]| words(line).unwrap().iter().map(|words| words[2].clone()).collect::<Vec<_>>();
+        assert_eq!(halves(&["info", "tasks"]), ["0x0000", "0x0001"]);
+        assert_eq!(halves(&["info", "tasks", "9"]), ["0x0001"]);
+        assert_eq!(halves(&["info", "line", "8..9"]), ["0x0000", "0x0001"]);
+        for wrong in ["0", "17", "3..2", "x"] {
+            assert!(objection(&["info", "line", wrong]).contains("[TASK]"), "{wrong}");
+        }
+    }
+}

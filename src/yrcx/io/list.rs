@@ -1,0 +1,35 @@
+//! `yrcx io list`.
+
+use clap::Args;
+
+use super::row;
+use crate::link::Yrcx;
+use armctl_controller::yrcx::signal::{Side, Signal};
+use armctl_frame::failure::Failure;
+use armctl_frame::names;
+use armctl_frame::robot::io::{Filter, Signals};
+use armctl_frame::{Command, ConnectMode, Context};
+
+/// Reads all signals. Only the client that sets the inputs can read them, so they are listed only in a session.
+#[derive(Debug, Args)]
+pub struct List {
+    #[command(flatten)]
+    filter: Filter,
+}
+
+impl Command for List {
+    type Family = Yrcx;
+    type Report = Signals;
+    const ID: &'static str = "yrcx.io.list";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
+        let names = names::of_robot(context.robot, context.screen);
+        let inputs = context.link.output_image().copied();
+        let outputs = context.link.look().await?;
+        let inputs = inputs.iter().flat_map(|image| Signal::all(Side::Input).map(move |signal| (signal, image)));
+        let all = inputs.chain(Signal::all(Side::Output).map(|signal| (signal, &outputs)));
+        let rows = all.map(|(signal, image)| row(signal, image, names)).filter(|row| self.filter.lists(row));
+        Signals::new(rows.collect())
+    }
+}

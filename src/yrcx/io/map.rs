@@ -1,0 +1,117 @@
+//! `yrcx io map`: layout of the image on each fieldbus (chapter 1, section 1).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use armctl_controller::yrcx::bus::{self, Bus, MapRow};
+use armctl_controller::yrcx::signal::Side;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::output::view::{Cell, Table, View};
+use armctl_frame::{OfflineCommand, Report};
+
+/// Prints the address table.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Without start addresses, they count from m (read by the master) and n (written by the master), as in \
+                  the manual. Use -o csv or --json to save the table."
+)]
+pub struct Map {
+    /// Fieldbus: devicenet, devicenet-compact, ethernet-ip, profibus, profinet
+    #[arg(long, value_name = "BUS")]
+    bus: Bus,
+    /// Start of the master's input area (outputs of the controller)
+    #[arg(long, value_name = "M")]
+    input_start: Option<u32>,
+    /// Start of the master's output area (inputs of the controller)
+    #[arg(long, value_name = "N")]
+    output_start: Option<u32>,
+}
+
+impl OfflineCommand for Map {
+    type Report = Addresses;
+    const ID: &'static str = "yrcx.io.map";
+
+    fn run(&self, _screen: &Screen) -> Result<Addresses, Failure> {
+        let start = |side| if side == Side::Output { self.input_start } else { self.output_start };
+        let rows = bus::map(self.bus).iter().map(|place| Row::of(place, start(place.side))).collect();
+        Ok(Addresses { bus: self.bus.name(), rows })
+    }
+}
+
+/// Addresses on a fieldbus.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Addresses {
+    bus: &'static str,
+    rows: Vec<Row>,
+}
+
+/// A word, a byte or a bit.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Row {
+    /// `from_controller` or `to_controller`.
+    direction: &'static str,
+    /// Address as the master counts.
+    address: String,
+    /// Bits of the address, as in `3` or `0 - 7`.
+    bits: String,
+    /// As in `SI(20) to SI(27)`; empty if reserved.
+    signal: String,
+    meaning: String,
+    /// Whether its use is forbidden.
+    reserved: bool,
+}
+
+impl Row {
+    fn of(place: &MapRow, start: Option<u32>) -> Self {
+        Self {
+            direction: if place.side == Side::Output { "from_controller" } else { "to_controller" },
+            address: place.address(start),
+            bits: place.bits(),
+            signal: place.signal.clone(),
+            meaning: place.meaning.clone(),
+            reserved: place.reserved,
+        }
+    }
+}
+
+impl Report for Addresses {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["direction", "address", "bits", "signal", "meaning"], "");
+        for row in &self.rows {
+            let Row { direction, address, bits, signal, meaning, .. } = row;
+            let signal = if signal.is_empty() { "-" } else { signal };
+            table.row([
+                (*direction).replace('_', " ").into(),
+                Cell::from(address.as_str()).whole(),
+                Cell::from(bits.as_str()).whole(),
+                signal.into(),
+                meaning.as_str().into(),
+            ]);
+        }
+        View::table(table)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
+
+    use crate::testing::{desk, objection};
+
+    fn find(rows: &Value, signal: &str) -> Value {
+        rows["rows"].as_array().unwrap().iter().find(|row| row["signal"] == signal).unwrap().clone()
+    }
+
+    #[test]
+    fn addresses_count_from_where_the_areas_start() {
+        let rows = desk(&["io", "map", "--bus", "ethernet-ip", "--input-start", "100", "--output-start", "200"]);
+        let (input, output) = (find(&rows, "SI(01)"), find(&rows, "SO(02)"));
+        assert_eq!((&input["address"], &input["bits"]), (&"216".into(), &"1".into()));
+        assert_eq!((&output["address"], &output["direction"]), (&"116".into(), &"from_controller".into()));
+        let rows = desk(&["io", "map", "--bus", "profinet"]);
+        assert_eq!(find(&rows, "SI(01)")["address"], "Qn + 32");
+        assert!(objection(&["io", "map", "--bus", "can"]).contains("devicenet-compact"));
+    }
+}

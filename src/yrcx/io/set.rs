@@ -1,0 +1,282 @@
+//! `yrcx io set` and `yrcx io pulse`.
+
+use clap::Args;
+
+use super::{ANY_INPUT, called, input, item, named_input, word_item};
+use crate::complete;
+use crate::link::Link;
+use crate::link::Yrcx;
+use armctl_controller::Risk;
+use armctl_controller::names::{Kind, Names};
+use armctl_controller::typed;
+use armctl_controller::yrcx::image::Image;
+use armctl_controller::yrcx::procedure::Procedure;
+use armctl_controller::yrcx::register::Register;
+use armctl_controller::yrcx::signal::{Side, Signal};
+use armctl_frame::failure::Failure;
+use armctl_frame::names;
+use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
+use armctl_frame::settings_report::{Done, NewValue, Old};
+use armctl_frame::{Command, Context};
+
+/// Switches inputs of the controller one after the other, and sets general-purpose words.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "When the connection ends, inputs return to their resting state and words to 0. `armctl session open` \
+                  keeps the connection open. Edges are at least 100 ms apart; consecutive words change together. A \
+                  remote command uses the words while it runs, then restores them."
+)]
+pub struct Set {
+    /// Name or number and state, as in servo-on=on or 20=off; or a word and its value, as in SIW2=5 or SID4=0x1F
+    #[arg(value_name = "SIGNAL=STATE", required = true, value_parser = change, add = complete::INPUT_STATE)]
+    changes: Vec<Change>,
+}
+
+/// A change of an input or a word.
+#[derive(Debug, Clone)]
+enum Change {
+    /// With the name, if one was typed.
+    Signal {
+        signal: Signal,
+        name: Option<String>,
+        on: bool,
+    },
+    Word {
+        register: Register,
+        value: u32,
+    },
+}
+
+/// Target of a change: an input or a word.
+enum Settable {
+    Signal(Signal),
+    Word(Register),
+}
+
+fn settable(text: &str) -> Result<Settable, String> {
+    match Register::parse(text) {
+        Some(register) => register.map(Settable::Word),
+        None => input(text).map(Settable::Signal),
+    }
+}
+
+fn change(text: &str) -> Result<Change, String> {
+    let (signal, state) = typed::setting(text, "a signal", "a state", "servo-on=on")?;
+    let (found, is_open) = names::parse_or_name_marked(&[Kind::Signal], ANY_INPUT, signal, settable)?;
+    let name = settable(signal).is_err().then(|| signal.to_owned());
+    match found {
+        Settable::Word(register) if register.side() == Side::Output => {
+            Err(format!("only the controller sets {register}; armctl can set SIW and SID"))
+        }
+        Settable::Word(register) => Ok(Change::Word { register, value: register.value(state)? }),
+        // The meaning of a name decides what can be set.
+        Settable::Signal(signal) if is_open => Ok(Change::Signal { signal, name, on: false }),
+        Settable::Signal(signal) => Ok(Change::Signal { signal, name, on: typed::state(state)? }),
+    }
+}
+
+impl Change {
+    /// Result of the change; `shown` is the image before it.
+    fn written(&self, shown: Option<&Image>, names: &Names) -> WrittenSignal {
+        match self {
+            Self::Signal { signal, on, .. } => {
+                let old = shown.map(|image| IoValue::State(signal.is_on(image)));
+                WrittenSignal::new(item(*signal, names), old, IoValue::State(*on))
+            }
+            Self::Word { register, value } => {
+                let old = shown.map(|image| IoValue::Number(register.read(&image.command())));
+                WrittenSignal::new(word_item(*register, None, names), old, IoValue::Number(*value))
+            }
+        }
+    }
+
+    fn describe(&self) -> String {
+        match self {
+            Self::Signal { signal, name, on } => {
+                format!("{} {}", called(*signal, name.as_ref()), if *on { "on" } else { "off" })
+            }
+            Self::Word { register, value } => format!("{register} = {value}"),
+        }
+    }
+
+    fn risk(&self) -> Risk {
+        match self {
+            Self::Signal { signal, on, .. } => signal.risk(*on),
+            Self::Word { .. } => Risk::Write,
+        }
+    }
+
+    /// Word and value, if the change is one of a word.
+    fn word(&self) -> Option<(Register, u32)> {
+        match self {
+            Self::Signal { .. } => None,
+            Self::Word { register, value } => Some((*register, *value)),
+        }
+    }
+
+    /// Carries out one change, or several word changes together.
+    async fn carry_out(together: &[Self], link: &mut Link) -> Result<(), Failure> {
+        if let [Self::Signal { signal, on, .. }] = together {
+            return link.carry_out(switching(Procedure::set(*signal, *on))?).await.map(|_| ());
+        }
+        link.set_words(&together.iter().filter_map(Self::word).collect::<Vec<_>>()).await
+    }
+}
+
+impl Command for Set {
+    type Family = Yrcx;
+    type Report = WrittenSignals;
+    const ID: &'static str = "yrcx.io.set";
+
+    fn risk(&self) -> Risk {
+        self.changes.iter().map(Change::risk).max().unwrap_or(Risk::Write)
+    }
+
+    fn intent(&self) -> String {
+        format!("switch {}", describe(&self.changes))
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenSignals, Failure> {
+        let names = names::of_robot(context.robot, context.screen);
+        let shown = context.link.output_image().copied();
+        let mut done = 0;
+        for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
+            let before = &self.changes[..done];
+            Change::carry_out(together, context.link).await.map_err(|failure| match before {
+                [] => failure,
+                _ => Failure {
+                    message: format!("{}; switched before: {}", failure.message, describe(before)),
+                    ..failure
+                },
+            })?;
+            done += together.len();
+        }
+        let items = self.changes.iter().map(|change| change.written(shown.as_ref(), names)).collect();
+        Ok(WrittenSignals::new(items))
+    }
+}
+
+fn describe(changes: &[Change]) -> String {
+    changes.iter().map(Change::describe).collect::<Vec<_>>().join(", ")
+}
+
+/// Switches an input of the controller on and off again.
+#[derive(Debug, Args)]
+pub struct Pulse {
+    /// Name or number, as in alarm-reset or 20
+    #[arg(value_name = "SIGNAL", value_parser = named_input, add = complete::INPUT)]
+    signal: (Signal, Option<String>),
+}
+
+impl Pulse {
+    fn called(&self) -> String {
+        called(self.signal.0, self.signal.1.as_ref())
+    }
+}
+
+impl Command for Pulse {
+    type Family = Yrcx;
+    type Report = Done;
+    const ID: &'static str = "yrcx.io.pulse";
+
+    fn risk(&self) -> Risk {
+        self.signal.0.risk(true).max(Risk::Write)
+    }
+
+    fn intent(&self) -> String {
+        format!("switch {} on and off again", self.called())
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+        let old = context.link.output_image().map(|image| self.signal.0.is_on(image));
+        context.link.carry_out(switching(Procedure::pulse(self.signal.0))?).await?;
+        let words = format!("switched {} on and off again", self.called());
+        Ok(NewValue::of(self.signal.0.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
+    }
+}
+
+/// Procedure that switches an input.
+fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
+    procedure.ok_or_else(|| {
+        Failure::usage("only the controller switches its outputs")
+            .hint("`yrcx io get` reads them; `yrcx port set` switches DO, MO and SO")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
+
+    use crate::testing::{Bench, Reply, Scripted, frames, intent, objection, risk};
+    use armctl_controller::Risk;
+
+    #[test]
+    fn each_edge_is_an_image() {
+        let noted = frames(&["io", "set", "20=on", "stop=off", "157=1", "20=off"]).unwrap();
+        let bits: Vec<Vec<&str>> = noted
+            .iter()
+            .map(|note| note["bits"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect())
+            .collect();
+        assert_eq!(bits[0], ["0x0041", "0x0001", "0x0000", "0x0000", "0x0000", "0x0000", "0x0000", "0x0000"]);
+        assert_eq!(bits[1][..2], ["0x0001", "0x0001"]);
+        assert_eq!((bits[2][6], bits[3][1]), ("0x8000", "0x0000"));
+        assert_eq!(frames(&["io", "pulse", "alarm-reset"]).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn words_that_follow_each_other_change_at_once() {
+        let noted = frames(&["io", "set", "SIW2=5", "SID4=-2", "20=on", "siw(2)=0x10"]).unwrap();
+        assert_eq!(noted.len(), 3);
+        assert_eq!(
+            noted[0]["wi"].as_array().unwrap()[..6],
+            ["0x0000", "0x0000", "0x0005", "0x0000", "0xFFFE", "0xFFFF"]
+        );
+        assert_eq!(
+            (&noted[0]["about"], &noted[2]["wi"][2]),
+            (&"SIW(2) = 5, SID(4) = 4294967294".into(), &"0x0010".into())
+        );
+        assert_eq!(risk(&["io", "set", "SIW2=5"]), Risk::Write);
+        assert_eq!(intent(&["io", "set", "SIW2=5", "20=on"]), "switch SIW(2) = 5, SI(20) on");
+    }
+
+    #[test]
+    fn words_stay_beside_remote_commands() {
+        let mut place = [0; 16];
+        place[0] = 0x0200;
+        let mut bench = Bench::new(Scripted::new([Reply::Ends(1, place)]));
+        bench.run(&["io", "set", "SIW2=5"]).unwrap();
+        let shown = |bench: &mut Bench| bench.run(&["io", "get", "SIW2"]).unwrap()["items"][0].clone();
+        assert_eq!(shown(&mut bench)["value"], 5);
+        bench.run(&["position"]).unwrap();
+        let word = shown(&mut bench);
+        assert_eq!((&word["name"], &word["value"], &word["meaning"]), (&"SIW(2)".into(), &5.into(), &Value::Null));
+        assert_eq!(bench.into_peer().taken[0][2], 0, "the command used the words");
+    }
+
+    #[test]
+    fn what_moves_the_robot_asks_first() {
+        assert_eq!(risk(&["io", "set", "20=on"]), Risk::Write);
+        assert_eq!(risk(&["io", "set", "20=on", "auto-start=on"]), Risk::Motion);
+        assert_eq!(risk(&["io", "set", "auto-start=off"]), Risk::Write);
+        assert_eq!(risk(&["io", "pulse", "origin"]), Risk::Motion);
+        assert_eq!(intent(&["io", "pulse", "origin"]), "switch origin (SI(14)) on and off again");
+        assert_eq!(intent(&["io", "set", "20=on", "stop=off"]), "switch SI(20) on, stop (SI(06)) off");
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (line, part) in [
+            (&["io", "set"][..], "SIGNAL=STATE"),
+            (&["io", "set", "20"], "servo-on=on"),
+            (&["io", "set", "20=maybe"], "use on or off"),
+            (&["io", "set", "SI(02)=on"], "reserved"),
+            (&["io", "pulse", "cpu-ok"], "is not a valid signal"),
+            (&["io", "set", "SOW2=5"], "only the controller sets SOW(2)"),
+            (&["io", "set", "SIW1=5"], "belong to remote commands"),
+            (&["io", "set", "SIW2=65536"], "out of range for SIW(2)"),
+        ] {
+            let objection = objection(line);
+            assert!(objection.contains(part), "{line:?}: {objection}");
+        }
+    }
+}

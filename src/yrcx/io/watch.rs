@@ -1,0 +1,61 @@
+//! `yrcx io watch`: signal changes as they occur.
+
+use clap::Args;
+
+use super::row;
+use crate::complete;
+use crate::link::{Link, Yrcx};
+use armctl_controller::names::Kind;
+use armctl_controller::yrcx::signal::{Side, Signal};
+use armctl_frame::failure::Failure;
+use armctl_frame::names;
+use armctl_frame::robot::io::{Signals, WATCHED};
+use armctl_frame::watch::{Watchable, Watched};
+use armctl_frame::{Command, ConnectMode, Context};
+
+/// Outputs of the controller, for a watch.
+#[derive(Debug, Args)]
+pub struct Outputs {
+    /// Names or numbers of outputs of the controller, as in servo-on or 20; default: all
+    #[arg(value_name = "SIGNAL", value_parser = output, add = complete::OUTPUT)]
+    signals: Vec<Signal>,
+}
+
+fn output(text: &str) -> Result<Signal, String> {
+    names::parse_or_name(&[Kind::Signal], "SO(20)", text, output_by_address)
+}
+
+fn output_by_address(text: &str) -> Result<Signal, String> {
+    Signal::parse(Side::Output, text).map_err(|error| error.to_string())
+}
+
+impl Command for Outputs {
+    type Family = Yrcx;
+    type Report = Signals;
+    const ID: &'static str = "yrcx.io.outputs";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
+        let names = names::of_robot(context.robot, context.screen);
+        let link = context.link;
+        // A change that occurred during a wait is reported, however short it was.
+        let image = match link.seen.take() {
+            Some(image) => image,
+            None => link.look().await?,
+        };
+        link.told = Some(image);
+        let signals = if self.signals.is_empty() { Signal::all(Side::Output).collect() } else { self.signals.clone() };
+        Signals::new(signals.into_iter().map(|signal| row(signal, &image, names)).collect())
+    }
+}
+
+impl Watchable for Outputs {
+    const WATCH: &'static str = "yrcx.io.watch";
+    const WATCHED: Watched = WATCHED;
+
+    async fn changed(&self, link: &mut Link) -> Result<(), Failure> {
+        let told = link.told;
+        link.seen = Some(link.look_until(|image| Some(*image) != told).await?);
+        Ok(())
+    }
+}

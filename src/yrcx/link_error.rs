@@ -1,0 +1,76 @@
+//! Texts for failures to open a fieldbus link, for all fieldbuses.
+
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::settings::target::bus::Scheme;
+use armctl_transport::image::LinkError;
+
+/// Failure for a link or a board that did not open; the scheme is that of the URL.
+pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkError) -> Failure {
+    let cause = error.cause();
+    let options = listed(cause.options);
+    let (kind, hint) = match error {
+        LinkError::Owned(_) => {
+            let message = format!("{label}: another master, such as a PLC, commands the controller: {error}");
+            let failure = Failure { code: cause.code.clone(), ..Failure::new(Kind::Refused, message) };
+            return failure.hint(cause.advice.as_deref().unwrap_or(OWNED));
+        }
+        LinkError::Size(_) => (Kind::Malformed, format!("check {options} of the URL: `yrcx {bus} probe` finds both")),
+        LinkError::Refused(_) => (Kind::Refused, format!("check {options} of the URL: `armctl help targets`")),
+        LinkError::Silent(_) | LinkError::Lost { .. } => {
+            (Kind::NoAnswer, "check the link to the controller".to_owned())
+        }
+        LinkError::Malformed(_) => (Kind::Malformed, "check the address".to_owned()),
+        LinkError::Settings(_) => (Kind::Usage, format!("see `armctl help targets` for the options of {name}: URLs")),
+        LinkError::Local(_) => (Kind::Local, "check the adapter and its settings on this computer".to_owned()),
+    };
+    let failure = Failure::new(kind, format!("{label}: {error}")).hint(cause.advice.as_deref().unwrap_or(&hint));
+    Failure { code: cause.code.clone(), ..failure }
+}
+
+/// Hint if another master owns the device, unless the fieldbus has a better one.
+const OWNED: &str = "`yrcx io get` and `yrcx status` can read its signals at the same time. To command the controller, \
+                     stop the owner's connection first: remove the controller from the PLC's scan list, or close the \
+                     session";
+
+/// `in, out and config`.
+fn listed(options: &[&str]) -> String {
+    match options {
+        [] => "the options".to_owned(),
+        [one] => (*one).to_owned(),
+        [all @ .., last] => format!("{} and {last}", all.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use armctl_frame::settings::target;
+    use armctl_transport::image::{Cause, Outputs};
+
+    #[test]
+    fn what_a_fieldbus_says_reaches_people_with_what_to_set() {
+        let scheme = target::bus::USUAL;
+        let cause = || Cause { code: Some("0x0106".to_owned()), ..Cause::new("asked, and refused") };
+        let outputs = Outputs::Released;
+        for (error, kind, hint) in [
+            (LinkError::Owned(cause()), Kind::Refused, "stop the owner's connection first"),
+            (LinkError::Owned(cause().advice("ask the PLC")), Kind::Refused, "ask the PLC"),
+            (LinkError::Size(cause().options(&["in", "in_size"])), Kind::Malformed, "check in and in_size of the URL"),
+            (LinkError::Refused(cause().options(&["a", "b", "c"])), Kind::Refused, "check a, b and c of the URL"),
+            (LinkError::Refused(cause().advice("set the ident")), Kind::Refused, "set the ident"),
+            (LinkError::Silent(cause()), Kind::NoAnswer, "check the link"),
+            (LinkError::Lost { cause: cause(), outputs }, Kind::NoAnswer, "check the link"),
+            (LinkError::Malformed(cause()), Kind::Malformed, "check the address"),
+            (LinkError::Settings(cause()), Kind::Usage, "for the options of"),
+            (LinkError::Local(cause()), Kind::Local, "check the adapter"),
+        ] {
+            let failure = not_open("cell", &scheme, &error);
+            assert_eq!((failure.kind, failure.code.as_deref()), (kind, Some("0x0106")), "{error:?}");
+            assert!(
+                failure.message.starts_with("cell: ") && failure.message.ends_with("asked, and refused"),
+                "{failure}"
+            );
+            assert!(failure.hint.as_ref().unwrap().contains(hint), "{failure:?}");
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! `yrcx abs-reset` (4.2.10, 4.2.11): absolute reset of an axis of the mark type.
+
+use clap::Args;
+
+use super::{MotionReport, go};
+use crate::arguments::{Direction, Which};
+use crate::link::Yrcx;
+use crate::overwrite::confirmation;
+use crate::refusal::BuildOrder as _;
+use armctl_controller::Risk;
+use armctl_controller::yrcx::table;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::failure::Failure;
+use armctl_frame::gate::Confirmation;
+use armctl_frame::wait_arguments::MotionEnd;
+use armctl_frame::{Command, Context};
+
+/// Resets the absolute position of an axis of the mark type.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "First use `--move +` or `--move -` to move to the nearest reset position. There are four per motor \
+                  turn. Check the marks: a reset at the wrong position shifts the origin. Then run the command without \
+                  --move."
+)]
+pub struct AbsReset {
+    /// The axis, 1 to 4
+    #[arg(long, value_name = "AXIS")]
+    axis: String,
+    /// Only move in this direction to the nearest reset position
+    #[arg(long = "move", value_name = "DIRECTION", allow_hyphen_values = true)]
+    direction: Option<Direction>,
+    #[command(flatten)]
+    end: MotionEnd,
+    #[command(flatten)]
+    which: Which,
+}
+
+impl AbsReset {
+    fn command(&self) -> table::Command {
+        match self.direction {
+            Some(_) => table::Command::AbsoluteResetMove,
+            None => table::Command::AbsoluteReset,
+        }
+    }
+
+    /// `axis 2 of robot 1`.
+    fn axis(&self) -> String {
+        format!("axis {} of {}", self.axis, self.which.name())
+    }
+}
+
+impl Command for AbsReset {
+    type Family = Yrcx;
+    type Report = MotionReport;
+    const ID: &'static str = "yrcx.abs-reset";
+
+    fn risk(&self) -> Risk {
+        self.command().row().risk
+    }
+
+    fn intent(&self) -> String {
+        let axis = self.axis();
+        match self.direction {
+            Some(direction) => format!("move {axis} {} to the nearest reset position", direction.describe()),
+            None => format!("set the current position of {axis} as its reset position, which defines its origin"),
+        }
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        confirmation(self.command())
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+        let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
+        let Some(direction) = self.direction else {
+            if self.end.no_wait() {
+                return Err(Failure::usage("--no-wait needs --move").hint("remove --no-wait"));
+            }
+            let order = draft.order()?;
+            let done = context.link.ask(&order).await?;
+            let words = format!("reset the absolute position of {}", self.axis());
+            return Ok(MotionReport::new(words, &order, Some(&done), None));
+        };
+        let order = draft.with(Key::Direction, direction.value()).order()?;
+        let way = format!("{} {} to a reset position", self.axis(), direction.describe());
+        let done = go(context.link, context.screen, &order, self.end.no_wait(), &format!("moving {way}")).await?;
+        let verb = if done.is_some() { "moved" } else { "moving" };
+        Ok(MotionReport::new(format!("{verb} {way}"), &order, done.as_ref(), None))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{intent, objection, risk, words};
+    use armctl_controller::Risk;
+
+    #[test]
+    fn the_move_and_the_reset_are_two_things() {
+        let first = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..3].to_vec();
+        assert_eq!(first("abs-reset --axis 3 --move + --unit 2"), ["0x2030", "0x0000", "0x0004"]);
+        assert_eq!(first("abs-reset --axis 3 --unit 2"), ["0x2031", "0x0000", "0x0004"]);
+        assert_eq!(risk(&["abs-reset", "--axis", "1", "--move", "-"]), Risk::Motion);
+        assert_eq!(
+            intent(&["abs-reset", "--axis", "1", "--move", "-"]),
+            "move axis 1 of robot 1 in minus direction to the nearest reset position"
+        );
+        assert!(intent(&["abs-reset", "--axis", "1", "--unit", "3"]).contains("axis 1 of robot 3"));
+        assert!(words(&["abs-reset", "--axis", "none"]).unwrap_err().message.contains("name exactly 1"));
+        assert!(objection(&["abs-reset"]).contains("--axis"));
+    }
+}

@@ -1,0 +1,82 @@
+//! `yrcx inch` (4.2.7): move by the inching distance.
+
+use clap::Args;
+
+use super::{Motion, MotionReport};
+use crate::arguments::{Direction, System};
+use crate::position::Unit;
+
+use armctl_controller::yrcx::order::Draft;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::failure::Failure;
+
+/// Moves by the inching distance.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "`yrcx inch-distance` sets the distance, `yrcx info inch` reads it. The speed is the manual speed."
+)]
+pub struct Inch {
+    /// Coordinate system
+    system: System,
+    /// Axis, 1 to 4
+    axis: String,
+    /// Direction
+    direction: Direction,
+}
+
+impl Motion for Inch {
+    type Report = MotionReport;
+    const ID: &'static str = "yrcx.inch";
+    const VERB: [&'static str; 3] = ["inch", "inching", "inched"];
+
+    fn command(&self) -> Command {
+        match self.system {
+            System::Pulse => Command::InchPulse,
+            System::Cartesian => Command::InchCartesian,
+            System::Tool => Command::InchTool,
+        }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        Ok(draft.with(Key::Axes, self.axis.as_str()).with(Key::Direction, self.direction.value()))
+    }
+
+    fn axis(&self) -> Option<String> {
+        Some(format!("axis {}", self.axis))
+    }
+
+    fn target(&self) -> String {
+        format!("{}{}", self.direction.describe(), self.system.describe())
+    }
+
+    fn manner(&self) -> String {
+        "by the inching distance, at the manual speed".to_owned()
+    }
+
+    fn usual_unit(&self) -> Option<Unit> {
+        Some(self.system.unit())
+    }
+
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{intent, objection, words};
+
+    #[test]
+    fn an_inch_has_a_system_an_axis_and_a_direction() {
+        let sent = words(&["inch", "tool", "4", "minus", "--unit", "2", "--report", "pulse"]).unwrap();
+        assert_eq!(sent[0][..4], ["0x2026", "0x4000", "0x0088", "0x0000"]);
+        assert_eq!(
+            intent(&["inch", "cartesian", "2", "+"]),
+            "inch axis 2 of robot 1 in plus direction in Cartesian coordinates (by the inching distance, at the manual \
+             speed)"
+        );
+        assert!(words(&["inch", "pulse", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
+        assert!(objection(&["inch", "joint", "1", "+"]).contains("pulse, cartesian, tool"));
+    }
+}

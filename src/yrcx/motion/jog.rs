@@ -1,0 +1,97 @@
+//! `yrcx jog` (4.2.6): an axis moves until it is stopped. Every exit path stops it.
+
+use std::time::Duration;
+
+use clap::Args;
+
+use super::{Live, MotionReport};
+use crate::arguments::{Direction, Ending, System, Which};
+use crate::link::Yrcx;
+use crate::position::Unit;
+use crate::refusal::BuildOrder as _;
+use armctl_controller::Risk;
+use armctl_controller::yrcx::table;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::failure::Failure;
+use armctl_frame::settings::duration;
+use armctl_frame::{Command, Context};
+
+/// Jogs an axis.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The axis moves at the manual speed. The stop input SI(06) stops it after the time of --for or at \
+                  Ctrl-C. SI(06) stays off if the controller does not report the end. If armctl or its computer fails, \
+                  the connection drops and the controller stops the robot. A soft limit stops the axis with an alarm."
+)]
+pub struct Jog {
+    /// Coordinate system
+    system: System,
+    /// Axis, 1 to 4
+    axis: String,
+    /// Direction
+    direction: Direction,
+    /// How long; default: until Ctrl-C
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
+    within: Option<Duration>,
+    /// Report the end position in this unit; default: the unit of the axes
+    #[arg(long, value_name = "UNIT")]
+    report: Option<Unit>,
+    #[command(flatten)]
+    which: Which,
+}
+
+impl Jog {
+    fn command(&self) -> table::Command {
+        match self.system {
+            System::Pulse => table::Command::JogPulse,
+            System::Cartesian => table::Command::JogCartesian,
+            System::Tool => table::Command::JogTool,
+        }
+    }
+
+    /// Completes "jog axis 1 …".
+    fn describe(&self) -> String {
+        format!("{}{}", self.direction.describe(), self.system.describe())
+    }
+}
+
+impl Command for Jog {
+    type Family = Yrcx;
+    type Report = MotionReport;
+    const ID: &'static str = "yrcx.jog";
+
+    fn risk(&self) -> Risk {
+        self.command().row().risk
+    }
+
+    fn intent(&self) -> String {
+        let until = match self.within {
+            Some(time) => format!("for {}", duration::display(time)),
+            None => "until Ctrl-C".to_owned(),
+        };
+        format!("jog axis {} of {} {} ({until}, at the manual speed)", self.axis, self.which.name(), self.describe())
+    }
+
+    fn moves_until_stopped(&self) -> bool {
+        self.within.is_none()
+    }
+
+    fn jogs(&self) -> bool {
+        true
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+        let link = context.link;
+        let unit = self.report.unwrap_or(self.system.unit());
+        let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
+        let order = Ending::put(draft.with(Key::Direction, self.direction.value()), Some(unit)).order()?;
+        let object = format!("axis {} {}", self.axis, self.describe());
+        let live = Live::new(link, context.screen, &format!("jogging {object}"));
+        let done = link.jog(&order, self.within).await;
+        live.end();
+        Ok(MotionReport::new(format!("jogged {object}"), &order, Some(&done?), Some(unit)))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,136 @@
+use std::time::Duration;
+
+use crate::testing::{Bench, Reply, Scripted, answer, intent, objection, run_on, words};
+use armctl_controller::yrcx::image::Words;
+use armctl_frame::failure::Kind;
+
+const REST: u16 = 0x0041;
+const HELD: u16 = 0x0001;
+const JOG: [&str; 4] = ["jog", "pulse", "1", "-"];
+const TWO_SECONDS: [&str; 6] = ["jog", "pulse", "1", "-", "--for", "2s"];
+
+fn ends(scans: u32, head: &[u16]) -> Reply {
+    let mut words: Words = [0; 16];
+    words[..head.len()].copy_from_slice(head);
+    Reply::Ends(scans, words)
+}
+
+#[test]
+fn it_goes_on_for_its_time_and_tells_where_it_stands() {
+    let (outcome, peer) = run_on(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]), &TWO_SECONDS);
+    let report = outcome.unwrap();
+    assert_eq!(report["position"]["text"], "--pulse 12345,-123,2000,0");
+    let elapsed = report["elapsed_ms"].as_u64().unwrap();
+    assert!((2000..2030).contains(&elapsed), "{elapsed} ms");
+    assert_eq!(peer.bits, [REST, HELD, REST]);
+    assert_eq!(peer.taken.len(), 1);
+}
+
+#[test]
+fn an_interrupt_ends_it_and_tells_where_it_stands() {
+    for ms in [100, 500, 60_000] {
+        let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-cartesian"))]));
+        bench.interrupt(&["jog", "cartesian", "1", "-"], Duration::from_millis(ms));
+        let told = bench.halt().unwrap();
+        assert!(told.ends_with("on again; position: 12.345, -0.123, 2.000, 0.000 mm"), "{told}");
+        assert_eq!(bench.into_peer().bits, [REST, HELD, REST]);
+    }
+}
+
+#[test]
+fn a_jog_is_stopped_even_if_an_interrupt_shall_leave_what_moves() {
+    use crate::link::Yrcx;
+    use armctl_frame::Family as _;
+
+    let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]));
+    bench.interrupt(&JOG, Duration::from_secs(1));
+    assert!(Yrcx::needs_halt(&bench.link));
+    bench.halt().unwrap();
+    let mut bench = Bench::new(Scripted::new([ends(u32::MAX, &[0])]));
+    bench.interrupt(&["move", "--point", "1"], Duration::from_secs(1));
+    assert!(!Yrcx::needs_halt(&bench.link));
+}
+
+#[test]
+fn an_end_by_itself_is_told_as_it_is() {
+    // Ended by a soft limit.
+    let (outcome, peer) = run_on(Scripted::new([ends(100, &[0x4000, 2, 334])]), &TWO_SECONDS);
+    let failure = outcome.unwrap_err();
+    assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("2.334")));
+    assert_eq!(peer.bits, [REST]);
+    // Ended by the stop input of another client.
+    let (outcome, _) = run_on(Scripted::new([Reply::Ends(100, answer("4.2.6-pulse"))]), &TWO_SECONDS);
+    assert_eq!(outcome.unwrap_err().code.as_deref(), Some("12.400"));
+    // Ended with the normal reply of the manual.
+    let (outcome, _) = run_on(Scripted::new([ends(100, &[0x0200, 0, 0, 0, 5])]), &TWO_SECONDS);
+    assert_eq!(outcome.unwrap()["position"]["joints"][0]["pulses"], 5);
+}
+
+#[test]
+fn what_does_not_end_leaves_the_stop_input_off() {
+    let stays = |reply: Reply, line: &[&str]| {
+        let (outcome, peer) = run_on(Scripted::new([reply]), line);
+        let failure = outcome.unwrap_err();
+        assert_eq!(failure.kind, Kind::OutcomeUnknown, "{failure}");
+        assert!(failure.message.contains("the stop input SI(06) stays off"), "{failure}");
+        assert_eq!(peer.bits, [REST, HELD]);
+    };
+    // The axis does not stop with the stop input.
+    stays(ends(u32::MAX, &[0]), &TWO_SECONDS);
+    // The command is not accepted, or its run status disappears.
+    stays(Reply::Ignores, &JOG);
+    stays(ends(20, &[0]), &JOG);
+    // The status is invalid.
+    stays(ends(20, &[0x1234]), &JOG);
+}
+
+#[test]
+fn a_jog_by_its_words_is_stopped_as_well() {
+    let (outcome, peer) = run_on(Scripted::new([ends(20, &[0])]), &["raw", "--wi", "0x20,0,0x81"]);
+    assert!(outcome.unwrap_err().message.contains("the stop input SI(06) stays off"));
+    assert_eq!(peer.bits, [REST, HELD]);
+    let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]));
+    bench.interrupt(&["raw", "--wi", "0x20,0,0x81"], Duration::from_secs(1));
+    assert!(bench.halt().unwrap().starts_with("the robot was stopped"));
+}
+
+#[test]
+fn a_jog_that_nobody_stopped_is_stopped_when_the_link_closes() {
+    let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]));
+    bench.interrupt(&JOG, Duration::from_secs(1));
+    assert_eq!(bench.into_peer().bits, [REST, HELD, REST]);
+}
+
+#[test]
+fn a_link_that_is_lost_rests_with_the_stop_input_off() {
+    let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(1)), ends(0, &[0x0200])]));
+    let failure = bench.run(&JOG).unwrap_err();
+    assert_eq!(failure.kind, Kind::OutcomeUnknown);
+    assert!(failure.message.contains("the connection is up again, and the stop input SI(06) is off"), "{failure}");
+    bench.run(&["alarm", "reset"]).unwrap();
+    assert_eq!(bench.peer(|peer| peer.bits.clone()), [REST, HELD]);
+    bench.run(&["io", "set", "stop=on"]).unwrap();
+    assert_eq!(bench.into_peer().bits, [REST, HELD, REST]);
+}
+
+#[test]
+fn a_link_that_stays_down_promises_nothing_of_the_stop_input() {
+    let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(3600))]));
+    let failure = bench.run(&JOG).unwrap_err();
+    assert_eq!(failure.kind, Kind::OutcomeUnknown);
+    assert!(failure.message.ends_with("the connection was lost; the connection is still down"), "{failure}");
+}
+
+#[test]
+fn what_cannot_be_meant_is_rejected() {
+    assert!(words(&["jog", "tool", "5", "+"]).unwrap_err().message.contains("must be from 1 to 4"));
+    assert!(words(&["jog", "tool", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
+    assert!(objection(&["jog", "pulse", "1"]).contains("<DIRECTION>"));
+    assert!(objection(&["jog", "pulse", "1", "+", "--for", "0s"]).contains("is zero"));
+    assert!(objection(&["jog", "pulse", "1", "+", "--no-wait"]).contains("--no-wait"));
+    assert_eq!(
+        intent(&["jog", "tool", "3", "+", "--for", "1.5s", "--unit", "2"]),
+        "jog axis 3 of robot 2 in plus direction in tool coordinates (for 1500ms, at the manual speed)"
+    );
+    assert!(intent(&JOG).contains("(until Ctrl-C, at the manual speed)"));
+}

@@ -1,0 +1,242 @@
+//! `yrcx move` (4.2.1): move to one or two points, or to coordinates.
+
+use clap::{ArgGroup, Args};
+
+use super::{Motion, MotionReport, Target, targets};
+use crate::arguments::{Arch, Axes, Hand, Pace, Ramps};
+use crate::position::Unit;
+use armctl_controller::yrcx::order::Draft;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::failure::Failure;
+
+/// Moves to a point, or to coordinates.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("destination").required(true), after_help = "Without --speed the robot moves at the \
+    program speed. A SCARA also moves axes 1 and 2 if only other axes are named (4.2.1). With --to, armctl reads their \
+    current position first and sends it, so that they do not move. With --point, they may move to the point.")]
+pub struct Move {
+    /// Target point; two points with --circular, as in 100,101
+    #[arg(long, value_name = "POINT", group = "destination", value_delimiter = ',')]
+    point: Vec<String>,
+    /// Coordinates of the axes in mm: all four, or in the order of --axes, or by axis: 1=300,3=10
+    #[arg(long, value_name = "[AXIS=]MM,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
+        conflicts_with_all = ["linear", "circular", "peak"])]
+    to: Vec<String>,
+    /// Coordinates of the axes in pulses, in the same form
+    #[arg(long, value_name = "[AXIS=]PULSES,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
+        conflicts_with_all = ["linear", "circular", "peak"])]
+    to_pulse: Vec<String>,
+    /// Move in a straight line; --speed may be in mm/s
+    #[arg(long, group = "way")]
+    linear: bool,
+    /// Move in an arc through the first point to the second; --speed may be in mm/s
+    #[arg(long, group = "way", conflicts_with = "axes")]
+    circular: bool,
+    #[command(flatten)]
+    arch: Arch,
+    #[command(flatten)]
+    axes: Axes,
+    #[command(flatten)]
+    pace: Pace,
+    #[command(flatten)]
+    ramps: Ramps,
+    /// Hand system of the coordinates of --to
+    #[arg(long, value_name = "HAND", conflicts_with_all = ["point", "to_pulse"])]
+    hand: Option<Hand>,
+}
+
+impl Motion for Move {
+    type Report = MotionReport;
+    const ID: &'static str = "yrcx.move";
+
+    fn command(&self) -> Command {
+        match self {
+            Self { to, .. } if !to.is_empty() => Command::MoveMm,
+            Self { to_pulse, .. } if !to_pulse.is_empty() => Command::MovePulse,
+            Self { linear: true, .. } => Command::MoveLinear,
+            Self { circular: true, .. } => Command::MoveCircular,
+            Self { arch, .. } if arch.is_wanted() => Command::MoveArch,
+            _ => Command::MovePtp,
+        }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        let draft = match (&self.point[..], self.circular) {
+            ([], _) => self.axes.put_numbers(draft, [&self.to, &self.to_pulse][usize::from(self.to.is_empty())])?,
+            ([point], false) => self.axes.put(draft).with(Key::Point, point.as_str()),
+            ([first, second], true) => draft.with(Key::Point, first.as_str()).with(Key::Point2, second.as_str()),
+            (_, true) => {
+                return Err(
+                    Failure::usage("an arc needs two points").hint("give both points: --point 100,101 --circular")
+                );
+            }
+            (_, false) => return Err(Failure::usage("this move needs one point").hint("for an arc, add --circular")),
+        };
+        let draft = if self.linear || self.circular { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
+        let draft = self.arch.put(self.ramps.put(draft, self.command())?);
+        Ok(draft.with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
+    }
+
+    fn target(&self) -> String {
+        let place = match (&self.point[..], &self.to[..], &self.to_pulse[..]) {
+            ([first, second], ..) => format!("over point {first} to point {second}"),
+            ([point, ..], ..) => format!("to point {point}"),
+            (_, [_, ..], _) => format!("to {}", self.axes.told_numbers(&self.to, Unit::Mm)),
+            _ => format!("to {}", self.axes.told_numbers(&self.to_pulse, Unit::Pulse)),
+        };
+        let way = match self.command() {
+            Command::MoveLinear => " in a straight line".to_owned(),
+            Command::MoveCircular => " in an arc".to_owned(),
+            _ => self.arch.describe(),
+        };
+        format!("{place}{way}")
+    }
+
+    fn manner(&self) -> String {
+        let axes = self.axes.describe(if self.to.is_empty() { &self.to_pulse } else { &self.to });
+        let along = match (&self.stays()[..], self.axes.leaves_out(&self.point)) {
+            ([], false) => "",
+            ([], true) => ", but a SCARA may also move axes 1 and 2 to the point",
+            ([1], _) => ", axis 1 stays",
+            ([2], _) => ", axis 2 stays",
+            _ => ", axes 1 and 2 stay",
+        };
+        format!("{axes}{along}, {}", self.pace.describe())
+    }
+
+    fn stays(&self) -> Vec<usize> {
+        self.axes.unnamed(&self.to)
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        targets(&self.axes, &self.to, &self.to_pulse)
+    }
+
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::testing::{Reply, Scripted, frames, intent, objection, run_on, words};
+    use armctl_frame::failure::Kind;
+
+    #[test]
+    fn some_axes_and_another_robot() {
+        // In the order typed: 1.5 is for axis 3.
+        for line in ["move --to 1.5,-2,3 --axes 3,1,2 --hand left", "move --to 3=1.5,1=-2,2=3 --hand left"] {
+            let sent = words(&["--unit", "2"].into_iter().chain(line.split(' ')).collect::<Vec<_>>()).unwrap();
+            assert_eq!(
+                sent[0][..10],
+                ["0x2006", "0x0011", "0x0007", "0x0000", "0xF830", "0xFFFF", "0x0BB8", "0x0000", "0x05DC", "0x0000"],
+                "{line}"
+            );
+        }
+        let sent = words(&["move", "--to-pulse", "4=7"]).unwrap();
+        assert_eq!((sent[0][2].as_str(), sent[0][10].as_str()), ("0x0008", "0x0007"));
+        let sent = words(&["move", "--point", "1", "--unit=4", "--speed-of-max", "12.34"]).unwrap();
+        assert_eq!(sent[0][..5], ["0x4001", "0x0002", "0x0000", "0x04D2", "0x0001"]);
+    }
+
+    #[test]
+    fn what_is_not_named_stays_where_it_is() {
+        let line = ["move", "--to", "4=90"];
+        let mut place = [0; 16];
+        (place[0], place[4], place[6], place[7]) = (0x0200, 1000, 0xF830, 0xFFFF);
+        let mut end = [0; 16];
+        end[0] = 0x0200;
+        let (moved, peer) = run_on(Scripted::new([Reply::Ends(1, place), Reply::Ends(1, end)]), &line);
+        assert_eq!(peer.taken[0][0], 0x0506, "the present position");
+        assert_eq!(peer.taken[1][..11], [0x0006, 1, 8, 0, 1000, 0, 0xF830, 0xFFFF, 0, 0, 0x5F90]);
+        assert_eq!(moved.unwrap()["targets"], json!([{"axis": "4", "from": null, "to": 90.0, "unit": "mm"}]));
+        let noted = frames(&line).unwrap();
+        assert_eq!((&noted[0]["about"], noted.len()), (&json!("current position"), 2));
+        // Nothing moves if the position is unknown.
+        let mut no = [0; 16];
+        no[..3].copy_from_slice(&[0x4000, 5, 1]);
+        let (refused, peer) = run_on(Scripted::new([Reply::Ends(1, no)]), &line);
+        assert!(refused.unwrap_err().message.starts_with("not moved"));
+        assert_eq!(peer.taken.len(), 1);
+        assert_eq!(frames(&["move", "--to", "1=1,2=2"]).unwrap().len(), 1);
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_rejected() {
+        for (line, part) in [
+            ("move --to 1,2,3", "3 numbers for 4 axes"),
+            ("move --to 1,2 --axes 1", "2 numbers for 1 axes"),
+            ("move --to 1 --axes 5", "axes of 1 to 4"),
+            ("move --to 1,2 --axes 1,1", "axis 1 is named twice"),
+            ("move --to 1=1,1=2", "axis 1 is named twice"),
+            ("move --to 1=1,2", "some numbers name their axis"),
+            ("move --to 1=1 --axes 1", "named twice: by --axes"),
+            ("move --to 5=1", "'5' is not a valid axis"),
+            ("move --to 1.0005,2,3,4", "axis_1"),
+            ("move --point 30000", "point: 30000 is out of range; allowed: 0 to 29999"),
+            ("move --point 1 --speed 101", "speed_percent: 101 is out of range; allowed: 1 to 100 %"),
+            ("move --point 1 --speed-of-max 0.001", "speed_of_max_percent"),
+            ("move --point 1 --speed 100mm/s", "needs a linear or circular move"),
+            ("move --point 1 --linear --speed 1001mm/s", "allowed: 1 to 1000 mm/s"),
+            ("move --point 1 --circular", "two points"),
+            ("move --point 1,2", "one point"),
+            ("move --point 1 --arch 1,2:5", "arch_axis"),
+            ("move --point 1 --arch 1:5 --accel 5", "move-arch has neither --accel"),
+            ("move --point 1 --accel 0", "accel_percent: 0 is out of range; allowed: 1 to 100 %"),
+        ] {
+            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{line}");
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+        for (line, part) in [
+            ("move", "--point"),
+            ("move --point 1 --to 1,2,3,4", "cannot be used with"),
+            ("move --to 1,2,3,4 --linear", "cannot be used with"),
+            ("move --to-pulse 1,2,3,4 --arch 1:1", "cannot be used with"),
+            ("move --point 1 --linear --arch 1:1", "cannot be used with"),
+            ("move --point 1,2 --circular --axes 1", "cannot be used with"),
+            ("move --point 1 --arch-start 1", "--arch"),
+            ("move --point 1 --arch 5", "as in 3:10.0"),
+            ("move --point 1 --hand left", "cannot be used with"),
+            ("move --point 1 --unit 5", "0..=4"),
+        ] {
+            let objection = objection(&line.split(' ').collect::<Vec<_>>());
+            assert!(objection.contains(part), "{line}: {objection}");
+        }
+    }
+
+    #[test]
+    fn the_question_names_robot_target_axes_and_speed() {
+        for (line, told) in [
+            ("move --point 19 --speed 50", "move robot 1 to point 19 (all axes, at 50 %)"),
+            (
+                "--unit 2 move --to 1,2 --axes 2,1",
+                "move robot 2 to axis 2: 1 mm, axis 1: 2 mm (axes 2, 1 alone, at the program speed)",
+            ),
+            ("move --to 4=90", "move robot 1 to axis 4: 90 mm (axis 4 alone, axes 1 and 2 stay, at the program speed)"),
+            (
+                "move --point 3 --axes 4",
+                "move robot 1 to point 3 (axis 4 alone, but a SCARA may also move axes 1 and 2 to the point, at the \
+                 program speed)",
+            ),
+            (
+                "move --to-pulse 1,2,3,4",
+                "move robot 1 to axis 1: 1 pulses, axis 2: 2 pulses, axis 3: 3 pulses, axis 4: 4 pulses (all axes, at \
+                 the program speed)",
+            ),
+            (
+                "move --point 5 --arch 3:0 --arch-unit pulse --speed-of-max 0.5",
+                "move robot 1 to point 5 in an arch over axis 3 at 0 pulses (all axes, at 0.5 % of the maximum)",
+            ),
+            (
+                "move --point 1,2 --circular --speed 9mm/s",
+                "move robot 1 over point 1 to point 2 in an arc (all axes, at 9 mm/s)",
+            ),
+        ] {
+            assert_eq!(intent(&line.split(' ').collect::<Vec<_>>()), told);
+        }
+    }
+}

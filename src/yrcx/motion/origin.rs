@@ -1,0 +1,122 @@
+//! `yrcx origin` (4.2.12): return to origin, of robots or of one axis.
+
+use clap::{Args, ValueEnum};
+
+use super::{MotionReport, go};
+use crate::arguments::Which;
+use crate::link::Yrcx;
+use crate::refusal::BuildOrder as _;
+use armctl_controller::Risk;
+use armctl_controller::yrcx::table;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::failure::Failure;
+use armctl_frame::wait_arguments::MotionEnd;
+use armctl_frame::{Command, Context};
+
+/// Returns to origin.
+#[derive(Debug, Args)]
+#[command(after_help = "Without --unit and --axis, all robots of the controller return to origin. Semi-absolute axes \
+                        search for their position. Axes of the absolute mark type need `yrcx abs-reset` first.")]
+pub struct Origin {
+    /// One axis of one robot, 1 to 4
+    #[arg(long, value_name = "AXIS", conflicts_with = "only")]
+    axis: Option<String>,
+    /// Only axes of this type
+    #[arg(long, value_name = "KIND")]
+    only: Option<Kind>,
+    #[command(flatten)]
+    end: MotionEnd,
+    #[command(flatten)]
+    which: Which,
+}
+
+/// Axis types.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// Axes of the incremental type
+    Incremental,
+    /// Axes of the absolute type
+    Absolute,
+    /// Axes whose origin is not known
+    Incomplete,
+}
+
+impl Kind {
+    /// Value of the field: one bit per type.
+    fn value(self) -> i32 {
+        match self {
+            Self::Incremental => 1,
+            Self::Absolute => 2,
+            Self::Incomplete => 4,
+        }
+    }
+}
+
+impl Origin {
+    fn command(&self) -> table::Command {
+        if self.axis.is_some() { table::Command::OriginAxis } else { table::Command::OriginRobot }
+    }
+
+    /// `axis 1 of robot 1`.
+    fn describe(&self) -> String {
+        if let Some(axis) = &self.axis {
+            return format!("axis {axis} of {}", self.which.name());
+        }
+        let axes = match self.only {
+            None => "all axes",
+            Some(Kind::Incremental) => "the incremental axes",
+            Some(Kind::Absolute) => "the absolute axes",
+            Some(Kind::Incomplete) => "the axes without known origin",
+        };
+        format!("{axes} of {}", self.which.name_or_all())
+    }
+}
+
+impl Command for Origin {
+    type Family = Yrcx;
+    type Report = MotionReport;
+    const ID: &'static str = "yrcx.origin";
+
+    fn risk(&self) -> Risk {
+        self.command().row().risk
+    }
+
+    fn intent(&self) -> String {
+        format!("return {} to origin", self.describe())
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
+        let draft = context.link.draft(self.command())?;
+        let draft = draft.with_some(Key::Axes, self.axis.clone());
+        let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).order()?;
+        let doing = format!("returning {} to origin", self.describe());
+        let done = go(context.link, context.screen, &order, self.end.no_wait(), &doing).await?;
+        let has_done = format!("returned {} to origin", self.describe());
+        Ok(MotionReport::new(if done.is_some() { has_done } else { doing }, &order, done.as_ref(), None))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{intent, objection, words};
+
+    #[test]
+    fn all_robots_one_robot_or_one_axis() {
+        let first = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..3].to_vec();
+        assert_eq!(first("origin"), ["0x0032", "0x0000", "0x0000"]);
+        assert_eq!(first("origin --unit 2 --only incremental"), ["0x2032", "0x0002", "0x0000"]);
+        assert_eq!(first("origin --only absolute"), ["0x0032", "0x0004", "0x0000"]);
+        assert_eq!(first("origin --only incomplete"), ["0x0032", "0x0008", "0x0000"]);
+        assert_eq!(first("origin --axis 4 --unit 3"), ["0x3033", "0x0000", "0x0008"]);
+        for (line, told) in [
+            ("origin", "return all axes of all robots to origin"),
+            ("origin --unit 2", "return all axes of robot 2 to origin"),
+            ("origin --only incomplete", "return the axes without known origin of all robots to origin"),
+            ("origin --axis 1", "return axis 1 of robot 1 to origin"),
+        ] {
+            assert_eq!(intent(&line.split(' ').collect::<Vec<_>>()), told);
+        }
+        assert!(words(&["origin", "--axis", "1,2"]).unwrap_err().message.contains("name exactly 1"));
+        assert!(objection(&["origin", "--axis", "1", "--only", "absolute"]).contains("cannot be used with"));
+    }
+}

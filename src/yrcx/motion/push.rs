@@ -1,0 +1,135 @@
+//! `yrcx push` (4.2.23): move of one axis with limited force and time.
+
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::drive::Destination;
+use super::{Motion, MotionReport};
+use crate::arguments::Pace;
+use armctl_controller::yrcx::order::Draft;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::Report;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::View;
+use armctl_frame::settings::duration;
+
+/// Pushes with one axis.
+#[derive(Debug, Args)]
+#[command(after_help = "Without --force and --time, the parameters PSHFRC and PSHTIME apply.")]
+pub struct Push {
+    /// Axis to push with, 1 to 4
+    #[arg(long, value_name = "AXIS")]
+    axis: String,
+    #[command(flatten)]
+    destination: Destination,
+    /// Force in percent of the rated torque, -1000 to 1000
+    #[arg(long, value_name = "PERCENT", allow_hyphen_values = true)]
+    force: Option<String>,
+    /// How long to push, 1ms to 32767ms
+    #[arg(long, value_name = "TIME", value_parser = milliseconds)]
+    time: Option<i32>,
+    #[command(flatten)]
+    pace: Pace,
+}
+
+/// A time in whole milliseconds.
+fn milliseconds(text: &str) -> Result<i32, String> {
+    let time = duration::parse(text)?;
+    match i32::try_from(time.as_millis()) {
+        Ok(ms @ 1..=32_767) if time.subsec_nanos() % 1_000_000 == 0 => Ok(ms),
+        _ => Err(format!("the push time must be 1ms to 32767ms in whole milliseconds, not {}s", time.as_secs_f64())),
+    }
+}
+
+impl Motion for Push {
+    type Report = Pushed;
+    const ID: &'static str = "yrcx.push";
+    const VERB: [&'static str; 3] = ["push with", "pushing with", "pushed with"];
+
+    fn command(&self) -> Command {
+        self.destination.choose([Command::PushPoint, Command::PushMm, Command::PushPulse])
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        let draft = self.destination.put(draft.with(Key::Axes, self.axis.as_str()));
+        self.pace.put(draft.with_some(Key::PushForce, self.force.clone()).with_some(Key::PushTime, self.time))
+    }
+
+    fn axis(&self) -> Option<String> {
+        Some(format!("axis {}", self.axis))
+    }
+
+    fn target(&self) -> String {
+        format!("towards {}", self.destination.describe())
+    }
+
+    fn manner(&self) -> String {
+        let force = self.force.as_ref().map(|force| format!(", with {force} % of the rated torque"));
+        let time =
+            self.time.map(|ms| format!(", for {}", duration::display(Duration::from_millis(ms.unsigned_abs().into()))));
+        format!("{}{}{}", self.pace.describe(), force.unwrap_or_default(), time.unwrap_or_default())
+    }
+
+    fn report(&self, moved: MotionReport, values: Option<&Values>) -> Pushed {
+        let push_result = values.and_then(|values| values.int(Key::PushResult));
+        Pushed { moved, push_completed: push_result.map(|result| result == 1), push_result }
+    }
+}
+
+/// Result of a push.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Pushed {
+    #[serde(flatten)]
+    moved: MotionReport,
+    /// Whether it pushed for the whole time; null unless it has ended.
+    push_completed: Option<bool>,
+    /// Raw result: 1 or 0.
+    push_result: Option<i32>,
+}
+
+impl Report for Pushed {
+    fn view(&self) -> View {
+        self.moved.view_with(match self.push_completed {
+            Some(true) => "; it pushed for the whole time",
+            Some(false) => "; it ended before the push time was over",
+            None => "",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{intent, objection, words};
+    use armctl_frame::failure::Kind;
+
+    #[test]
+    fn force_and_time_set_their_flags_and_have_their_ranges() {
+        let sent = |line: &str| words(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(sent("push --axis 2 --to 1").unwrap()[0][..4], ["0x004C", "0x0001", "0x0002", "0x0000"]);
+        let all = sent("--unit 3 push --axis 2 --to-pulse -1 --force -1000 --time 32.767s --speed 1").unwrap();
+        assert_eq!(all[0][..6], ["0x304D", "0x0185", "0x0002", "0x0001", "0xFFFF", "0xFFFF"]);
+        assert_eq!(all[0][8..10], ["0xFC18", "0x7FFF"]);
+        for (line, part) in [
+            ("push --axis 1 --to 1 --force 1001", "push_force_percent: 1001 is out of range; allowed: -1000 to 1000 %"),
+            ("push --axis 1,3 --to 1", "name exactly 1"),
+        ] {
+            let failure = sent(line).unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{line}");
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+        for (time, told) in
+            [("100", "not 100s"), ("0s", "not 0s"), ("1.5ms", "not 0.0015s"), ("a", "is not a valid duration")]
+        {
+            let objection = objection(&["push", "--axis", "1", "--to", "1", "--time", time]);
+            assert!(objection.contains(told), "{objection}");
+        }
+        assert_eq!(
+            intent(&["push", "--axis", "3", "--to", "10", "--speed", "50", "--force", "100", "--time", "100ms"]),
+            "push with axis 3 of robot 1 towards 10 mm (at 50 %, with 100 % of the rated torque, for 100ms)"
+        );
+    }
+}

@@ -1,0 +1,134 @@
+//! `yrcx movei` (4.2.2): move by the distances of a point, or by typed distances.
+
+use clap::{ArgGroup, Args};
+
+use super::{Motion, MotionReport, Target, targets};
+use crate::arguments::{Axes, Hand, Pace, Ramps};
+use crate::position::Unit;
+use armctl_controller::yrcx::order::Draft;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::failure::Failure;
+
+/// Moves by distances.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("distance").required(true), after_help = "If you repeat a stopped relative motion, the \
+    robot moves to the old target, unless the controller's \"MOVEI/DRIVEI start position\" is Reset.")]
+pub struct Movei {
+    /// Point that contains the distances
+    #[arg(long, value_name = "POINT", group = "distance")]
+    point: Option<String>,
+    /// Distances of the axes in mm: all four, or in the order of --axes, or by axis: 1=-5,3=10
+    #[arg(
+        long,
+        value_name = "[AXIS=]MM,…",
+        group = "distance",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        conflicts_with = "linear"
+    )]
+    by: Vec<String>,
+    /// Distances of the axes in pulses, in the same form
+    #[arg(
+        long,
+        value_name = "[AXIS=]PULSES,…",
+        group = "distance",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        conflicts_with = "linear"
+    )]
+    by_pulse: Vec<String>,
+    /// Move in a straight line; --speed may be in mm/s
+    #[arg(long)]
+    linear: bool,
+    #[command(flatten)]
+    axes: Axes,
+    #[command(flatten)]
+    pace: Pace,
+    #[command(flatten)]
+    ramps: Ramps,
+    /// Hand system at the end of --by
+    #[arg(long, value_name = "HAND", conflicts_with_all = ["point", "by_pulse"])]
+    hand: Option<Hand>,
+}
+
+impl Motion for Movei {
+    type Report = MotionReport;
+    const ID: &'static str = "yrcx.movei";
+
+    fn command(&self) -> Command {
+        match self {
+            Self { by, .. } if !by.is_empty() => Command::MoveiMm,
+            Self { by_pulse, .. } if !by_pulse.is_empty() => Command::MoveiPulse,
+            Self { linear: true, .. } => Command::MoveiLinear,
+            _ => Command::MoveiPtp,
+        }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        let draft = match &self.point {
+            Some(point) => self.axes.put(draft).with(Key::Point, point.as_str()),
+            None => self.axes.put_numbers(draft, if self.by.is_empty() { &self.by_pulse } else { &self.by })?,
+        };
+        let draft = if self.linear { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
+        Ok(self.ramps.put(draft, self.command())?.with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
+    }
+
+    fn target(&self) -> String {
+        let way = if self.linear { " in a straight line" } else { "" };
+        match (&self.point, &self.by[..]) {
+            (Some(point), _) => format!("by the distances of point {point}{way}"),
+            (None, []) => format!("by {}", self.axes.told_numbers(&self.by_pulse, Unit::Pulse)),
+            (None, by) => format!("by {}", self.axes.told_numbers(by, Unit::Mm)),
+        }
+    }
+
+    fn manner(&self) -> String {
+        let axes = self.axes.describe(if self.by.is_empty() { &self.by_pulse } else { &self.by });
+        format!("{axes}, {}", self.pace.describe())
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        targets(&self.axes, &self.by, &self.by_pulse)
+    }
+
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{intent, objection, words};
+    use armctl_frame::failure::Kind;
+
+    #[test]
+    fn distances_go_to_the_axes_that_are_named() {
+        let sent = words(&["movei", "--by", "-1", "--axes", "4", "--hand", "right", "--unit", "3"]).unwrap();
+        assert_eq!(sent[0][..4], ["0x300E", "0x0009", "0x0008", "0x0000"]);
+        assert_eq!(sent[0][4..12], ["0x0000", "0x0000", "0x0000", "0x0000", "0x0000", "0x0000", "0xFC18", "0xFFFF"]);
+    }
+
+    #[test]
+    fn what_cannot_be_meant_is_rejected() {
+        for (line, part) in [
+            ("movei --by 1,2", "2 numbers for 4 axes"),
+            ("movei --by-pulse 1.5,2,3,4", "axis_1"),
+            ("movei --point 30000", "out of range"),
+            ("movei --point 1 --speed 9mm/s", "a linear or circular move"),
+            ("movei --by 1,2,3,4 --decel 10", "movei-mm has neither"),
+        ] {
+            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+            assert_eq!(failure.kind, Kind::Usage, "{line}");
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+        for line in [&["movei"][..], &["movei", "--by", "1", "--linear"], &["movei", "--point", "1", "--hand", "left"]]
+        {
+            assert!(objection(line).starts_with("error"), "{line:?}");
+        }
+        assert_eq!(
+            intent(&["movei", "--by", "1,-2", "--axes", "1,2", "--speed", "5", "--unit", "2"]),
+            "move robot 2 by axis 1: 1 mm, axis 2: -2 mm (axes 1, 2 alone, at 5 %)"
+        );
+    }
+}

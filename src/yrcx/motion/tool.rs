@@ -1,0 +1,55 @@
+//! `yrcx movet` (4.2.21): move to a point in tool coordinates.
+
+use clap::Args;
+
+use super::{Motion, MotionReport};
+use crate::arguments::{Axes, Pace, Ramps};
+use armctl_controller::yrcx::order::Draft;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::failure::Failure;
+
+/// Moves to a point in tool coordinates: the point is relative to the tool, along its axes.
+#[derive(Debug, Args)]
+pub struct Movet {
+    /// Point to move to
+    #[arg(long, value_name = "POINT")]
+    point: String,
+    /// Move in a straight line; --speed may be in mm/s
+    #[arg(long)]
+    linear: bool,
+    #[command(flatten)]
+    axes: Axes,
+    #[command(flatten)]
+    pace: Pace,
+    #[command(flatten)]
+    ramps: Ramps,
+}
+
+impl Motion for Movet {
+    type Report = MotionReport;
+    const ID: &'static str = "yrcx.movet";
+
+    fn command(&self) -> Command {
+        if self.linear { Command::MovetLinear } else { Command::MovetPtp }
+    }
+
+    fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
+        let draft = self.axes.put(draft).with(Key::Point, self.point.as_str());
+        let draft = if self.linear { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
+        self.ramps.put(draft, self.command())
+    }
+
+    fn target(&self) -> String {
+        let way = if self.linear { " in a straight line" } else { "" };
+        format!("to point {} in tool coordinates{way}", self.point)
+    }
+
+    fn manner(&self) -> String {
+        format!("{}, {}", self.axes.describe(&[]), self.pace.describe())
+    }
+
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
+        moved
+    }
+}

@@ -1,0 +1,323 @@
+//! Commands with one row of the table: speeds (4.2.14 to 4.2.16), torque limit (4.2.22), inching distance (4.2.8),
+//! shift, hand and arm (4.2.17 to 4.2.19), servos (4.2.13), motor power (4.2.20), the status of remote commands
+//! (4.1).
+
+use clap::ValueEnum;
+
+use super::arguments::{Hand as HandSystem, Which};
+use super::single::one_row;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::commands;
+use armctl_frame::settings_report::{Done, NewValue, number};
+
+commands! {
+    /// Commands for the shift.
+    pub enum Shift {
+        /// Select a coordinate shift
+        Select(ShiftSelect),
+    }
+}
+
+commands! {
+    /// Commands for the hand.
+    pub enum Hand {
+        /// Select the hand
+        Select(HandSelect),
+    }
+}
+
+commands! {
+    /// Commands for the arm.
+    pub enum Arm {
+        /// Select the hand system for coordinates
+        Select(ArmSelect),
+    }
+}
+
+one_row! {
+    /// Sets a speed.
+    #[command(after_help = "`yrcx info speed` reads the speeds.")]
+    Speed(self) "yrcx.speed" -> Done {
+        /// Speed to set
+        setting: SpeedSetting,
+        /// Percent, 1 to 100
+        percent: String,
+    }
+    gives match self.setting {
+        SpeedSetting::Manual => Command::SpeedManual,
+        SpeedSetting::Auto => Command::SpeedAuto,
+        SpeedSetting::Program => Command::SpeedProgram,
+    },
+    with draft => draft.with(Key::SpeedPercent, self.percent.trim_end_matches('%')),
+    done {
+        let setting = match self.setting {
+            SpeedSetting::Manual => "manual",
+            SpeedSetting::Auto => "automatic",
+            SpeedSetting::Program => "program",
+        };
+        let percent = self.percent.trim_end_matches('%');
+        let name = match self.setting {
+            SpeedSetting::Manual => "manual_percent",
+            SpeedSetting::Auto => "auto_percent",
+            SpeedSetting::Program => "program_percent",
+        };
+        NewValue::of(name, number(percent), format!("set the {setting} speed to {percent} %"))
+    };
+
+    /// Limits the torque of an axis, starting with the next motion; the parameter does not change.
+    TorqueLimit(self) "yrcx.torque-limit" -> Done {
+        /// Axis, 1 to 4
+        #[arg(long, value_name = "AXIS")]
+        axis: String,
+        /// Percent of the maximum torque, 1 to 100
+        percent: String,
+    }
+    gives Command::TorqueLimit,
+    with draft => draft.with(Key::Axes, self.axis.as_str()).with(Key::Torque, self.percent.trim_end_matches('%')),
+    done {
+        let percent = self.percent.trim_end_matches('%');
+        let words = format!("limited the torque of axis {} to {percent} % , starting with the next motion", self.axis);
+        NewValue::of("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
+    };
+
+    /// Sets the inching distance.
+    InchDistance(self) "yrcx.inch-distance" -> Done {
+        /// Pulses, or steps of 0.001 mm for Cartesian and tool axes; 1 to 10000
+        distance: String,
+    }
+    gives Command::InchAmountSet,
+    with draft => draft.with(Key::InchingAmount, self.distance.as_str()),
+    done {
+        let words = format!(
+            "set the inching distance to {} (pulses, or steps of 0.001 mm for Cartesian and tool axes)",
+            self.distance
+        );
+        NewValue::of("inch_distance", number(&self.distance), words)
+    };
+
+    /// Selects a shift.
+    ShiftSelect(self) "yrcx.shift.select" -> Done {
+        /// Shift, 0 to 39
+        shift: String,
+    }
+    gives Command::ShiftSelect,
+    with draft => draft.with(Key::Shift, self.shift.as_str()),
+    done NewValue::of("shift", number(&self.shift), format!("selected shift {}", self.shift));
+
+    /// Selects a hand.
+    HandSelect(self) "yrcx.hand.select" -> Done {
+        /// Hand, 0 to 31
+        hand: String,
+    }
+    gives Command::HandSelect,
+    with draft => draft.with(Key::Hand, self.hand.as_str()),
+    done NewValue::of("hand", number(&self.hand), format!("selected hand {}", self.hand));
+
+    /// Selects a hand system.
+    #[command(after_help = "`yrcx info arm` reads the hand system.")]
+    ArmSelect(self) "yrcx.arm.select" -> Done {
+        /// Hand system
+        side: HandSystem,
+    }
+    gives Command::ArmSelect,
+    with draft => draft.with(Key::Arm, i32::from(self.side == HandSystem::Left)),
+    done {
+        let side = if self.side == HandSystem::Left { "left" } else { "right" };
+        NewValue::of("arm", side, format!("selected the {side}-handed system"))
+    };
+
+    /// Switches servos.
+    Servo(self) "yrcx.servo" -> Done {
+        /// New servo state
+        state: ServoState,
+        /// Only this axis, 1 to 4
+        #[arg(long, value_name = "AXIS")]
+        axis: Option<String>,
+        #[command(flatten)]
+        which: Which,
+    }
+    gives match self.state {
+        ServoState::On => Command::ServoOn,
+        ServoState::Off => Command::ServoOff,
+        ServoState::Free => Command::ServoFree,
+    },
+    with draft => draft.with_some(Key::Axes, self.axis.clone()),
+    intent {
+        let servos = format!("{} of {}", self.describe(), self.which.name());
+        match self.state {
+            ServoState::On => format!("switch {servos} on"),
+            ServoState::Off => format!("switch {servos} off: an axis without brake may drop"),
+            ServoState::Free => format!("switch {servos} off and release the brakes: an axis may drop"),
+        }
+    },
+    done {
+        let state = match self.state {
+            ServoState::On => "on",
+            ServoState::Off => "off",
+            ServoState::Free => "free",
+        };
+        let done = NewValue::of("servo", state, format!("switched {} {state}", self.describe()));
+        done.with("axis", self.axis.as_deref().map_or(serde_json::Value::Null, number))
+    };
+
+    /// Switches motor power, of all robots.
+    Motor(self) "yrcx.motor" -> Done {
+        /// New motor power state
+        state: MotorState,
+    }
+    gives match self.state {
+        MotorState::On => Command::MotorOn,
+        MotorState::Off => Command::MotorOff,
+        MotorState::Pwr => Command::MotorPower,
+    },
+    intent match self.state {
+        MotorState::On => "switch motor power and the servos of all robots on",
+        MotorState::Off => "switch motor power and the servos of all robots off: an axis without brake may drop",
+        MotorState::Pwr => "switch motor power on",
+    },
+    done match self.state {
+        MotorState::On => NewValue::of("motor_power", true, "switched motor power and all servos on").with("servo_on", true),
+        MotorState::Off => {
+            NewValue::of("motor_power", false, "switched motor power and all servos off").with("servo_on", false)
+        }
+        MotorState::Pwr => NewValue::of("motor_power", true, "switched motor power on"),
+    };
+
+    /// Resets the status of remote commands to ready.
+    #[command(
+        after_help = "armctl resets the status before and after each command, so you rarely need this. Use it if \
+                      another client's command left an end status. It does not stop a motion or a running command, and \
+                      does not reset an alarm (`yrcx alarm reset`)."
+    )]
+    StatusReset(self) "yrcx.status-reset" -> Done {}
+    gives Command::StatusReset,
+    done NewValue::of("remote_command_status", "ready", "the controller is ready for a remote command");
+}
+
+/// Speed settings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SpeedSetting {
+    /// Of jogs and inching
+    Manual,
+    /// Of automatic operation; reduces all others
+    Auto,
+    /// Of programs, and of motions without a speed argument
+    Program,
+}
+
+/// Servo states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ServoState {
+    /// Controlled; motor power must be on
+    On,
+    /// Off, brake on
+    Off,
+    /// Off, brake off: an axis may drop
+    Free,
+}
+
+impl Servo {
+    fn describe(&self) -> String {
+        match &self.axis {
+            Some(axis) => format!("the servo of axis {axis}"),
+            None => "the servos of all axes".to_owned(),
+        }
+    }
+}
+
+/// Motor power states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MotorState {
+    /// Motor power and all servos on
+    On,
+    /// Motor power and all servos off
+    Off,
+    /// Motor power on, servos unchanged
+    Pwr,
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{Scripted, example, intent, objection, run_on, words, written};
+    use armctl_frame::failure::Kind;
+
+    #[test]
+    fn each_speed_has_its_command_and_the_same_range() {
+        assert_eq!(words(&["speed", "auto", "100%", "--unit", "2"]).unwrap()[0][..3], ["0x2039", "0x0000", "0x0064"]);
+        for wrong in ["0", "101", "5.5", "fast"] {
+            let failure = words(&["speed", "manual", wrong]).unwrap_err();
+            assert!(failure.message.contains("speed_percent"), "{wrong}: {failure}");
+        }
+        assert!(objection(&["speed", "jog", "5"]).contains("manual, auto, program"));
+    }
+
+    #[test]
+    fn one_axis_and_a_share() {
+        let sent = words(&["torque-limit", "--axis", "4", "100%", "--unit", "2"]).unwrap();
+        assert_eq!(sent[0][..4], ["0x2048", "0x0000", "0x0008", "0x0064"]);
+        assert!(words(&["torque-limit", "--axis", "1,2", "50"]).unwrap_err().message.contains("name exactly 1"));
+        assert!(words(&["torque-limit", "--axis", "1", "0"]).unwrap_err().message.contains("allowed: 1 to 100 %"));
+    }
+
+    #[test]
+    fn distances_have_a_range() {
+        assert_eq!(words(&["inch-distance", "10000", "--unit", "4"]).unwrap()[0][..3], ["0x4027", "0x0000", "0x2710"]);
+        for wrong in ["0", "10001", "0.1", "1mm"] {
+            let failure = words(&["inch-distance", wrong]).unwrap_err();
+            assert!(failure.message.contains("inching_amount"), "{wrong}: {failure}");
+        }
+    }
+
+    #[test]
+    fn the_unit_is_always_told() {
+        let sent = written(&["teach", "--point", "29999", "--in", "mm", "--unit", "2"]).unwrap();
+        assert_eq!(sent[0][..4], ["0x2028", "0x0000", "0x752F", "0x0001"]);
+        assert_eq!(written(&["teach", "4000", "--in", "pulse"]).unwrap(), [example("4.2.9-teach")]);
+        assert!(words(&["teach", "--point", "30000", "--in", "mm"]).unwrap_err().message.contains("0 to 29999"));
+        assert!(objection(&["teach"]).contains("POINT"));
+    }
+
+    #[test]
+    fn numbers_have_their_ranges_and_arms_two_sides() {
+        assert_eq!(words(&["shift", "select", "39", "--unit", "2"]).unwrap()[0][..3], ["0x203B", "0x0000", "0x0027"]);
+        assert_eq!(words(&["hand", "select", "31"]).unwrap()[0][..3], ["0x003C", "0x0000", "0x001F"]);
+        assert_eq!(words(&["arm", "select", "left", "--unit", "4"]).unwrap()[0][..3], ["0x403D", "0x0000", "0x0001"]);
+        assert!(words(&["shift", "select", "40"]).unwrap_err().message.contains("allowed: 0 to 39"));
+        assert!(words(&["hand", "select", "32"]).unwrap_err().message.contains("allowed: 0 to 31"));
+        assert!(objection(&["arm", "select", "both"]).contains("right, left"));
+    }
+
+    #[test]
+    fn each_state_has_its_command() {
+        let first = |line: &[&str]| words(line).unwrap().concat()[..3].to_vec();
+        assert_eq!(first(&["servo", "on"]), ["0x0034", "0x0000", "0x0000"]);
+        assert_eq!(first(&["servo", "off", "--axis", "3", "--unit", "2"]), ["0x2035", "0x0000", "0x0004"]);
+        assert_eq!(first(&["motor", "off"])[0], "0x0041");
+        assert_eq!(first(&["motor", "pwr"])[0], "0x0043");
+        assert_eq!(words(&["servo", "free", "--axis", "4"]).unwrap(), [example("4.2.13-free")]);
+        assert_eq!(words(&["motor", "on"]).unwrap(), [example("4.2.20-on")]);
+    }
+
+    #[test]
+    fn one_axis_or_all_and_motor_power_is_for_no_single_robot() {
+        assert_eq!(words(&["servo", "on", "--axis", "1,2"]).unwrap_err().kind, Kind::Usage);
+        assert!(words(&["motor", "on", "--unit", "1"]).unwrap_err().message.contains("--unit"));
+        assert!(objection(&["servo", "brake"]).contains("free"));
+        assert_eq!(intent(&["servo", "on", "--unit", "3"]), "switch the servos of all axes of robot 3 on");
+    }
+
+    #[test]
+    fn all_words_are_zero() {
+        assert_eq!(words(&["status-reset"]).unwrap(), [vec!["0x0000"; 16]]);
+    }
+
+    #[test]
+    fn an_end_status_of_somebody_else_goes_away() {
+        let mut scripted = Scripted::new([]);
+        scripted.image.0[0] = 0x4000;
+        let (outcome, peer) = run_on(scripted, &["status-reset"]);
+        assert_eq!(outcome.unwrap()["new"], "ready");
+        assert_eq!((peer.image.0[0], peer.taken.len()), (0, 0));
+    }
+}

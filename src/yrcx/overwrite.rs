@@ -1,0 +1,300 @@
+//! Commands that overwrite stored or taught data: read the old data, confirm old and new, then write.
+
+use serde_json::Value as Json;
+
+use super::before::{before, question};
+use super::data::{Comments, Hands, Pallets, Points, Shifts};
+use super::done::{Done, Replaced};
+use super::link::{Link, Yrcx};
+use super::param::{Amount, Parameters, Setting};
+use super::position::Unit;
+use super::refusal::refused;
+use super::several::{check_echo, is_about_commands};
+use super::stores::{Kind, Numbered, Row};
+use crate::refusal::BuildOrder as _;
+use armctl_controller::Risk;
+use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::table::parameter::Parameter;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::authority::Authority;
+use armctl_frame::dry_run::Reason;
+use armctl_frame::failure::Failure;
+use armctl_frame::gate::{Change, Confirmation};
+use armctl_frame::robot::item::{Item, Written, WrittenItems, as_requested};
+use armctl_frame::store::{Writable, describe_change, overwriting};
+
+/// Kind of confirmation for a remote command.
+pub fn confirmation(command: Command) -> Confirmation {
+    match (command, command.row().risk) {
+        (Command::AbsoluteReset, _) => Confirmation::Word("reset"),
+        (Command::ServoOn | Command::ServoOff | Command::ServoFree, _) | (_, Risk::Destroy) => Confirmation::WhenKnown,
+        (_, Risk::Read | Risk::Write | Risk::Motion) => Confirmation::Question,
+    }
+}
+
+/// Executes a command after reading the data that it replaces; `intent` describes it in one line. Overwriting needs a
+/// confirmation. Equal data is not written.
+pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<Done, Failure> {
+    if !overwrites(order) {
+        // While a person is asked, the robot is not reserved.
+        if !authority.asks() {
+            link.reserve(order).await?;
+        }
+        let old = before(link, order).await?;
+        authority.confirm(&question(order, intent, &old)).await?;
+        return Ok(Done { old, ..link.ask(order).await? });
+    }
+    give_either(link, authority, order, order).await
+}
+
+/// Executes an overwriting command; `other` is the same command for another answer, to show the known part of it in a
+/// dry run.
+pub async fn give_either(
+    link: &mut Link,
+    authority: &Authority<'_>,
+    order: &Order,
+    other: &Order,
+) -> Result<Done, Failure> {
+    let replaced = confirm(link, authority, order).await?;
+    if replaced.is_there {
+        return Ok(Done { replaced: Some(replaced), ..Done::default() });
+    }
+    if link.is_dry() {
+        let reason = match order.command() {
+            _ if order != other => Reason::about("stores it").depending_on("the unit of the point"),
+            command if may_be_there(command) => Reason::default().depending_on(DIFFERS),
+            _ => Reason::default(),
+        };
+        link.plan_depending(order, other, reason);
+        return Ok(Done::default());
+    }
+    let done = link.ask(order).await?;
+    Ok(Done { replaced: Some(replaced), ..done })
+}
+
+const DIFFERS: &str = "the current data: sent if different";
+
+/// Whether the new data can equal the old data.
+fn may_be_there(command: Command) -> bool {
+    // The position may change before it is stored.
+    !matches!(command, Command::Teach | Command::PointPallet)
+}
+
+/// Whether a command overwrites a row of a table.
+fn overwrites(order: &Order) -> bool {
+    order.row().risk == Risk::Destroy && order.command() != Command::AbsoluteReset
+}
+
+/// Reads the row that a command overwrites, and asks for confirmation. A dry run notes the reads.
+pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Replaced, Failure> {
+    match order.command() {
+        _ if !overwrites(order) => {
+            authority.confirm(&Change::new(order.row().name)).await?;
+            Ok(Replaced::default())
+        }
+        Command::ParamSet => Parameters::confirm(link, authority, order).await,
+        Command::CommentSet => Numbered::<Comments>::confirm(link, authority, order).await,
+        Command::PalletSet => Numbered::<Pallets>::confirm(link, authority, order).await,
+        Command::ShiftSet | Command::ShiftElement => Numbered::<Shifts>::confirm(link, authority, order).await,
+        Command::HandSet => Numbered::<Hands>::confirm(link, authority, order).await,
+        _ => Numbered::<Points>::confirm(link, authority, order).await,
+    }
+}
+
+/// A table with rows that remote commands overwrite.
+trait Overwritten: Writable<Family = Yrcx> {
+    /// The table and the row that a command overwrites.
+    fn target(order: &Order) -> Result<(Self, Self::Key), Failure>;
+
+    /// Request that reads a row.
+    fn read_order(&self, key: Self::Key) -> Result<Order, Failure>;
+
+    /// Content of a row from an answer.
+    fn row(&self, key: Self::Key, values: Values) -> Self::Wire;
+
+    /// New content of a row; a text if it is not known in advance.
+    async fn replacement(
+        &self,
+        link: &mut Link,
+        order: &Order,
+        old: Option<&Values>,
+    ) -> Result<Result<Values, String>, Failure>;
+
+    /// Reads the row that a command overwrites, and asks for confirmation.
+    async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Replaced, Failure> {
+        let (table, key) = Self::target(order)?;
+        let about = format!("{}, which is overwritten", Self::asked(key));
+        let values = there(link, &table.read_order(key)?, &about).await?;
+        let new = table.replacement(link, order, values.as_ref()).await?.map(|values| table.row(key, values));
+        let old = values.map(|values| table.row(key, values)).filter(|old| !table.is_blank(old));
+        let is_same = old.as_ref().zip(new.as_ref().ok()).is_some_and(|(old, new)| Self::is_equal(old, new));
+        let change = match (&old, &new) {
+            (Some(old), Ok(new)) => describe_change(&table, &[(key, Some(old), new)]),
+            (Some(old), Err(words)) => {
+                let [old, _] = table.difference(old, old);
+                overwriting(&table, &[[Self::asked(key), old, words.clone()]])
+            }
+            (None, _) => Change::none(),
+        };
+        authority.confirm(&change).await?;
+        let value = |row: Option<&Self::Wire>| row.and_then(|row| serde_json::to_value(table.value(row)?).ok());
+        Ok(Replaced {
+            kind: Self::WORDS.nouns[0],
+            name: Self::name(key),
+            values: [value(old.as_ref()), value(new.as_ref().ok())],
+            is_there: is_same && may_be_there(order.command()),
+        })
+    }
+}
+
+impl<K: Kind> Overwritten for Numbered<K> {
+    fn target(order: &Order) -> Result<(Self, i32), Failure> {
+        Ok((Self::default(), order.values().int(K::RECORDS.columns[0].1).unwrap_or_default()))
+    }
+
+    fn read_order(&self, number: i32) -> Result<Order, Failure> {
+        K::RECORDS.read(number)
+    }
+
+    fn row(&self, number: i32, values: Values) -> Row {
+        Row::new::<K>(number, values)
+    }
+
+    async fn replacement(
+        &self,
+        link: &mut Link,
+        order: &Order,
+        old: Option<&Values>,
+    ) -> Result<Result<Values, String>, Failure> {
+        let (command, values) = (order.command(), order.values());
+        let number = |key| values.int(key).unwrap_or_default();
+        Ok(match command {
+            Command::Teach => {
+                let is_mm = number(Key::Unit) == 1;
+                let read = if is_mm { Command::PositionMm } else { Command::PositionPulse };
+                let read = read.order().with(Key::Robot, number(Key::Robot)).order()?;
+                let position = there(link, &read, "current position, which is stored").await?;
+                position.map_or(Err("the current position".to_owned()), |mut position| {
+                    position.set(Key::Unit, i32::from(is_mm));
+                    Ok(position)
+                })
+            }
+            Command::PointCopy | Command::PointAdd | Command::PointSub => {
+                let source = Command::PointGet.order().with(Key::Point, number(Key::Point2)).order()?;
+                let about = format!("point {}, a source of the calculation", number(Key::Point2));
+                let source = there(link, &source, &about).await?;
+                computed(command, (number(Key::Point), old), (number(Key::Point2), source.as_ref()))
+            }
+            Command::PointPallet => {
+                Err(format!("position {} of pallet {}", number(Key::WorkPosition), number(Key::Pallet)))
+            }
+            Command::PointElementPulse | Command::PointElementMm | Command::ShiftElement => {
+                element(command, values, old)
+            }
+            _ => Ok(K::RECORDS.stored(values)),
+        })
+    }
+}
+
+impl Overwritten for Parameters {
+    fn target(order: &Order) -> Result<(Self, Setting), Failure> {
+        let number = |key| order.values().int(key).unwrap_or_default();
+        let unknown = || Failure::usage("this parameter does not exist").hint("see `yrcx param get -h`");
+        let parameter = Parameter::from_number(number(Key::Parameter)).ok_or_else(unknown)?;
+        let axis = u8::try_from(number(Key::Axes).trailing_zeros() + 1).ok().filter(|_| parameter.per_axis);
+        Ok((Self { robot: u8::try_from(number(Key::Robot)).unwrap_or_default() }, (parameter, axis)))
+    }
+
+    fn read_order(&self, key: Setting) -> Result<Order, Failure> {
+        Self::read_order(self, key)
+    }
+
+    fn row(&self, key: Setting, values: Values) -> Amount {
+        Amount::new(key, values.int(Key::Value).unwrap_or_default())
+    }
+
+    async fn replacement(
+        &self,
+        _link: &mut Link,
+        order: &Order,
+        _old: Option<&Values>,
+    ) -> Result<Result<Values, String>, Failure> {
+        Ok(Ok(order.values().clone()))
+    }
+}
+
+/// Reads current data; none if the controller refuses, for example because it is not defined.
+pub(super) async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
+    if link.is_dry() {
+        link.plan(order, about);
+        return Ok(None);
+    }
+    match link.try_ask(order).await? {
+        Ok(done) => check_echo(order, &done.values).map(|()| Some(done.values)),
+        Err(refusal) if is_about_commands(refusal.alarm) => Err(refused(order.row(), refusal.alarm)),
+        Err(_) => Ok(None),
+    }
+}
+
+/// Point that the controller computes from two points; a text if it is unknown.
+fn computed(
+    command: Command,
+    (number, old): (i32, Option<&Values>),
+    (other, source): (i32, Option<&Values>),
+) -> Result<Values, String> {
+    let sign = match command {
+        Command::PointCopy => return source.cloned().ok_or_else(|| format!("point {other}")),
+        Command::PointAdd => 1,
+        _ => -1,
+    };
+    let words = || format!("point {number} {} point {other}", if sign > 0 { "+" } else { "-" });
+    let (old, source) = old.zip(source).ok_or_else(words)?;
+    if old.int(Key::Unit) != source.int(Key::Unit) {
+        return Err(words());
+    }
+    let mut new = old.clone();
+    for key in Key::AXES {
+        let axis = |values: &Values| values.int(key).unwrap_or_default();
+        new.set(key, axis(old).saturating_add(sign * axis(source)));
+    }
+    Ok(new)
+}
+
+/// Point or shift with one changed element; a text if the element cannot be read.
+fn element(command: Command, values: &Values, old: Option<&Values>) -> Result<Values, String> {
+    let number = values.int(Key::Element).unwrap_or_default().trailing_zeros();
+    let value = values.int(Key::Value).unwrap_or_default();
+    let is_mm = command != Command::PointElementPulse;
+    let words = || {
+        let (value, unit) = if is_mm { (mm(value), Unit::Mm) } else { (value.to_string(), Unit::Pulse) };
+        format!("element {} = {value} {}", number + 1, unit.symbol())
+    };
+    let key = usize::try_from(number).ok().and_then(|at| Key::AXES.get(at)).ok_or_else(words)?;
+    let old = old.ok_or_else(words)?;
+    if command != Command::ShiftElement && (old.int(Key::Unit) == Some(1)) != is_mm {
+        return Err(words());
+    }
+    let mut new = old.clone();
+    new.set(*key, value);
+    Ok(new)
+}
+
+/// Steps of a position in mm.
+pub fn mm(steps: i32) -> String {
+    format!("{:.3}", f64::from(steps) / 1000.0)
+}
+
+/// Report of a row that was stored.
+pub type Stored = WrittenItems<Json>;
+
+/// Report of a row that was stored, with the old one.
+pub fn stored(words: impl Into<String>, given: &Done) -> Stored {
+    let Replaced { kind, name, values: [old, new], is_there } = given.replaced.clone().unwrap_or_default();
+    let words = if is_there {
+        format!("{} holds that already; nothing was written", as_requested(kind, &name))
+    } else {
+        words.into()
+    };
+    WrittenItems::describe(words, vec![Written::new(Item::new(kind, name, Ok(new)), old, !is_there)])
+}

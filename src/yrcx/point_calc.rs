@@ -1,0 +1,196 @@
+//! `yrcx point-calc` (4.4.3, 4.4.4): calculations with points and shifts in the controller.
+
+use clap::ArgGroup;
+
+use super::numbers::single;
+use super::overwrite::Stored;
+use super::single::one_row;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::commands;
+
+commands! {
+    /// Calculations with points and shifts.
+    pub enum PointCalc {
+        /// Copy a point: 100 --to 1
+        Copy(Copy),
+        /// Add a point to another point: 100 --to 1
+        Add(Add),
+        /// Subtract a point from another point: 100 --from 1
+        Sub(Sub),
+        /// Copy a pallet position to a point: 2 --place 133 --to 100
+        Pallet(Pallet),
+        /// Set one element of a point: 1 --element 4 --mm 1.0
+        Element(Element),
+        /// Set one element of a shift: 1 --element 2 --mm 1.0
+        ShiftElement(ShiftElement),
+    }
+}
+
+fn point(text: &str) -> Result<i32, String> {
+    single(Command::PointCopy, Key::Point, text)
+}
+
+one_row! {
+    /// Copies a point.
+    Copy(self) "yrcx.point-calc.copy" -> Stored {
+        /// Point to copy, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = point)]
+        point: i32,
+        /// Point to write
+        #[arg(long, value_name = "POINT", value_parser = point)]
+        to: i32,
+    }
+    gives Command::PointCopy,
+    with draft => draft.with(Key::Point, self.to).with(Key::Point2, self.point),
+    done format!("P{} = P{}", self.to, self.point);
+
+    /// Adds a point to another point, axis by axis.
+    Add(self) "yrcx.point-calc.add" -> Stored {
+        /// Point to add, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = point)]
+        point: i32,
+        /// Point that changes
+        #[arg(long, value_name = "POINT", value_parser = point)]
+        to: i32,
+    }
+    gives Command::PointAdd,
+    with draft => draft.with(Key::Point, self.to).with(Key::Point2, self.point),
+    done format!("P{to} = P{to} + P{}", self.point, to = self.to);
+
+    /// Subtracts a point from another point, axis by axis.
+    Sub(self) "yrcx.point-calc.sub" -> Stored {
+        /// Point to subtract, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = point)]
+        point: i32,
+        /// Point that changes
+        #[arg(long, value_name = "POINT", value_parser = point)]
+        from: i32,
+    }
+    gives Command::PointSub,
+    with draft => draft.with(Key::Point, self.from).with(Key::Point2, self.point),
+    done format!("P{from} = P{from} - P{}", self.point, from = self.from);
+
+    /// Copies a pallet position to a point.
+    Pallet(self) "yrcx.point-calc.pallet" -> Stored {
+        /// Pallet, 0 to 39
+        #[arg(value_name = "PALLET", value_parser = |text: &str| single(Command::PointPallet, Key::Pallet, text))]
+        pallet: i32,
+        /// Pallet position, starting with 1
+        #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointPallet, Key::WorkPosition, text))]
+        place: i32,
+        /// Point to write
+        #[arg(long, value_name = "POINT", value_parser = point)]
+        to: i32,
+    }
+    gives Command::PointPallet,
+    with draft => {
+        let draft = draft.with(Key::Point, self.to).with(Key::Pallet, self.pallet);
+        draft.with(Key::WorkPosition, self.place)
+    },
+    done format!("P{} = position {} of pallet {}", self.to, self.place, self.pallet);
+
+    /// Sets one element of a point, in the unit of the point.
+    #[command(group = ArgGroup::new("value").required(true))]
+    Element(self) "yrcx.point-calc.element" -> Stored {
+        /// Point, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = point)]
+        point: i32,
+        /// Element, 1 to 6: the axis
+        #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointElementMm, Key::Element, text))]
+        element: i32,
+        /// New value in mm, for a point in mm
+        #[arg(long, value_name = "MM", group = "value", allow_negative_numbers = true)]
+        mm: Option<String>,
+        /// New value in pulses, for a point in pulses
+        #[arg(long, value_name = "PULSES", group = "value", allow_negative_numbers = true)]
+        pulse: Option<String>,
+    }
+    gives if self.mm.is_some() { Command::PointElementMm } else { Command::PointElementPulse },
+    with draft => {
+        let value = self.mm.clone().or_else(|| self.pulse.clone());
+        draft.with(Key::Point, self.point).with(Key::Element, self.element).with_some(Key::Value, value)
+    },
+    done {
+        let (value, unit) = match &self.mm {
+            Some(value) => (Some(value), "mm"),
+            None => (self.pulse.as_ref(), "pulses"),
+        };
+        let value = value.map_or("", String::as_str);
+        format!("element {} of P{} = {value} {unit}", place(self.element), self.point)
+    };
+
+    /// Sets one element of a shift.
+    ShiftElement(self) "yrcx.point-calc.shift-element" -> Stored {
+        /// Shift, 0 to 39
+        #[arg(value_name = "SHIFT", value_parser = |text: &str| single(Command::ShiftElement, Key::Shift, text))]
+        shift: i32,
+        /// Element, 1 to 4: the axis
+        #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::ShiftElement, Key::Element, text))]
+        element: i32,
+        /// New value in mm
+        #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+        mm: String,
+    }
+    gives Command::ShiftElement,
+    with draft => {
+        let draft = draft.with(Key::Shift, self.shift).with(Key::Element, self.element);
+        draft.with(Key::Value, self.mm.as_str())
+    },
+    done format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm);
+}
+
+/// Number of the single set bit, starting with 1.
+fn place(bits: i32) -> u32 {
+    bits.trailing_zeros() + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{example, objection, read_example, words, written};
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        for (id, line, (kind, number)) in [
+            ("4.4.3-assign-point", "copy 100 --to 1", ("point", "1")),
+            ("4.4.3-add-point", "add 100 --to 1", ("point", "1")),
+            ("4.4.3-assign-pallet-point", "pallet 2 --place 133 --to 100", ("point", "100")),
+            ("4.4.4-point-element", "element 1 --element 4 --mm 1.000", ("point", "1")),
+            ("4.4.4-shift-element", "shift-element 1 --element 2 --mm 1", ("shift", "1")),
+        ] {
+            let line: Vec<&str> = ["point-calc"].into_iter().chain(line.split(' ')).collect();
+            assert_eq!(written(&line).unwrap(), [example(id)], "{id}");
+            let done = read_example(id, &line);
+            let item = &done["items"][0];
+            assert_eq!((&item["kind"], &item["name"]), (&kind.into(), &number.into()));
+        }
+    }
+
+    #[test]
+    fn the_point_that_changes_comes_first() {
+        let sent = written(&["point-calc", "sub", "100", "--from", "1"]).unwrap();
+        assert_eq!(sent[0][..4], ["0x0235", "0x0000", "0x0001", "0x0064"]);
+        let sent = written(&["point-calc", "element", "7", "--element", "6", "--pulse", "-1"]).unwrap();
+        assert_eq!(sent[0][..6], ["0x0240", "0x0000", "0x0007", "0x0020", "0xFFFF", "0xFFFF"]);
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (line, part) in [
+            ("copy 1", "--to"),
+            ("copy 30000 --to 1", "allowed: 0 to 29999"),
+            ("pallet 40 --place 1 --to 1", "allowed: 0 to 39"),
+            ("pallet 1 --place 0 --to 1", "allowed: 1 to 32767"),
+            ("element 1 --element 7 --mm 1", "must be from 1 to 6"),
+            ("element 1 --element 1,2 --mm 1", "name exactly 1"),
+            ("element 1 --element 1", "--mm"),
+            ("element 1 --element 1 --mm 1 --pulse 1", "cannot be used with"),
+            ("shift-element 1 --element 5 --mm 1", "must be from 1 to 4"),
+        ] {
+            let objection = objection(&["point-calc"].into_iter().chain(line.split(' ')).collect::<Vec<_>>());
+            assert!(objection.contains(part), "{line}: {objection}");
+        }
+        let failure = words(&["point-calc", "element", "1", "--element", "1", "--pulse", "1.5"]).unwrap_err();
+        assert!(failure.message.contains("value"), "{failure}");
+    }
+}

@@ -1,0 +1,128 @@
+//! Procedures of the timing charts as commands (chapter 1, section 3).
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link::{Link, Yrcx};
+use armctl_controller::Risk;
+use armctl_controller::yrcx::procedure::Procedure;
+use armctl_controller::yrcx::signal::{Signal, output};
+use armctl_frame::dry_run::Known as _;
+use armctl_frame::face::shared_commands::CommonReport;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::View;
+use armctl_frame::settings_report::{Done, NewValue, Old};
+use armctl_frame::{Command, ConnectMode, Context, Report};
+
+/// Declares a command for each procedure.
+macro_rules! procedures {
+    ($($(#[$meta:meta])* $name:ident $id:literal $procedure:ident $set:literal = $new:literal, $done:literal $(was $signal:ident)? $($is_stop:literal)?;)*) => {
+        $(
+            $(#[$meta])*
+            #[derive(Debug, Args)]
+            pub struct $name {}
+
+            impl Command for $name {
+                type Family = Yrcx;
+                type Report = CarriedOut;
+                const ID: &'static str = $id;
+
+                fn risk(&self) -> Risk {
+                    Procedure::$procedure().risk
+                }
+
+                fn intent(&self) -> String {
+                    Procedure::$procedure().intent
+                }
+
+                $(fn is_stop(&self) -> bool {
+                    $is_stop
+                })?
+
+                fn connect_mode(&self) -> ConnectMode {
+                    if Procedure::$procedure().only_awaits() { ConnectMode::Monitor } else { ConnectMode::Control }
+                }
+
+                async fn run(&self, context: Context<'_, Yrcx>) -> Result<CarriedOut, Failure> {
+                    let old = was(context.link, [$(output::$signal)?].into_iter().next()).await?;
+                    let elapsed = context.link.carry_out(Procedure::$procedure()).await?;
+                    let elapsed_ms = u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX);
+                    Ok(CarriedOut { done: NewValue::of($set, $new, $done).replaces(old), elapsed_ms })
+                }
+            }
+        )*
+    };
+}
+
+/// State of the signal before the procedure; a stop has no signal and does not wait.
+async fn was(link: &mut Link, signal: Option<Signal>) -> Result<Old, Failure> {
+    let Some(signal) = signal else { return Ok(Old::UNREAD) };
+    let shown = link.look().await.known()?;
+    Ok(Old::read(shown.map(|image| signal.is_on(&image))))
+}
+
+procedures! {
+    /// Switches the servos on after power on: SI(00) on, SI(01) on, until SO(02) confirms it.
+    PowerOn "yrcx.power-on" power_on "servo_on" = true, "servos are on" was SERVO_ON;
+    /// Puts the controller into emergency stop: SI(00) off, until SO(00), SO(03) and SO(02) confirm it. Use a
+    /// session: when the connection ends, the controller reports a link fault instead.
+    EmergencyStop "yrcx.emergency-stop" emergency_stop "emergency_stop" = true, "the controller is in emergency stop" true;
+    /// Ends the emergency stop and switches the servos on: SI(00), SI(16), SI(01), each confirmed.
+    Recover "yrcx.recover" recover "servo_on" = true, "servos are on again" was SERVO_ON;
+    /// Waits until AUTO mode is selected at the controller (SO(10)).
+    AutoMode "yrcx.auto-mode" auto_mode "auto_mode" = true, "AUTO mode is selected" was AUTO_MODE;
+    /// Resets the robot program to its first line: SI(15) on, until SO(14) confirms it.
+    Reset "yrcx.reset" program_reset "program_state" = "reset", "the robot program is reset";
+    /// Starts or continues the robot program: SI(06) on, SI(12) on, until SO(13) confirms it.
+    Run "yrcx.run" run "program_running" = true, "the robot program is running" was PROGRAM_RUNNING;
+    /// Stops the robot program: SI(06) off, until SO(13) confirms it. SI(06) stays off until the next run.
+    Stop "yrcx.stop" stop "program_running" = false, "the robot program is stopped" true;
+}
+
+/// Result of a procedure.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct CarriedOut {
+    #[serde(flatten)]
+    done: Done,
+    /// Time from the first signal to the last confirmation, in ms.
+    elapsed_ms: u64,
+}
+
+impl CommonReport for CarriedOut {
+    type Core = Done;
+
+    fn core(&self) -> Done {
+        self.done.clone()
+    }
+}
+
+impl Report for CarriedOut {
+    fn view(&self) -> View {
+        View::text(format!("{} ({}.{:03} s)", self.done.words(), self.elapsed_ms / 1000, self.elapsed_ms % 1000))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::{frames, intent, words};
+
+    #[test]
+    fn a_dry_run_shows_every_edge() {
+        let noted = frames(&["power-on"]).unwrap();
+        let shown: Vec<(&str, &str)> =
+            noted.iter().map(|note| (note["bits"][0].as_str().unwrap(), note["about"].as_str().unwrap())).collect();
+        // SI(00) and SI(06) are on at the start, unless a session has switched them off.
+        let edges = [("0x0043", "servo-on (SI(01)) on"), ("0x0041", "servo-on (SI(01)) off")];
+        assert_eq!(shown, [&[("0x0041", "emergency-stop (SI(00)) on")], &edges[..]].concat());
+        assert_eq!(noted[0]["depends_on"], "the earlier signals: sent only if emergency-stop is off");
+        assert_eq!(frames(&["stop"]).unwrap()[0]["bits"][0], "0x0001");
+        assert_eq!(frames(&["auto-mode"]).unwrap(), Vec::<serde_json::Value>::new());
+    }
+
+    #[test]
+    fn signals_are_for_no_single_robot() {
+        assert!(words(&["run", "--unit", "1"]).unwrap_err().message.contains("--unit"));
+        assert_eq!(intent(&["run"]), "run the robot program");
+    }
+}

@@ -1,0 +1,148 @@
+//! Requests to a PROFINET station without a connection.
+
+use std::net::Ipv4Addr;
+use std::time::Duration;
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::{check, connect};
+use crate::fieldbus::{self, At};
+use crate::link_error::not_open;
+use armctl_controller::yrcx::image::Image;
+use armctl_frame::face::layers::Layers;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::settings::target::profinet::{Profinet, SCHEME};
+use armctl_transport::image::LinkError;
+use armctl_transport::image::tap::Tap;
+use armctl_transport::profinet::commission::{self, Found, Identity};
+use armctl_transport::profinet::error::ProfinetError;
+use armctl_transport::profinet::interface::Interface;
+use armctl_transport::profinet::layout::Layout;
+use armctl_transport::profinet::settings::Station;
+use armctl_transport::profinet::wire::dcp::{self, Block};
+
+/// Station of a URL. Each request opens the interface.
+#[derive(Debug)]
+pub struct Board {
+    profinet: Profinet,
+    label: String,
+    tap: Tap,
+}
+
+impl Board {
+    /// Station of a URL.
+    pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
+        Ok(Self { profinet: connect::options(at.bus)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
+    }
+
+    /// Options of the URL.
+    pub const fn settings(&self) -> &Profinet {
+        &self.profinet
+    }
+
+    /// The interface, with a recorder.
+    pub fn interface(&self) -> Result<Interface, Failure> {
+        let mut interface = Interface::find(&self.profinet.interface).map_err(|error| self.failure(error))?;
+        interface.tap = self.tap.clone();
+        Ok(interface)
+    }
+
+    /// Runs a blocking request on the interface.
+    pub async fn ask<T: Send + 'static>(
+        &self,
+        question: impl FnOnce(&Interface) -> Result<T, ProfinetError> + Send + 'static,
+    ) -> Result<T, Failure> {
+        let interface = self.interface()?;
+        match tokio::task::spawn_blocking(move || question(&interface)).await {
+            Ok(answer) => answer.map_err(|error| self.failure(error)),
+            Err(error) => Err(Failure::local(error.to_string())),
+        }
+    }
+
+    /// Finds the station.
+    pub async fn station(&self) -> Result<Found, Failure> {
+        let station = self.profinet.station.clone();
+        self.ask(move |interface| commission::find(interface, &station)).await
+    }
+
+    /// Reads the records of the station.
+    pub async fn identity(&self, found: Found) -> Result<Identity, Failure> {
+        self.ask(move |interface| commission::identity(interface, &found)).await
+    }
+
+    /// Finds another station with this name.
+    pub async fn namesake(&self, name: &str, than: &Found) -> Result<Option<String>, Failure> {
+        let (station, mac) = (Station::Name(name.to_owned()), than.mac);
+        let other = self.ask(move |interface| commission::other(interface, &station, mac)).await?;
+        Ok(other.map(|mac| format!("station {mac}")))
+    }
+
+    /// Finds another owner of this IP address.
+    pub async fn holder(&self, address: Ipv4Addr, than: &Found) -> Result<Option<String>, Failure> {
+        let (mac, own) = (than.mac, self.interface()?.mac);
+        let other = self.ask(move |interface| commission::holder(interface, address, mac)).await?;
+        Ok(other.map(|mac| if mac == own { "this machine".to_owned() } else { format!("the card {mac}") }))
+    }
+
+    /// Sets a value at the station, and waits until the station reports it.
+    pub async fn set(
+        &self,
+        found: &Found,
+        what: &'static str,
+        block: Block,
+        is_so: impl Fn(&dcp::Station) -> bool + Send + 'static,
+    ) -> Result<Found, Failure> {
+        let mac = found.mac;
+        let set = self.ask(move |interface| {
+            let answer = commission::change(interface, mac, what, &block);
+            let is_open = matches!(answer, Err(ProfinetError::NoAnswer { .. }));
+            match answer {
+                // A refusal is also an answer.
+                Err(error @ ProfinetError::Dcp { .. }) => return Ok(Err(error)),
+                Err(error) if !is_open => return Err(error),
+                _ => {}
+            }
+            Ok(commission::settled(interface, mac, what, is_so))
+        });
+        match set.await? {
+            Ok(found) => Ok(found),
+            Err(error @ ProfinetError::Dcp { .. }) => {
+                let failure = Failure::new(Kind::Refused, format!("{}: {error}", self.label));
+                Err(failure.hint("nothing was changed; `yrcx profinet identify` shows the current settings"))
+            }
+            Err(error) => {
+                let message = format!("{}: sent; the result is unknown: {error}", self.label);
+                Err(Failure::new(Kind::OutcomeUnknown, message)
+                    .hint("`yrcx profinet identify` shows the current settings"))
+            }
+        }
+    }
+
+    /// Connects with this layout until data flows, then disconnects. Returns the answer of the station.
+    pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>, Failure> {
+        let profinet = Profinet { layout: Some(layout.clone()), gsdml: None, ..self.profinet.clone() };
+        let settings = connect::settings(&profinet, Duration::ZERO).map_err(|error| self.failure_of(&error))?;
+        Ok(connect::attempt(&profinet, settings, self.tap.clone()).await)
+    }
+
+    /// Failure of a request.
+    pub fn failure(&self, error: ProfinetError) -> Failure {
+        self.failure_of(&LinkError::from(error))
+    }
+
+    /// Failure of a link.
+    pub fn failure_of(&self, error: &LinkError) -> Failure {
+        not_open(&self.label, &SCHEME, error)
+    }
+}
+
+impl fieldbus::Board for Board {
+    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
+        check::look(self, layers).boxed_local()
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
+        std::future::ready(()).boxed_local()
+    }
+}

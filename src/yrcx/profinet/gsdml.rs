@@ -1,0 +1,196 @@
+//! `yrcx profinet gsdml`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use armctl_controller::yrcx::image::Image;
+use armctl_files as files;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::output::view::{Cell, Section, Table, View};
+use armctl_frame::{OfflineCommand, Report};
+use armctl_transport::profinet::gsdml::{self, Fitting, Gsdml, Head};
+use armctl_transport::profinet::layout::Direction;
+
+/// Reads a device's GSDML file: its modules, and the layout for a target. Needs no robot.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "An error in the file is reported with its line and element (exit 2). The layout uses the modules \
+                  with 48 bytes each way, as on a YRCX. If several layouts are possible, write the layout into the \
+                  target yourself; see `armctl help profinet`."
+)]
+pub struct ReadFile {
+    /// GSDML file, such as GSDML-V2.35-….xml
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+}
+
+impl OfflineCommand for ReadFile {
+    type Report = Described;
+    const ID: &'static str = "yrcx.profinet.gsdml";
+
+    fn run(&self, _screen: &Screen) -> Result<Described, Failure> {
+        let shown = self.file.display();
+        let bytes = files::read(&self.file, gsdml::MOST_BYTES).map_err(|error| Failure::io(&shown, &error))?;
+        let read = Gsdml::parse(&bytes).map_err(|error| {
+            Failure::usage(format!("{shown}: {error}")).hint("check that it is the GSDML file of the device")
+        })?;
+        Ok(Described::from(&read))
+    }
+}
+
+/// Device description of the manufacturer. Names are untrusted.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Described {
+    /// As in `0x0123`.
+    vendor: String,
+    /// As in `0x0001`.
+    device: String,
+    /// Access points for slot 0; one of them is plugged.
+    access_points: Vec<AccessPoint>,
+}
+
+/// An access point.
+#[derive(Debug, Serialize, JsonSchema)]
+struct AccessPoint {
+    /// ID in the file.
+    id: String,
+    name: String,
+    /// Default station name; empty if there is none.
+    station: String,
+    /// As in `0x1`.
+    ident: String,
+    /// `advanced`, `legacy`.
+    startup: Vec<&'static str>,
+    /// Minimum cycle time in us.
+    cycle_us: u32,
+    modules: Vec<Module>,
+    /// `layout=` for a target with images of 48 bytes each way; null unless exactly one selection of modules fits.
+    layout: Option<String>,
+    /// Number of start-up parameter records for this layout.
+    parameters: Option<usize>,
+}
+
+/// A module that the access point allows.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Module {
+    /// ID in the file.
+    id: String,
+    name: String,
+    /// As in `0x101`.
+    ident: String,
+    /// Allowed slots.
+    slots: Vec<u16>,
+    /// Fixed slots.
+    fixed: Vec<u16>,
+    /// Bytes from the device.
+    in_size: usize,
+    /// Bytes to the device.
+    out_size: usize,
+}
+
+impl From<&Gsdml> for Described {
+    fn from(read: &Gsdml) -> Self {
+        Self {
+            vendor: format!("{:#06x}", read.vendor),
+            device: format!("{:#06x}", read.device),
+            access_points: read.heads.iter().map(AccessPoint::from).collect(),
+        }
+    }
+}
+
+impl From<&Head> for AccessPoint {
+    fn from(head: &Head) -> Self {
+        let chosen = head.choose(Image::BYTES, Image::BYTES);
+        let modes = [("advanced", head.startup.0), ("legacy", head.startup.1)];
+        Self {
+            id: head.id.clone(),
+            name: head.name.clone(),
+            station: head.dns_name.clone(),
+            ident: format!("{:#x}", head.ident),
+            startup: modes.into_iter().filter(|(_, has)| *has).map(|(mode, _)| mode).collect(),
+            // The unit is 31.25 us.
+            cycle_us: u32::from(head.shortest) * 125 / 4,
+            modules: head.modules.iter().map(Module::from).collect(),
+            layout: chosen.as_ref().and_then(|chosen| head.layout(chosen).ok()).map(|layout| layout.to_string()),
+            parameters: chosen.as_ref().and_then(|chosen| head.parameters(chosen).ok()).map(|records| records.len()),
+        }
+    }
+}
+
+impl From<&Fitting> for Module {
+    fn from(fitting: &Fitting) -> Self {
+        Self {
+            id: fitting.module.id.clone(),
+            name: fitting.module.name.clone(),
+            ident: format!("{:#x}", fitting.module.ident),
+            slots: fitting.slots.clone(),
+            fixed: fitting.fixed.clone(),
+            in_size: fitting.module.size(Direction::Input),
+            out_size: fitting.module.size(Direction::Output),
+        }
+    }
+}
+
+impl Report for Described {
+    fn view(&self) -> View {
+        let device = vec![("vendor", self.vendor.as_str().into()), ("device", self.device.as_str().into())];
+        let mut view = View::default().append(Section::Fields(device));
+        for head in &self.access_points {
+            let known = |text: &str| Cell::optional((!text.is_empty()).then_some(text));
+            view = view.append(Section::Fields(vec![
+                ("access point", head.id.as_str().into()),
+                ("name", known(&head.name)),
+                ("ident", head.ident.as_str().into()),
+                ("station", known(&head.station)),
+                ("startup", head.startup.join(", ").into()),
+                ("shortest cycle", format!("{} us", head.cycle_us).into()),
+                ("layout", Cell::optional(head.layout.as_deref())),
+                ("parameters", Cell::optional(head.parameters.map(|count| format!("{count} records")))),
+            ]));
+            let columns = ["module", "name", "ident", "slots", "from device", "to device"];
+            let mut table = Table::new(&columns, "no modules");
+            for module in &head.modules {
+                let always = if module.fixed.is_empty() { "" } else { " (always there)" };
+                table.row([
+                    module.id.as_str().into(),
+                    known(&module.name),
+                    Cell::from(module.ident.as_str()).whole(),
+                    format!("{}{always}", ranges(&module.slots)).into(),
+                    module.in_size.into(),
+                    module.out_size.into(),
+                ]);
+            }
+            view = view.append(Section::Table(table));
+        }
+        view
+    }
+}
+
+/// Format: `1 to 4, 7`.
+fn ranges(slots: &[u16]) -> String {
+    let mut ranges: Vec<(u16, u16)> = Vec::new();
+    for slot in slots {
+        match ranges.last_mut() {
+            Some((_, last)) if last.checked_add(1) == Some(*slot) => *last = *slot,
+            _ => ranges.push((*slot, *slot)),
+        }
+    }
+    let shown =
+        ranges.iter().map(|(first, last)| if first == last { first.to_string() } else { format!("{first} to {last}") });
+    shown.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slots_in_a_row_are_a_range() {
+        assert_eq!(ranges(&[1, 2, 3, 7, 9, 10]), "1 to 3, 7, 9 to 10");
+        assert_eq!((ranges(&[]), ranges(&[u16::MAX])), (String::new(), "65535".to_owned()));
+    }
+}

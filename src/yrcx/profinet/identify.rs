@@ -1,0 +1,45 @@
+//! `yrcx profinet identify`.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::station::Station;
+use super::{NO_UNIT, board_of, plan_search};
+use crate::link::Yrcx;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Section, View};
+use armctl_frame::{Command, ConnectMode, Context, Report};
+
+/// Reads the identity of the station (DCP Identify). The station needs no address, and is not connected.
+#[derive(Debug, Args)]
+#[command(after_help = "Use the MAC address for a station without a name: profinet://02:00:00:00:00:01@eth0. `armctl \
+                        robots discover --interface eth0` lists all stations.")]
+pub struct Identify {}
+
+impl Command for Identify {
+    type Family = Yrcx;
+    type Report = Identified;
+    const ID: &'static str = "yrcx.profinet.identify";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
+        context.link.no_unit(NO_UNIT)?;
+        plan_search(context.link, context.robot)?;
+        let found = board_of(context.link)?.station().await?;
+        Ok(Identified { station: Station::from(&found) })
+    }
+}
+
+/// Identity of the station.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Identified {
+    #[serde(flatten)]
+    station: Station,
+}
+
+impl Report for Identified {
+    fn view(&self) -> View {
+        View::default().append(Section::Fields(self.station.fields()))
+    }
+}

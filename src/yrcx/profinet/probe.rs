@@ -1,0 +1,254 @@
+//! `yrcx profinet probe`.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::board::Board;
+use super::station::Station;
+use super::{NO_UNIT, board_of, connect, plan_search};
+use crate::link::Yrcx;
+use armctl_controller::Risk;
+use armctl_controller::yrcx::image::Image;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::csv::RowsOf;
+use armctl_frame::output::view::{Cell, Section, Table, Tone, View};
+use armctl_frame::{Command, ConnectMode, Context, Report};
+use armctl_transport::profinet::commission::Identity;
+use armctl_transport::profinet::error::ProfinetError;
+use armctl_transport::profinet::guess;
+use armctl_transport::profinet::layout::Layout;
+use armctl_transport::profinet::wire::record::{Im0, RealModule};
+
+/// Reads the records of the station (I&M0, 0xF000): identity and modules. The station is not connected.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "With --try, armctl connects with the layout of the target, then with the layouts that its modules \
+                  allow, until data flows. Each connection sends the resting image to the controller, and its end \
+                  stops the robot. If another controller owns the station, it refuses and nothing changes."
+)]
+pub struct Probe {
+    /// Try layouts until one fits
+    #[arg(long = "try")]
+    tries: bool,
+}
+
+impl Command for Probe {
+    type Family = Yrcx;
+    type Report = Probed;
+    const ID: &'static str = "yrcx.profinet.probe";
+    const INTENT: &'static str =
+        "connect to the station with one layout after the other (the end of each connection stops the robot)";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
+
+    fn risk(&self) -> Risk {
+        // The end of a connection stops the robot, although the command starts no motion.
+        if self.tries { Risk::Motion } else { Risk::Read }
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
+        let Context { robot, link, .. } = context;
+        link.no_unit(NO_UNIT)?;
+        link.then("calls that read I&M0 and the modules (ReadImplicit of 0xAFF0 and 0xF000)");
+        if self.tries {
+            link.then("a connection with each possible layout, until data flows");
+        }
+        plan_search(link, robot)?;
+        if self.tries {
+            link.authorize(Self::ID, self.risk())?;
+        }
+        let board: &Board = board_of(link)?;
+        let found = board.station().await?;
+        let station = Station::from(&found);
+        let identity = board.identity(found).await?;
+        let guesses = possible(board, &identity);
+        let tried = if self.tries { attempts(board, guesses.into()).await? } else { untried(&guesses) };
+        Ok(Probed::new(station, identity, tried, self.tries))
+    }
+}
+
+/// Candidate layouts, the one of the target first.
+fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
+    let bytes = u16::try_from(Image::BYTES).unwrap_or(u16::MAX);
+    // The command is for targets without a layout.
+    let told = connect::settings(board.settings(), Duration::ZERO).ok().map(|settings| settings.layout);
+    let guessed = match &identity.modules {
+        Ok(real) => guess::layouts(real, bytes),
+        // The answer contains the modules of the device.
+        Err(_) => vec![Layout::two_modules(1, 2)],
+    };
+    let mut layouts: Vec<Layout> = Vec::new();
+    for layout in told.into_iter().chain(guessed) {
+        if !layouts.contains(&layout) {
+            layouts.push(layout);
+        }
+    }
+    layouts
+}
+
+/// Limit of connection attempts.
+const MOST: usize = 10;
+
+async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>, Failure> {
+    let mut tried: Vec<(Layout, Attempt)> = Vec::new();
+    while let Some(layout) = left.pop_front().filter(|_| tried.len() < MOST) {
+        if tried.iter().any(|(other, _)| *other == layout) {
+            continue;
+        }
+        let answer = board.attempt(&layout).await?;
+        if let Err(ProfinetError::Modules(mismatches)) = &answer {
+            left.extend(guess::adjusted(&layout, mismatches));
+        }
+        let is_over = match &answer {
+            Err(ProfinetError::Refused { status, .. }) => status.is_owned(),
+            // Success, no device, or a problem of this computer.
+            Ok(())
+            | Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken { .. }) => true,
+            Err(_) => false,
+        };
+        let text = answer.as_ref().map_or_else(ToString::to_string, |()| "data flows both ways".to_owned());
+        let attempt = Attempt { layout: layout.to_string(), fits: Some(answer.is_ok()), answer: Some(text) };
+        tried.push((layout, attempt));
+        if is_over {
+            break;
+        }
+    }
+    Ok(tried.into_iter().map(|(_, attempt)| attempt).collect())
+}
+
+fn untried(layouts: &[Layout]) -> Vec<Attempt> {
+    layouts.iter().map(|layout| Attempt { layout: layout.to_string(), fits: None, answer: None }).collect()
+}
+
+/// Result of the probe.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Probed {
+    #[serde(flatten)]
+    station: Station,
+    /// I&M0; null if the station does not report it.
+    identity: Option<Product>,
+    /// Plugged modules; null if the station does not report them.
+    modules: Option<Vec<Module>>,
+    /// Reasons for missing data.
+    refusals: Vec<String>,
+    /// Possible or tried layouts, as `layout=` of a target accepts them.
+    layouts: Vec<Attempt>,
+    #[serde(skip)]
+    has_tried: bool,
+}
+
+/// I&M0. Its texts are untrusted.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Product {
+    order_id: String,
+    serial: String,
+    /// As in `0x0123`.
+    maker: String,
+    hardware: u16,
+    /// As in `V1.2.3`.
+    software: String,
+}
+
+/// A module.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Module {
+    slot: u16,
+    /// As in `0x101`.
+    ident: String,
+    /// Subslots with their kinds, as in `0x1:0x1`.
+    submodules: Vec<String>,
+}
+
+/// A layout.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Attempt {
+    /// `0:0x1,1:0x101:i48,2:0x102:o48`.
+    layout: String,
+    /// Null if not tried.
+    fits: Option<bool>,
+    /// Result of the attempt.
+    answer: Option<String>,
+}
+
+impl From<Im0> for Product {
+    fn from(im0: Im0) -> Self {
+        let (released, major, minor, patch) = im0.software;
+        Self {
+            order_id: im0.order_id,
+            serial: im0.serial,
+            maker: format!("{:#06x}", im0.vendor),
+            hardware: im0.hardware,
+            software: format!("{released}{major}.{minor}.{patch}"),
+        }
+    }
+}
+
+impl From<RealModule> for Module {
+    fn from(module: RealModule) -> Self {
+        let shown = |(subslot, ident): &(u16, u32)| format!("{subslot:#x}:{ident:#x}");
+        Self {
+            slot: module.slot,
+            ident: format!("{:#x}", module.ident),
+            submodules: module.submodules.iter().map(shown).collect(),
+        }
+    }
+}
+
+impl Probed {
+    fn new(station: Station, identity: Identity, layouts: Vec<Attempt>, has_tried: bool) -> Self {
+        let mut refusals = Vec::new();
+        let mut refused = |error: &ProfinetError| refusals.push(error.to_string());
+        let product = identity.im0.inspect_err(&mut refused).ok().map(Product::from);
+        let modules = identity.modules.inspect_err(&mut refused).ok();
+        let modules = modules.map(|modules| modules.into_iter().map(Module::from).collect());
+        Self { station, identity: product, modules, refusals, layouts, has_tried }
+    }
+}
+
+impl Report for Probed {
+    const ROWS: RowsOf = RowsOf::List("modules");
+
+    fn view(&self) -> View {
+        let mut fields = self.station.fields();
+        if let Some(product) = &self.identity {
+            fields.extend([
+                ("order id", Cell::from(product.order_id.as_str())),
+                ("serial", product.serial.as_str().into()),
+                ("maker", product.maker.as_str().into()),
+                ("hardware", product.hardware.to_string().into()),
+                ("software", product.software.as_str().into()),
+            ]);
+        }
+        fields.extend(self.refusals.iter().map(|why| ("remark", Cell::from(why.as_str()).tone(Tone::Warning))));
+        let mut view = View::default().append(Section::Fields(fields));
+        if let Some(modules) = &self.modules {
+            let mut table = Table::new(&["slot", "module", "submodules"], "no modules");
+            for module in modules {
+                table.row([module.slot.into(), module.ident.as_str().into(), module.submodules.join(" ").into()]);
+            }
+            view = view.append(Section::Table(table));
+        }
+        let mut table = Table::new(&["possible layout", "answer"], "no possible layout");
+        for attempt in &self.layouts {
+            let answer = Cell::optional(attempt.answer.as_deref());
+            let tone = match attempt.fits {
+                Some(true) => Tone::Good,
+                Some(false) => Tone::Bad,
+                None => Tone::Plain,
+            };
+            table.row([Cell::from(attempt.layout.as_str()).whole(), answer.tone(tone)]);
+        }
+        view.append(Section::Table(table))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let is_open = self.has_tried && !self.layouts.iter().any(|attempt| attempt.fits == Some(true));
+        is_open.then(|| {
+            Failure::new(Kind::ConditionNotMet, "none of the tried layouts fits")
+                .hint("get the GSDML file of the unit and read it with `armctl yrcx profinet gsdml FILE`")
+        })
+    }
+}

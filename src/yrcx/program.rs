@@ -1,0 +1,392 @@
+//! `yrcx program` (4.6): programs and their tasks.
+
+mod run;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::link;
+use super::single::{Single, one_row, single_command};
+use crate::complete;
+use armctl_controller::yrcx::order::Draft;
+use armctl_controller::yrcx::table::{COMMON_LINES, Command};
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::failure::Failure;
+use armctl_frame::output::view::{Cell, Section, View};
+use armctl_frame::robot::program as robot;
+use armctl_frame::settings_report::{Done, NewValue, Old, number};
+use armctl_frame::{Report, commands};
+
+commands! {
+    /// Commands for programs.
+    pub enum Program {
+        /// Register a program in a task
+        Select(Select),
+        /// Run a program, or all of them
+        #[command(alias = "start")]
+        Run(run::Run),
+        /// Step into: run one line and enter subroutines
+        Step(Step),
+        /// Skip one line
+        Skip(Skip),
+        /// Step over: run one line, with a subroutine as one step
+        Next(Next),
+        /// Reset a program, or all of them, to the first line
+        Reset(Reset),
+        /// Show program states
+        Show(Show),
+    }
+}
+
+/// Selection of a program.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Which {
+    /// Program by number, 1 to 100
+    #[arg(long, value_name = "N", add = complete::PROGRAM)]
+    program: Option<String>,
+    /// Program by name: up to 16 characters of A-Z, 0-9 and _
+    #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
+    name: Option<String>,
+    /// Program by its task, 1 to 16
+    #[arg(long, value_name = "N", add = complete::TASK)]
+    task: Option<String>,
+}
+
+/// Selection of a program, or of all programs.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct WhichOrAll {
+    /// Program by name or number
+    #[arg(value_name = "NAME|NUMBER", add = complete::PROGRAM_NAME)]
+    what: Option<String>,
+    /// Program by number, 1 to 100
+    #[arg(long, value_name = "N", add = complete::PROGRAM)]
+    program: Option<String>,
+    /// Program by name: up to 16 characters of A-Z, 0-9 and _
+    #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
+    name: Option<String>,
+    /// Program by its task, 1 to 16
+    #[arg(long, value_name = "N", add = complete::TASK)]
+    task: Option<String>,
+    /// All registered programs
+    #[arg(long)]
+    all_programs: bool,
+}
+
+/// Sets the program selection.
+fn put(draft: Draft, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> Draft {
+    draft
+        .with_some(Key::Program, program.cloned())
+        .with_some(Key::ProgramName, name.cloned())
+        .with_some(Key::Task, task.cloned())
+}
+
+fn describe(program: Option<&String>, name: Option<&String>, task: Option<&String>) -> String {
+    match (program, name, task) {
+        (Some(number), ..) => format!("program {number}"),
+        (_, Some(name), _) => format!("program {name}"),
+        (_, _, Some(task)) => format!("the program of task {task}"),
+        _ => "all programs".to_owned(),
+    }
+}
+
+/// Report with the program selection.
+fn named(new: NewValue, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> NewValue {
+    let numeric = |text: Option<&String>| text.map_or(serde_json::Value::Null, |text| number(text));
+    new.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
+}
+
+impl Which {
+    fn named(&self, new: NewValue) -> NewValue {
+        named(new, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    }
+
+    fn put(&self, draft: Draft) -> Draft {
+        put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    }
+
+    fn describe(&self) -> String {
+        describe(self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    }
+}
+
+impl WhichOrAll {
+    fn program(&self) -> Option<&String> {
+        self.program.as_ref().or_else(|| self.what.as_ref().filter(|what| is_number(what)))
+    }
+
+    fn name(&self) -> Option<&String> {
+        self.name.as_ref().or_else(|| self.what.as_ref().filter(|what| !is_number(what)))
+    }
+
+    fn named(&self, new: NewValue) -> NewValue {
+        let new = named(new, self.program(), self.name(), self.task.as_ref());
+        if self.all_programs { new.with("all_programs", true) } else { new }
+    }
+
+    fn put(&self, draft: Draft) -> Draft {
+        let draft = draft.with_some(Key::Selection, self.all_programs.then_some(0));
+        put(draft, self.program(), self.name(), self.task.as_ref())
+    }
+
+    fn describe(&self) -> String {
+        describe(self.program(), self.name(), self.task.as_ref())
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// Selection of a program that has no task yet.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Registered {
+    /// Program by number, 1 to 100
+    #[arg(long, value_name = "N", add = complete::PROGRAM)]
+    program: Option<String>,
+    /// Program by name: up to 16 characters of A-Z, 0-9 and _
+    #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
+    name: Option<String>,
+}
+
+one_row! {
+    /// Registers a program in a task.
+    Select(self) "yrcx.program.select" -> Done {
+        #[command(flatten)]
+        program: Registered,
+        /// Task, 1 to 16; default: the lowest vacant task
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
+        task: Option<u16>,
+        /// Priority of the task, 1 to 64
+        #[arg(long, value_name = "N")]
+        priority: String,
+    }
+    gives Command::ProgramSelect,
+    with draft => {
+        let draft = put(draft, self.program.program.as_ref(), self.program.name.as_ref(), None);
+        draft.with_some(Key::Task, self.task).with(Key::Priority, self.priority.as_str())
+    },
+    done {
+        let program = describe(self.program.program.as_ref(), self.program.name.as_ref(), None);
+        let task = self.task.map_or_else(|| "the lowest vacant task".to_owned(), |task| format!("task {task}"));
+        let words = format!("registered {program} in {task} with priority {}", self.priority);
+        let new = NewValue::of("program_state", "registered", words);
+        let new = named(new, self.program.program.as_ref(), self.program.name.as_ref(), None);
+        new.with("task", self.task).with("priority", number(&self.priority))
+    };
+}
+
+/// Declares the commands that start programs.
+macro_rules! starts {
+    ($($(#[$meta:meta])* $name:ident $id:literal $row:ident $which:ident $intent:literal $new:literal $done:literal;)*) => {
+        $(
+            #[derive(Debug, Args)]
+            $(#[$meta])*
+            pub struct $name {
+                #[command(flatten)]
+                which: $which,
+            }
+
+            impl Single for $name {
+                type Report = Done;
+                const ID: &'static str = $id;
+
+                fn command(&self) -> Command {
+                    Command::$row
+                }
+
+                fn fill(&self, draft: Draft) -> Draft {
+                    self.which.put(draft)
+                }
+
+                fn intent(&self) -> String {
+                    format!($intent, self.which.describe())
+                }
+
+                fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+                    let new = NewValue::of("program_state", $new, format!($done, self.which.describe()));
+                    Ok(self.which.named(new).replaces(Old::UNREAD))
+                }
+            }
+
+            single_command!($name);
+        )*
+    };
+}
+
+starts! {
+    /// Runs one line of a program and enters subroutines.
+    Step "yrcx.program.step" ProgramStep Which "run one line of {}" "step_started" "started one line of {}";
+    /// Skips one line of a program.
+    Skip "yrcx.program.skip" ProgramSkip Which "skip one line of {}" "step_skipped" "skipped one line of {}";
+    /// Runs one line of a program, with a subroutine as one step.
+    Next "yrcx.program.next" ProgramNext Which "run one line of {}, with a subroutine as one step" "step_started" "started one line of {}";
+    /// Resets a program, or all registered programs, to the first line.
+    #[command(after_help = "`yrcx io get program-reset` shows whether all programs are reset. `yrcx info line` shows \
+                            the current line of each program.")]
+    Reset "yrcx.program.reset" ProgramReset WhichOrAll "reset {}" "reset" "reset {}";
+}
+
+one_row! {
+    /// Reads the state of a program that is not running.
+    Show(self) "yrcx.program.show" -> Execution {
+        #[command(flatten)]
+        which: Which,
+    }
+    gives Command::ProgramShow,
+    with draft => self.which.put(draft),
+    done as answer => {
+        let int = |key| answer.values.int(key).unwrap_or_default();
+        let ProgramLine { line, in_common } = ProgramLine::of(int(Key::Line));
+        let more = Registration {
+            number: int(Key::Program),
+            task: int(Key::Task),
+            priority: int(Key::Priority),
+            in_common,
+        };
+        let program = answer.values.text(Key::ProgramName).map(ToOwned::to_owned);
+        Execution(robot::Program { program, line: Some(line.into()), more, ..robot::Program::default() })
+    };
+}
+
+/// State of a program.
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Execution(robot::Program<Registration>);
+
+/// Registration of a program.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+struct Registration {
+    /// Number of the program.
+    number: i32,
+    task: i32,
+    /// 1 to 64.
+    priority: i32,
+    /// Whether it is at a line of the COMMON program.
+    in_common: bool,
+}
+
+/// A line of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct ProgramLine {
+    /// Line number, starting with 1.
+    pub line: i32,
+    /// Whether it is a line of the COMMON program.
+    pub in_common: bool,
+}
+
+impl ProgramLine {
+    /// Line in the notation of the controller: lines of COMMON start at 10000 (4.6.4).
+    pub fn of(number: i32) -> Self {
+        if number > COMMON_LINES {
+            Self { line: number - COMMON_LINES, in_common: true }
+        } else {
+            Self { line: number, in_common: false }
+        }
+    }
+
+    /// `19`, `5 of COMMON`.
+    pub fn describe(self) -> String {
+        format!("{}{}", self.line, if self.in_common { " of COMMON" } else { "" })
+    }
+}
+
+impl Report for Execution {
+    fn view(&self) -> View {
+        let Self(program) = self;
+        let Registration { number, task, priority, in_common } = program.more;
+        let line = program.line.map(|line| format!("{line}{}", if in_common { " of COMMON" } else { "" }));
+        let more = vec![
+            ("number", number.into()),
+            ("task", task.into()),
+            ("priority", priority.into()),
+            ("line", Cell::optional(line)),
+        ];
+        View { sections: vec![Section::Fields(program.fields(more))] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::ProgramLine;
+    use crate::testing::{example, intent, objection, read_example, read_in_turn, risk, words};
+    use armctl_controller::Risk;
+
+    #[test]
+    fn the_examples_of_the_manual() {
+        let select = ["program", "select", "--program", "1", "--task", "1", "--priority", "47"];
+        assert_eq!(words(&select).unwrap(), [example("4.6.1-designate")]);
+        let done = json!({
+            "set": "program_state", "old": null, "new": "registered", "program": 1, "task": 1, "priority": 47,
+        });
+        assert_eq!(read_example("4.6.1-designate", &select), done);
+        let run = ["program", "run", "--program", "1"];
+        assert_eq!(words(&run).unwrap(), [example("4.6.2-execute")]);
+        assert_eq!(read_example("4.6.2-execute", &run)["state"], "running");
+        // The manual prints WI1 as 0x0100, and the name without the spaces that its text requires.
+        let reset = ["program", "reset", "--name", "ABC_DE"];
+        assert_eq!(words(&reset).unwrap(), [example("4.6.3-reset")]);
+        assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["name"], "ABC_DE");
+        let show = read_example("4.6.4-reference", &["program", "show", "--program", "1"]);
+        assert_eq!(
+            show,
+            json!({
+                "program": "ABCDEFGH", "line": 101, "step": null, "state": null, "elapsed_ms": null, "cycles": [],
+                "cycle_times": null, "number": 1, "task": 2, "priority": 32, "in_common": false,
+            })
+        );
+    }
+
+    #[test]
+    fn programs_are_named_in_one_way() {
+        let head = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..4].join(" ");
+        assert_eq!(head("program run --all-programs"), "0x0402 0x0000 0x0000 0x0000");
+        assert_eq!(head("program step --task 3"), "0x0403 0x0002 0x0000 0x0003");
+        assert_eq!(head("program skip --name A"), "0x0404 0x0004 0x0000 0x0000");
+        assert_eq!(head("program next --program 100"), "0x0405 0x0001 0x0064 0x0000");
+        assert_eq!(head("program reset --all-programs"), "0x0406 0x0000 0x0000 0x0000");
+        assert_eq!(head("program select --name A --priority 1"), "0x0401 0x0004 0x0000 0x0000");
+        for (line, part) in [
+            ("program run", "--all-programs"),
+            ("program step --all-programs", "--all-programs"),
+            ("program run --program 1 --task 1", "cannot be used with"),
+            ("program select --program 1", "--priority"),
+            ("program select --task 1 --priority 1", "--program"),
+            ("program select --program 1 --task 17 --priority 1", "1..=16"),
+        ] {
+            let objection = objection(&line.split(' ').collect::<Vec<_>>());
+            assert!(objection.contains(part), "{line}: {objection}");
+        }
+        for (line, part) in [
+            ("program run --program 101", "allowed: 1 to 100"),
+            ("program run --task 0", "allowed: 1 to 16"),
+            ("program run --name abc", "A-Z, 0-9 and _"),
+            ("program select --program 1 --priority 65", "allowed: 1 to 64"),
+        ] {
+            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+            assert!(failure.message.contains(part), "{line}: {failure}");
+        }
+    }
+
+    #[test]
+    fn what_may_move_the_robot_asks_first() {
+        assert_eq!(risk(&["program", "run", "--all-programs"]), Risk::Motion);
+        assert_eq!(risk(&["program", "skip", "--task", "1"]), Risk::Motion);
+        assert_eq!(risk(&["program", "reset", "--all-programs"]), Risk::Write);
+        assert_eq!(intent(&["program", "run", "--all-programs"]), "run all programs");
+        assert_eq!(intent(&["program", "step", "--task", "3"]), "run one line of the program of task 3");
+    }
+
+    #[test]
+    fn lines_of_common_are_told_as_such() {
+        assert_eq!(
+            (ProgramLine::of(10_005).describe(), ProgramLine::of(10_000).describe()),
+            ("5 of COMMON".into(), "10000".into())
+        );
+    }
+}

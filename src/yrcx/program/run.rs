@@ -1,0 +1,199 @@
+//! `yrcx program run` (4.6.2): starts a program and optionally waits for its end.
+
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use tokio::time::{Instant, timeout};
+
+use super::WhichOrAll;
+use crate::alarm;
+use crate::info::Part;
+use crate::link::{Link, Yrcx};
+use crate::refusal::BuildOrder as _;
+use armctl_controller::Risk;
+use armctl_controller::yrcx::signal::output;
+use armctl_controller::yrcx::table;
+use armctl_frame::cycle::{Cycle, Repeat, Runs};
+use armctl_frame::dry_run::unknown;
+use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::output::view::{Section, View};
+use armctl_frame::robot::alarm::AlarmEntry;
+use armctl_frame::robot::program::{Program, ProgramState};
+use armctl_frame::settings::duration;
+use armctl_frame::wait_arguments::ProgramEnd;
+use armctl_frame::{Command, Context, Report};
+
+/// Runs a program, or all registered programs. The controller answers when it has accepted the start.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "--wait waits until no program runs (SO(13), as in `yrcx io get program-running`). `yrcx stop` stops \
+                  programs, and so does the end of the connection. A program must be in a task: `yrcx program select`."
+)]
+pub struct Run {
+    #[command(flatten)]
+    which: WhichOrAll,
+    #[command(flatten)]
+    end: ProgramEnd,
+    #[command(flatten)]
+    repeat: Repeat,
+}
+
+/// Time for a program to start running. A program that was not seen by then has already ended.
+const BEGIN_WITHIN: Duration = Duration::from_secs(1);
+
+impl Command for Run {
+    type Family = Yrcx;
+    type Report = Ran;
+    const ID: &'static str = "yrcx.program.run";
+
+    fn risk(&self) -> Risk {
+        table::Command::ProgramRun.row().risk
+    }
+
+    fn intent(&self) -> String {
+        format!("run {}{}", self.which.describe(), self.repeat.describe())
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ran, Failure> {
+        let Context { link, screen, .. } = context;
+        let order = self.which.put(link.draft(table::Command::ProgramRun)?).order()?;
+        let what = self.which.describe();
+        let report = |state: ProgramState, elapsed_ms: Option<u64>, cycle: Cycle| {
+            let program = self.which.program().or_else(|| self.which.name()).cloned();
+            let task = self.which.task.as_ref().and_then(|task| task.parse().ok());
+            let more = Started { task, all_programs: self.which.all_programs, words: what.clone() };
+            let program = Program { program, state: Some(state), elapsed_ms, cycle, more, ..Program::default() };
+            Ran { accepted: true, program }
+        };
+        let limit = self.end.limit().or(self.repeat.repeat.map(|_| None));
+        let mut runs = Runs::new(self.repeat);
+        for _ in 0..self.repeat.count() {
+            let early = |failure| runs.add_to_failure(failure);
+            let before = match limit {
+                Some(_) => alarm::latest(link).await.map_err(early)?,
+                None => None,
+            };
+            link.ask(&order).await.map_err(early)?;
+            let began = Instant::now();
+            let Some(limit) = limit else {
+                return Ok(report(ProgramState::Running, None, Cycle::default()));
+            };
+            if link.is_dry() {
+                return Err(self.plan(link));
+            }
+            let doing = runs.next().map_or_else(|| format!("{what} runs"), |run| format!("{what}: {run}"));
+            let _progress = screen.spinner(&doing);
+            let seen = wait(link, &what, began, limit).await.map_err(early)?;
+            alarmed(link, &what, before.as_ref()).await.map_err(early)?;
+            let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
+            if seen {
+                runs.add(elapsed_ms);
+            } else if self.repeat.repeat.is_some() {
+                // It is unknown whether the program ended or did not start, so it is not started again.
+                return Err(early(not_seen(&what)));
+            }
+        }
+        Ok(report(ProgramState::Ended, runs.last_ms(), runs.cycle()))
+    }
+}
+
+impl Run {
+    /// Notes in a dry run what follows a start.
+    fn plan(&self, link: &mut Link) -> Failure {
+        link.then(
+            "the signals are read until SO(13) shows that no program is running, then the latest alarm is read again",
+        );
+        if let Some(count) = self.repeat.repeat {
+            link.then(&format!("after each end the program is started again, {count} starts in total"));
+        }
+        unknown()
+    }
+}
+
+fn not_seen(what: &str) -> Failure {
+    let limit = duration::display(BEGIN_WITHIN);
+    let message = format!(
+        "{what} was started but did not report running within {limit}: it may have ended at once or not started"
+    );
+    Failure::new(Kind::ConditionNotMet, message).hint("check the program with `yrcx info tasks` and `yrcx info line`")
+}
+
+/// Waits until no program runs. Returns whether one was seen running.
+async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool, Failure> {
+    let lost = |failure: Failure| {
+        let message = format!("{what} was started, but its end was not reported: {}", failure.message);
+        Failure { kind: Kind::OutcomeUnknown, message, ..failure }
+            .hint("do not send it again; `yrcx status` shows the result. A controller stops when the connection ends")
+    };
+    let is_over = |image: &_| output::ALARM.is_on(image) || output::EMERGENCY_STOP.is_on(image);
+    let begins = link.look_until(|image| output::PROGRAM_RUNNING.is_on(image) || is_over(image));
+    let seen = match timeout(BEGIN_WITHIN, begins).await {
+        Ok(image) => output::PROGRAM_RUNNING.is_on(&image.map_err(lost)?),
+        Err(_) => false,
+    };
+    let ends = link.look_until(|image| !output::PROGRAM_RUNNING.is_on(image) || is_over(image));
+    let rest = limit.map(|limit| limit.saturating_sub(began.elapsed()));
+    let image = match rest {
+        None => ends.await,
+        Some(rest) => timeout(rest, ends).await.map_err(|_| {
+            let limit = duration::display(limit.unwrap_or_default());
+            Failure::new(Kind::ConditionNotMet, format!("{what} is still running after {limit}"))
+                .hint("`yrcx info line` shows the current line; the end of this connection stops the program")
+        })?,
+    };
+    image.map_err(lost).map(|_| seen)
+}
+
+/// Fails if an emergency stop or an alarm ended the program. An error in a program stops it without SO(03): then only
+/// the history, compared with its state `before` the start, shows that it did not reach its end.
+async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>) -> Result<(), Failure> {
+    let image = link.look().await?;
+    let latest = alarm::latest(link).await?;
+    let is_new = latest.as_ref().is_some_and(|latest| before != Some(latest));
+    let (why, hint) = if output::EMERGENCY_STOP.is_on(&image) {
+        ("the emergency stop was triggered".to_owned(), "release it, then `yrcx recover`")
+    } else if output::ALARM.is_on(&image) || is_new {
+        let alarm = latest.as_ref().and_then(|latest| Some((latest.alarm.code.as_ref()?, latest.alarm.text.as_ref()?)));
+        let why = alarm.map_or_else(|| "an alarm".to_owned(), |(code, text)| format!("alarm {code} ({text})"));
+        (
+            format!("{why} occurred"),
+            "`yrcx alarm history` shows the alarm; remove the cause, then use `yrcx alarm reset`",
+        )
+    } else {
+        return Ok(());
+    };
+    let failure = Failure::new(Kind::ConditionNotMet, format!("{what} was started, but {why}")).hint(hint);
+    Err(Failure { code: latest.and_then(|latest| latest.alarm.code), ..failure })
+}
+
+/// Result of a program start.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Ran {
+    /// The controller accepted the start.
+    accepted: bool,
+    #[serde(flatten)]
+    program: Program<Started>,
+}
+
+/// Selection of the started program.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+struct Started {
+    /// Task, if the program was selected by its task.
+    task: Option<i64>,
+    /// All registered programs.
+    all_programs: bool,
+    /// Description of the selection.
+    #[serde(skip)]
+    words: String,
+}
+
+impl Report for Ran {
+    fn view(&self) -> View {
+        if self.program.state == Some(ProgramState::Running) {
+            return View::text(format!("started {}", self.program.more.words));
+        }
+        View { sections: vec![Section::Fields(self.program.fields(Vec::new()))] }
+    }
+}

@@ -1,0 +1,59 @@
+//! Simulated controller of a URL.
+
+use std::path::Path;
+
+use anyhow::Context as _;
+
+pub use armctl_client::yrcx::Simulated;
+use armctl_controller::yrcx::simulator::Start;
+use armctl_files as files;
+use armctl_frame::failure::Failure;
+use armctl_frame::settings::target::Sim;
+use armctl_transport::fault::{FaultNames, FaultText, SimulatorFaults};
+
+/// Simulator in this process, in the start state of the URL.
+pub fn in_process(sim: &Sim) -> Result<Simulated, Failure> {
+    Ok(Simulated::new(start(sim.state.as_deref())?))
+}
+
+/// Whether the URL has faults, which need a network.
+pub fn has_faults(sim: &Sim) -> bool {
+    sim.fault.is_some()
+}
+
+/// Start state: from a file, or the built-in one.
+pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
+    let Some(path) = file else { return Ok(Start::default()) };
+    let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
+    Start::parse(&text).map_err(|error| {
+        Failure::usage(format!("{}: {error}", path.display()))
+            .hint("`armctl help simulator` shows the form of the file")
+    })
+}
+
+/// Parses the faults of a URL.
+pub fn faults_of_url<S: FaultText, D: Copy>(
+    sim: &Sim,
+    names: &FaultNames<D>,
+) -> Result<SimulatorFaults<S, D>, Failure> {
+    faults(sim.fault.as_deref(), names).map_err(|why| {
+        Failure::usage(format!("fault: {why}")).hint("write % as %25 in a URL; `armctl help simulator` lists faults")
+    })
+}
+
+/// Parses the faults of `--fault`.
+pub fn faults_of_option<S: FaultText, D: Copy>(
+    text: Option<&str>,
+    names: &FaultNames<D>,
+) -> Result<SimulatorFaults<S, D>, Failure> {
+    faults(text, names)
+        .map_err(|why| Failure::usage(format!("--fault: {why}")).hint("`armctl help simulator` lists faults"))
+}
+
+/// Parses faults; no text means no faults.
+pub fn faults<S: FaultText, D: Copy>(
+    text: Option<&str>,
+    names: &FaultNames<D>,
+) -> Result<SimulatorFaults<S, D>, String> {
+    text.map_or_else(|| Ok(SimulatorFaults::default()), |text| names.parse(text)).map_err(|error| error.to_string())
+}

@@ -1,0 +1,161 @@
+//! Commands with one remote command each, as most commands have.
+
+use super::link::Done;
+use super::link::Yrcx;
+use super::overwrite::{self, Stored};
+use super::refusal::BuildOrder as _;
+use armctl_controller::yrcx::order::Draft;
+use armctl_controller::yrcx::table;
+use armctl_controller::yrcx::value::{Key, Values};
+use armctl_frame::failure::Failure;
+use armctl_frame::settings_report;
+use armctl_frame::{Context, Report};
+
+/// A command line for one row of the command table.
+pub trait Single {
+    /// Report type.
+    type Report: Report + 'static;
+    /// `yrcx.servo`: name in envelopes and schemas.
+    const ID: &'static str;
+
+    /// Row of the command table.
+    fn command(&self) -> table::Command;
+
+    /// Sets the typed arguments.
+    fn fill(&self, draft: Draft) -> Draft {
+        draft
+    }
+
+    /// Completes "This will …" in the question before a motion.
+    fn intent(&self) -> String {
+        String::new()
+    }
+
+    /// Report of the result. A dry run has no values.
+    fn report(&self, done: &Done) -> Result<Self::Report, Failure>;
+}
+
+/// Implements [`Command`] for commands with one remote command. A blanket implementation is not possible: the trait is
+/// of another crate.
+macro_rules! single_command {
+    ($($name:ty),*) => {
+        $(
+        impl armctl_frame::Command for $name {
+            type Family = $crate::link::Yrcx;
+            type Report = <$name as $crate::single::Single>::Report;
+            const ID: &'static str = <$name as $crate::single::Single>::ID;
+
+            fn risk(&self) -> armctl_controller::Risk {
+                $crate::single::Single::command(self).row().risk
+            }
+
+            fn intent(&self) -> String {
+                $crate::single::Single::intent(self)
+            }
+
+            fn confirmation(&self) -> armctl_frame::gate::Confirmation {
+                $crate::overwrite::confirmation($crate::single::Single::command(self))
+            }
+
+            async fn run(
+                &self,
+                context: armctl_frame::Context<'_, $crate::link::Yrcx>,
+            ) -> Result<Self::Report, armctl_frame::failure::Failure> {
+                $crate::single::run(self, context).await
+            }
+        }
+        )*
+    };
+}
+pub(super) use single_command;
+
+/// Sends the command and reports the result.
+pub async fn run<S: Single>(this: &S, context: Context<'_, Yrcx>) -> Result<S::Report, Failure> {
+    let draft = context.link.draft(this.command())?;
+    let order = this.fill(draft).order()?;
+    this.report(&overwrite::give(context.link, &context.authority, &order, this.intent()).await?)
+}
+
+/// Result of a row: a report, or a text of what was done.
+pub trait Said<R> {
+    /// The report.
+    fn report(self, done: &Done) -> R;
+}
+
+impl<R: Report> Said<R> for R {
+    fn report(self, _done: &Done) -> R {
+        self
+    }
+}
+
+impl Said<settings_report::Done> for settings_report::NewValue {
+    fn report(self, done: &Done) -> settings_report::Done {
+        self.replaces(done.old.clone())
+    }
+}
+
+impl Said<Stored> for String {
+    fn report(self, done: &Done) -> Stored {
+        overwrite::stored(self, done)
+    }
+}
+
+/// Declares commands with one remote command each: arguments, row of the table, fields, question, and the text of the
+/// result or the report of the answer.
+macro_rules! one_row {
+    ($(
+        $(#[$meta:meta])*
+        $name:ident($self:ident) $id:literal -> $report:ty {
+            $($(#[$arg:meta])* $field:ident: $type:ty,)*
+        }
+        gives $row:expr,
+        $(with $draft:ident => $filled:expr,)?
+        $(intent $intent:expr,)?
+        done $(as $answer:ident =>)? $said:expr;
+    )*) => {
+        $(
+            #[derive(Debug, clap::Args)]
+            $(#[$meta])*
+            pub struct $name {
+                $($(#[$arg])* $field: $type,)*
+            }
+
+            impl $crate::single::Single for $name {
+                type Report = $report;
+                const ID: &'static str = $id;
+
+                fn command(&$self) -> armctl_controller::yrcx::table::Command {
+                    $row
+                }
+
+                $(fn fill(
+                    &$self,
+                    $draft: armctl_controller::yrcx::order::Draft,
+                ) -> armctl_controller::yrcx::order::Draft {
+                    $filled
+                })?
+
+                $(fn intent(&$self) -> String {
+                    $intent.to_owned()
+                })?
+
+                fn report(
+                    &$self,
+                    done: &$crate::link::Done,
+                ) -> Result<$report, armctl_frame::failure::Failure> {
+                    $(let $answer = done;)?
+                    Ok($crate::single::Said::report($said, done))
+                }
+            }
+
+            $crate::single::single_command!($name);
+        )*
+    };
+}
+pub(super) use one_row;
+
+/// Text of a field of an answer; none if the answer does not have the field.
+pub fn shown(command: table::Command, values: &Values, key: Key) -> Option<String> {
+    let value = values.value(key)?;
+    command.row().answer().find(|field| field.key == key).map(|field| field.show(value))
+}

@@ -1,0 +1,213 @@
+//! Live view of a robot: the signals. If this connection already commands the controller, as in a session or on a
+//! simulator in this process, also position, torque and alarm from remote commands.
+//!
+//! All clients of a session share its remote commands, one at a time. So a view sends one of them at intervals and
+//! remembers the results.
+
+use std::time::Duration;
+
+use tokio::time::Instant;
+
+use super::info::servos;
+use super::link::{Link, Yrcx};
+use super::overview::{alarm, latest, not_asked, report};
+use super::position::mm;
+use crate::refusal::BuildOrder as _;
+use armctl_controller::yrcx::answer::Status;
+use armctl_controller::yrcx::image::Image;
+use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::signal::{Side, Signal, output};
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::face::registration;
+use armctl_frame::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole};
+use armctl_frame::failure::Failure;
+use armctl_frame::output::Screen;
+use armctl_frame::output::view::Tone;
+use armctl_frame::robot::alarm::Alarm;
+use armctl_frame::robot::state::PositionMm;
+use armctl_frame::settings::Robot;
+use armctl_frame::settings::target::Place;
+use armctl_frame::{Access, Family as _};
+
+/// Poller for one controller.
+#[derive(Debug)]
+pub struct Poller {
+    link: Link,
+    told: Told,
+    /// Index of the next remote command in a session, and time of the last one.
+    next: usize,
+    asked: Option<Instant>,
+}
+
+/// Results of remote commands.
+#[derive(Debug, Default)]
+struct Told {
+    /// Numbers of the existing axes, starting with 1.
+    axes: Option<Vec<usize>>,
+    position_mm: Option<[f64; 4]>,
+    torque_percent: Option<[Option<i32>; 4]>,
+    alarm: Option<Alarm>,
+}
+
+/// Minimum interval of reads with messages: boards answer them with low priority.
+const LOOKS: Duration = Duration::from_millis(100);
+/// Minimum interval of remote commands in a session.
+const TURNS: Duration = Duration::from_millis(500);
+
+/// First general-purpose signals, SI(20) and SO(20), and number of groups of eight.
+const FIRST: u16 = 20;
+const GROUPS: u16 = 4;
+
+impl registration::Poller for Poller {
+    type Family = Yrcx;
+
+    /// Opens the poller. It only sends reads, and opens no connection whose end affects the controller.
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+        let mut robot = robot.clone();
+        if let Place::Bus(bus) = &mut robot.target.value.place {
+            bus.listen_before = LOOKS;
+        }
+        let link = Yrcx::connect(&robot, access, screen).await?;
+        Ok(Self { link, told: Told::default(), next: 0, asked: None })
+    }
+
+    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
+        let image = self.link.look().await?;
+        let not_asked = not_asked(&self.link, &image);
+        if not_asked.is_none() {
+            self.ask(detail, &image).await?;
+        }
+        if !output::ALARM.is_on(&image) {
+            self.told.alarm = None;
+        }
+        let position = self.told.position_mm.map(PositionMm::of_axes);
+        let line = report(&self.link, &image, self.told.alarm.as_ref(), position, not_asked);
+        let whole = (detail >= Detail::Axes).then(|| self.whole(detail, &image, not_asked));
+        Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), full: whole })
+    }
+
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
+    }
+
+    async fn close(self, screen: &Screen) -> Result<(), Failure> {
+        Yrcx::close(self.link, screen).await
+    }
+}
+
+impl Poller {
+    /// Sends the remote commands that are due.
+    async fn ask(&mut self, detail: Detail, image: &Image) -> Result<(), Failure> {
+        let questions = self.questions(detail, output::ALARM.is_on(image));
+        if !self.link.is_shared() {
+            for question in questions {
+                self.put(question).await?;
+            }
+            return Ok(());
+        }
+        let now = Instant::now();
+        if questions.is_empty() || self.asked.is_some_and(|asked| now < asked + TURNS) {
+            return Ok(());
+        }
+        self.asked = Some(now);
+        self.next = self.next.wrapping_add(1);
+        self.put(questions[self.next % questions.len()]).await
+    }
+
+    fn questions(&self, detail: Detail, has_alarm: bool) -> Vec<Command> {
+        let is_whole = detail >= Detail::Axes;
+        let wanted = [
+            (Command::PositionMm, true),
+            (Command::AlarmHistory, has_alarm && self.told.alarm.is_none()),
+            (Command::ServoStatus, is_whole && self.told.axes.is_none()),
+            (Command::TorqueOfMax, is_whole),
+        ];
+        wanted.into_iter().filter(|(_, is_wanted)| *is_wanted).map(|(command, _)| command).collect()
+    }
+
+    /// Sends a read command and stores the result.
+    async fn put(&mut self, command: Command) -> Result<(), Failure> {
+        let order: Order = match command {
+            Command::AlarmHistory => latest(&self.link)?,
+            // No axis selects all axes.
+            Command::TorqueOfMax => self.link.draft(command)?.with(Key::Axes, 0).order()?,
+            _ => self.link.draft(command)?.order()?,
+        };
+        // A refusal is not an error here: a robot with unknown origin refuses to report its position.
+        let done = self.link.try_ask(&order).await?.ok();
+        let values = done.as_ref().map(|done| &done.values);
+        match command {
+            Command::PositionMm => {
+                let position = values.and_then(mm);
+                self.told.position_mm = position;
+            }
+            Command::TorqueOfMax => {
+                self.told.torque_percent = values.map(|values| Key::AXES.map(|key| values.int(key)));
+            }
+            Command::ServoStatus => {
+                self.told.axes = values.map(|values| servos(values).iter().map(|servo| servo.axis).collect());
+            }
+            _ => self.told.alarm = values.and_then(alarm),
+        }
+        Ok(())
+    }
+
+    fn whole(&self, detail: Detail, image: &Image, not_asked: Option<&'static str>) -> Whole {
+        let shown = self.link.output_image().copied();
+        let mut banks = Vec::new();
+        if detail == Detail::Full {
+            banks.extend(shown.map(|shown| bank("inputs", Side::Input, &shown)));
+            banks.push(bank("outputs", Side::Output, image));
+        }
+        let torque_unit = self.told.torque_percent.map(|_| "% of max");
+        Whole { indicators: indicators(image), axes: self.axes(), torque_unit, banks, not_asked }
+    }
+
+    fn axes(&self) -> Vec<Axis> {
+        let Some(position) = self.told.position_mm else { return Vec::new() };
+        let torque = self.told.torque_percent.unwrap_or_default();
+        let is_there = |axis: &usize| self.told.axes.as_ref().is_none_or(|axes| axes.contains(axis));
+        let axes = (1..).zip(position).zip(torque).filter(|((axis, _), _)| is_there(axis));
+        let axes = axes.map(|((axis, position), torque)| Axis {
+            name: axis.to_string(),
+            position,
+            unit: "mm",
+            decimals: 3,
+            torque: torque.map(f64::from),
+            ..Axis::default()
+        });
+        axes.collect()
+    }
+}
+
+fn indicators(image: &Image) -> Vec<Indicator> {
+    let is_on = |signal: Signal| signal.is_on(image);
+    vec![
+        Indicator::new("auto", is_on(output::AUTO_MODE), Tone::Good),
+        Indicator::new("servo", is_on(output::SERVO_ON), Tone::Good),
+        Indicator::new("program", is_on(output::PROGRAM_RUNNING), Tone::Good),
+        Indicator::new("sequence", is_on(output::SEQUENCE_RUNNING), Tone::Good),
+        Indicator::expected("origin", is_on(output::ORIGIN_COMPLETE), Tone::Warning),
+        Indicator::new("emergency", is_on(output::EMERGENCY_STOP), Tone::Bad),
+        Indicator::new("alarm", is_on(output::ALARM), Tone::Bad),
+        Indicator::new("warning", is_on(output::WARNING), Tone::Warning),
+        Indicator::expected("CPU OK", is_on(output::CPU_OK), Tone::Bad),
+        Indicator::expected("MP ready", is_on(output::MP_READY), Tone::Warning),
+        Indicator::new("at start", is_on(output::PROGRAM_RESET), Tone::Plain),
+        Indicator::new("command", Status::from_word(image.0[0]) == Status::Running, Tone::Good),
+    ]
+}
+
+fn bank(name: &'static str, side: Side, image: &Image) -> Bank {
+    // The numbers are octal: 20, 30, 40 and 50, and 0 to 7 from each.
+    let starts = (0..GROUPS).map(|group| FIRST + 10 * group);
+    let groups = starts.map(|start| SignalByte {
+        label: format!("{}{start}", side.name()),
+        signals: std::array::from_fn(|bit| {
+            let bit = u16::try_from(bit).unwrap_or_default();
+            Signal::new(side, start + bit).is_ok_and(|signal| signal.is_on(image))
+        }),
+    });
+    Bank { name, groups: groups.collect() }
+}
