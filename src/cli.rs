@@ -112,3 +112,40 @@ impl FromArgMatches for FamilyWord {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::{Command, CommandFactory as _};
+
+    use super::Cli;
+
+    /// Commands whose `--wait TIME` is a response timeout.
+    const OTHERS: [&str; 2] = ["armctl yerc file cmos", "armctl robots discover"];
+
+    /// Subcommands that accept only one of the two options.
+    fn selectors(command: &Command, path: &str, found: &mut Vec<String>) {
+        let has = |long: &str| command.get_arguments().any(|argument| argument.get_long() == Some(long));
+        if has("wait") != has("no-wait") && !OTHERS.contains(&path) {
+            found.push(path.to_owned());
+        }
+        for verb in command.get_subcommands() {
+            selectors(verb, &format!("{path} {}", verb.get_name()), found);
+        }
+    }
+
+    #[test]
+    fn offers_both_flags_together() {
+        let mut found = Vec::new();
+        selectors(&Cli::command(), "armctl", &mut found);
+        assert!(found.is_empty(), "{found:?}");
+    }
+
+    #[test]
+    fn last_flag_wins_and_repeated_starts_wait() {
+        let parses = |line: &str| Cli::command().try_get_matches_from(line.split(' ')).is_ok();
+        assert!(parses("armctl toyo home --no-wait --wait") && parses("armctl toyo run easy 1 --wait 5s"));
+        assert!(
+            !parses("armctl toyo run easy 1 --repeat 2 --no-wait") && !parses("armctl yerc job start --wait --no-wait")
+        );
+    }
+}

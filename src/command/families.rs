@@ -32,10 +32,55 @@ pub fn by_name(matches: &mut ArgMatches) -> Result<(Family, ArgMatches), clap::E
 
 #[cfg(test)]
 mod tests {
+    use armctl_frame::decode::capture::Selection;
+    use armctl_frame::decode::capture::testing::message_count;
+
     use super::*;
+
+    const VLAN: &[u8] = include_bytes!("../../tests/cli/files/vlan.pcap");
+    const LINES: &[u8] = include_bytes!("../../tests/cli/files/lines.pcapng");
+    const SPEED: &[u8] = include_bytes!("../../tests/cli/files/speed.pcapng");
 
     #[test]
     fn lists_every_family_once() {
         assert_eq!(FAMILIES.map(<dyn Face>::family), Family::ALL);
+    }
+
+    /// Messages of each family in a capture, and packets without a message.
+    fn message_counts(file: &[u8], selection: &Selection) -> [Option<(usize, u64)>; 3] {
+        [
+            message_count(file, selection, armctl_yerc::decode::FrameDecoder::default()),
+            message_count(file, selection, armctl_toyo::decode::LineDecoder::default()),
+            message_count(file, selection, armctl_yrcx::decode::ImageDecoder::new(true)),
+        ]
+    }
+
+    #[test]
+    fn finds_the_messages_of_each_family() {
+        let all = Selection::default();
+        assert_eq!(message_counts(VLAN, &all), [Some((3, 2)), Some((0, 5)), Some((0, 5))]);
+        assert_eq!(message_counts(LINES, &all), [Some((0, 11)), Some((6, 3)), Some((0, 11))]);
+        assert_eq!(message_counts(SPEED, &all), [Some((0, 18)), Some((0, 18)), Some((24, 0))]);
+    }
+
+    #[test]
+    fn selects_hosts_and_ports() {
+        let selection = |host: &str, port| Selection { frame: None, host: host.parse().ok(), port };
+        assert_eq!(message_counts(VLAN, &selection("192.168.255.1", Some(10040)))[0], Some((3, 2)));
+        assert_eq!(message_counts(VLAN, &selection("192.168.255.3", None))[0], Some((0, 5)));
+        assert_eq!(message_counts(VLAN, &selection("", Some(10041)))[0], Some((0, 5)));
+    }
+
+    #[test]
+    fn reports_cut_and_damaged_files() {
+        let all = Selection::default();
+        for file in [VLAN, LINES, SPEED] {
+            for end in 0..file.len() {
+                message_counts(&file[..end], &all);
+                let mut damaged = file.to_vec();
+                damaged[end] = !damaged[end];
+                message_counts(&damaged, &all);
+            }
+        }
     }
 }

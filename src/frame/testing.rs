@@ -1,5 +1,6 @@
 //! Test support for all families.
 
+use clap::{Args as _, FromArgMatches as _};
 use futures_util::FutureExt as _;
 use serde_json::Value;
 
@@ -9,10 +10,14 @@ use super::connection::{self, Access, Borrowed, ConnectMode, Family};
 use super::dry_run::{DryRun, is_end};
 use super::report::{AnyReport as _, Outcome};
 use super::settings_report::OLD_VALUE;
+use crate::face::Face;
+use crate::face::family_command::{FamilyLine, ParsedCommand};
 use crate::failure::Failure;
+use crate::flags::Globals;
 use crate::gate::{Gate, Grant};
 use crate::output::Screen;
-use crate::settings::Robot;
+use crate::settings::inventory::Options;
+use crate::settings::{Robot, Selection, Sources};
 use armctl_controller::Risk;
 
 /// Screen without output.
@@ -71,4 +76,35 @@ pub fn complete_frames(planned: &Value) -> Vec<Value> {
 /// Number of frames of [`planned`] that only read old values.
 pub fn count_before(planned: &Value) -> usize {
     complete_frames(planned).len() - frames(planned).len()
+}
+
+/// The words after `armctl`, as clap reads them in the program with all families.
+fn program(face: &dyn Face) -> clap::Command {
+    Globals::augment_args(clap::Command::new("armctl")).subcommand(family(face))
+}
+
+/// The command of a family, with all subcommands.
+pub fn family(face: &dyn Face) -> clap::Command {
+    face.augment(clap::Command::new(face.family().name()))
+}
+
+/// Parses `armctl -t TARGET FAMILY WORDS…`.
+pub fn parse(face: &dyn Face, target: &str, words: &[&str]) -> Result<(Globals, FamilyLine), clap::Error> {
+    let line = [&["armctl", "-t", target, face.family().name()], words].concat();
+    let mut matches = program(face).try_get_matches_from(line)?;
+    let globals = Globals::from_arg_matches_mut(&mut matches)?;
+    let (_, mut typed) = matches.remove_subcommand().expect("the line names the family");
+    Ok((globals, face.read(&mut typed)?))
+}
+
+/// Robot and command of a line.
+pub fn resolve(face: &dyn Face, target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
+    let (globals, typed) = parse(face, target, words).map_err(|error| Failure::usage(error.to_string()))?;
+    let selection = Selection { target: globals.target, ..Selection::default() };
+    let flags = Options { encoding: globals.encoding, ..Options::default() };
+    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(face.family()))?.remove(0);
+    match typed.command {
+        ParsedCommand::Command(command) => Ok((robot, command)),
+        _ => panic!("{words:?} is not a command"),
+    }
 }

@@ -5,24 +5,22 @@ use std::fmt;
 use std::sync::{Arc, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::time::Duration;
 
-use clap::Parser as _;
 use serde_json::Value;
 
 use super::connect;
 use super::link::Link;
 use super::link::Toyo;
 use super::simulated::Simulated;
-use crate::cli::{Cli, FamilyWord, Top};
 use armctl_client::toyo::{Client, FENCE};
 use armctl_controller::Risk;
 use armctl_controller::toyo::simulator::Start;
 use armctl_frame::authority::Authority;
-use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
+use armctl_frame::face::Face;
+use armctl_frame::face::registration::Registered;
 use armctl_frame::failure::Failure;
 use armctl_frame::gate::{Gate, Grant, Intent};
 use armctl_frame::output::{ColorChoice, Format, Screen};
-use armctl_frame::settings::target::Family as Name;
-use armctl_frame::settings::{Robot, Selection, Sources};
+use armctl_frame::settings::Robot;
 use armctl_frame::testing::{self, QUIET, context, frames, planned, unlimited_access};
 use armctl_frame::{AnyCommand, Context, Family as _};
 use armctl_transport::line::{InProcessLine, Pace};
@@ -31,7 +29,7 @@ use armctl_transport::stream::Stream;
 
 /// Error message of the command line parser.
 pub(super) fn objection(words: &[&str]) -> String {
-    parsed("sim:", words).expect_err("the parser objects").to_string()
+    testing::parse(FACE, "sim:", words).err().expect("the parser objects").to_string()
 }
 
 /// Input of the gate for a command line.
@@ -280,21 +278,12 @@ fn runtime() -> tokio::runtime::Runtime {
     tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime")
 }
 
-fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
-    Cli::try_parse_from([&["armctl", "-t", target, "toyo"], words].concat())
-}
+/// The family.
+const FACE: &dyn Face = &Registered::<Toyo>::FACE;
 
 /// Robot and command of a line.
 fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
-    let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
-    let selection = Selection { target: cli.globals.target, ..Selection::default() };
-    let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Toyo))?.remove(0);
-    match cli.command {
-        Top::Family(FamilyWord { typed: FamilyLine { command: ParsedCommand::Command(command), .. }, .. }) => {
-            Ok((robot, command))
-        }
-        _ => unreachable!("the words follow toyo"),
-    }
+    testing::resolve(FACE, target, words)
 }
 
 /// A screen without output.

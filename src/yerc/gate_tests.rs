@@ -2,17 +2,18 @@
 
 use std::collections::BTreeSet;
 
-use clap::CommandFactory as _;
 use serde_json::Value;
 
 use super::testing::{Bench, DX200, dry_run, resolve_robot};
-use crate::cli::Cli;
+use crate::link::Yerc;
 use armctl_controller::Risk::{self, Destroy, Motion, Read, Write};
 use armctl_controller::text::unhex;
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::wire::RequestFrame;
+use armctl_frame::face::registration::Registered;
 use armctl_frame::failure::Kind;
 use armctl_frame::gate::Gate;
+use armctl_frame::testing;
 use armctl_frame::testing::QUIET;
 
 /// Commands that send nothing.
@@ -139,9 +140,8 @@ fn every_command_passes_the_gate_according_to_its_risk() {
         let expected = Some(*most).filter(|_| !LOCAL_COMMANDS.contains(&line.as_str()));
         assert_eq!(shown, expected, "{line}: {frames:?}");
     }
-    let cli = Cli::command();
     let mut leaves = BTreeSet::new();
-    collect(cli.find_subcommand("yerc").expect("the family is there"), "yerc", &mut leaves);
+    collect(&testing::family(&Registered::<Yerc>::FACE), "yerc", &mut leaves);
     assert_eq!(tested, leaves);
 }
 

@@ -322,7 +322,7 @@ mod tests {
     fn explains_data() {
         let value = answer(Status::OK, &[200]);
         assert!(Report::failure(&value).is_none());
-        let field = &value.fields[0];
+        let field = &value.fields[0].0;
         assert_eq!((field.offset, field.size, field.name.as_str(), field.meaning.as_str()), (32, 1, "value", "200"));
     }
 

@@ -1,18 +1,15 @@
 //! Test support: sent frames of a command line, and command execution on a simulator in virtual time.
 
-use clap::Parser as _;
 use serde_json::Value;
 
 use super::link::Link;
 use super::link::Yerc;
-use crate::cli::{Cli, FamilyWord, Top};
 use armctl_controller::text::hex;
-use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
+use armctl_frame::face::Face;
+use armctl_frame::face::registration::Registered;
 use armctl_frame::failure::Failure;
 use armctl_frame::output::{ColorChoice, Format, Screen};
-use armctl_frame::settings::inventory::Options;
-use armctl_frame::settings::target::Family as Name;
-use armctl_frame::settings::{Robot, Selection, Sources};
+use armctl_frame::settings::Robot;
 use armctl_frame::settings_report::IF_DIFFERENT;
 use armctl_frame::testing;
 use armctl_frame::testing::{context, planned, unlimited_access};
@@ -24,7 +21,7 @@ pub(super) const FS100: &str = "udp://127.0.0.1?model=fs100";
 /// Error of the command-line parser.
 pub(super) fn error_text(words: &str) -> String {
     let words: Vec<&str> = words.split_ascii_whitespace().collect();
-    parse_line(DX200, &words).expect_err("the parser objects").to_string()
+    testing::parse(FACE, DX200, &words).err().expect("the parser objects").to_string()
 }
 
 /// Question before the command, without "This will".
@@ -125,22 +122,12 @@ impl Bench {
     }
 }
 
-fn parse_line(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
-    Cli::try_parse_from([&["armctl", "-t", target, "yerc"], words].concat())
-}
+/// The family.
+const FACE: &dyn Face = &Registered::<Yerc>::FACE;
 
 /// Robot and command of a line.
 pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
-    let cli = parse_line(target, words).map_err(|error| Failure::usage(error.to_string()))?;
-    let selection = Selection { target: cli.globals.target, ..Selection::default() };
-    let flags = Options { encoding: cli.globals.encoding, ..Options::default() };
-    let robot = Sources { selection, flags, ..Sources::default() }.robots(Some(Name::Yerc))?.remove(0);
-    match cli.command {
-        Top::Family(FamilyWord { typed: FamilyLine { command: ParsedCommand::Command(command), .. }, .. }) => {
-            Ok((robot, command))
-        }
-        _ => unreachable!("the words follow yerc"),
-    }
+    testing::resolve(FACE, target, words)
 }
 
 /// Screen without output.
@@ -149,7 +136,7 @@ fn quiet() -> Screen {
 }
 
 fn golden_frame(id: &str) -> Value {
-    let frames: Vec<Value> = serde_json::from_str(include_str!("../../../tests/data/yerc-frames.json")).unwrap();
+    let frames: Vec<Value> = serde_json::from_str(include_str!("../../tests/data/yerc-frames.json")).unwrap();
     frames.into_iter().find(|frame| frame["id"] == id).unwrap_or_else(|| panic!("no golden frame {id}"))
 }
 

@@ -156,7 +156,7 @@ mod tests {
         let both = explained(Some("0x0001,0x8004,0,0x0032,0x0013"), Some("0x0200,0,0,0,0x3039"));
         assert_eq!(both.parts[1].section, Some("4.2.1"));
         let axis = both.parts[1].fields.iter().find(|field| field.0.key == Some(Key::Axis1)).unwrap();
-        assert_eq!(axis.meaning, "12.345 mm");
+        assert_eq!(axis.0.meaning, "12.345 mm");
         assert!(both.failure().is_none());
     }
 

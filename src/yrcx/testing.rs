@@ -4,29 +4,27 @@ use std::collections::VecDeque;
 use std::fmt::Debug;
 use std::time::Duration;
 
-use clap::Parser as _;
 use serde_json::Value;
 
 use super::link::{Link, Yrcx};
 use super::unit::Unit;
-use crate::cli::{Cli, FamilyWord, Top};
 use armctl_controller::Risk;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use armctl_controller::yrcx::signal::output;
 use armctl_controller::yrcx::table::Row;
-use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
+use armctl_frame::face::Face;
+use armctl_frame::face::registration::Registered;
 use armctl_frame::failure::Failure;
 use armctl_frame::gate::Grant;
 use armctl_frame::output::{ColorChoice, Format, Screen};
-use armctl_frame::settings::target::Family as Name;
-use armctl_frame::settings::{Robot, Selection, Sources};
+use armctl_frame::settings::Robot;
 use armctl_frame::testing;
 use armctl_frame::testing::{context, planned};
 use armctl_frame::{Access, AnyCommand, ConnectMode, Family as _, FamilyArguments};
 use armctl_transport::image::ImagePeer;
 
 /// The examples of the manual.
-const EXAMPLES: &str = include_str!("../../../tests/data/yrcx-examples.json");
+const EXAMPLES: &str = include_str!("../../tests/data/yrcx-examples.json");
 
 /// All examples of the data file.
 pub(super) fn entries() -> Vec<Value> {
@@ -101,7 +99,7 @@ pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
 
 /// Error of the command-line parser.
 pub(super) fn objection(words: &[&str]) -> String {
-    parsed("sim:", words).expect_err("the parser objects").to_string()
+    testing::parse(FACE, "sim:", words).err().expect("the parser objects").to_string()
 }
 
 /// Question before the command, without "This will".
@@ -425,21 +423,12 @@ impl ImagePeer for Scripted {
     }
 }
 
-fn parsed(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
-    Cli::try_parse_from([&["armctl", "-t", target, "yrcx"], words].concat())
-}
+/// The family.
+const FACE: &dyn Face = &Registered::<Yrcx>::FACE;
 
 /// Robot and command of a line.
 pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
-    let cli = parsed(target, words).map_err(|error| Failure::usage(error.to_string()))?;
-    let selection = Selection { target: cli.globals.target, ..Selection::default() };
-    let robot = Sources { selection, ..Sources::default() }.robots(Some(Name::Yrcx))?.remove(0);
-    match cli.command {
-        Top::Family(FamilyWord { typed: FamilyLine { command: ParsedCommand::Command(command), .. }, .. }) => {
-            Ok((robot, command))
-        }
-        _ => unreachable!("the words follow yrcx"),
-    }
+    testing::resolve(FACE, target, words)
 }
 
 /// Robot number of `--unit`.
@@ -449,8 +438,8 @@ fn unit(words: &[&str]) -> u8 {
 
 /// Family arguments before the command.
 fn own(words: &[&str]) -> FamilyArguments {
-    match parsed(DRY, words).map(|cli| cli.command) {
-        Ok(Top::Family(FamilyWord { typed, .. })) => typed.arguments,
+    match testing::parse(FACE, DRY, words) {
+        Ok((_, typed)) => typed.arguments,
         _ => FamilyArguments::default(),
     }
 }

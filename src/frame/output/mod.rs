@@ -103,7 +103,7 @@ impl Screen {
     }
 
     /// Only errors, as JSON; for tests.
-    #[cfg(test)]
+    #[cfg(any(test, feature = "testing"))]
     pub const fn silent() -> Self {
         Self {
             format: Format::Json,

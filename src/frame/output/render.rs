@@ -17,7 +17,7 @@ pub fn text(view: &View, width: u16, color: bool) -> String {
 }
 
 /// Tables and fields of a view as CSV, for tests.
-#[cfg(test)]
+#[cfg(any(test, feature = "testing"))]
 pub fn csv(view: &View) -> String {
     let mut out = String::new();
     let header = |names: &mut dyn Iterator<Item = &str>| names.map(column_id).collect::<Vec<_>>();
@@ -322,7 +322,7 @@ fn with_sgr(text: &str, tone: Tone, color: bool) -> Cow<'_, str> {
 }
 
 /// Converts `x (mm)` to `x_mm`, and `#` to `number`.
-#[cfg(test)]
+#[cfg(any(test, feature = "testing"))]
 fn column_id(name: &str) -> String {
     if name == "#" {
         return "number".to_owned();
@@ -333,7 +333,7 @@ fn column_id(name: &str) -> String {
 }
 
 /// Text of a cell; numbers are unchanged.
-#[cfg(test)]
+#[cfg(any(test, feature = "testing"))]
 fn csv_cell(cell: &Cell) -> String {
     if cell.is_number { escape::lines(&cell.text).into_owned() } else { super::csv::neutralize_formula(&cell.text) }
 }

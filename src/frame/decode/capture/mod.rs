@@ -3,8 +3,8 @@
 
 mod report;
 mod stream;
-#[cfg(test)]
-mod tests;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;
 
 use std::io::{self, Read};
 use std::net::{IpAddr, SocketAddr};
@@ -36,13 +36,13 @@ use armctl_transport::tap::Direction;
 pub struct Selection {
     /// Show the messages of one packet with all fields
     #[arg(long, value_name = "NUMBER")]
-    frame: Option<u64>,
+    pub frame: Option<u64>,
     /// Only messages from or to this address
     #[arg(long, value_name = "ADDRESS")]
-    host: Option<IpAddr>,
+    pub host: Option<IpAddr>,
     /// Only messages from or to this port
     #[arg(long, value_name = "PORT")]
-    port: Option<u16>,
+    pub port: Option<u16>,
 }
 
 impl Selection {
