@@ -181,7 +181,7 @@ fn every_path_in_the_developer_pages_exists() {
         let prose: String = text.split("```").step_by(2).collect();
         for path in prose.split('`').skip(1).step_by(2).filter(|word| word.contains('/')) {
             let is_path = path.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-./".contains(c));
-            let folders = ["", "src", "src/command", "tests"];
+            let folders = ["", "src", "src/command", "src/frame", "tests"];
             if is_path && !folders.iter().any(|folder| root().join(folder).join(path).exists()) {
                 missing.push(format!("{page}: {path}"));
             }

@@ -14,23 +14,28 @@ use source::{Source, committed, has_word, root, sources};
 use armctl_frame::settings::target::BUSES;
 use armctl_frame::settings::target::bus::Scheme;
 
+/// Crates of the workspace, lowest first, with the crates of the workspace that each one may depend on.
+const CRATES: [(&str, &[&str]); 9] = [
+    ("files", &[]),
+    ("controller", &[]),
+    ("transport", &[]),
+    ("client", &["controller", "transport"]),
+    ("frame", &["client", "controller", "files", "transport"]),
+    ("yerc", FAMILY),
+    ("yrcx", FAMILY),
+    ("toyo", FAMILY),
+    ("", &["client", "controller", "files", "frame", "toyo", "transport", "yerc", "yrcx"]),
+];
+
+/// Dependencies of a family: never another family.
+const FAMILY: &[&str] = &["client", "controller", "files", "frame", "transport"];
+
 /// A part of `src/` (a folder or a file) and its forbidden paths.
-const BORDERS: [(&str, &[&str]); 7] = [
-    // Bytes and their meaning: no sockets, clock, command line, files or printing.
+const BORDERS: [(&str, &[&str]); 9] = [
+    // Bytes and their meaning: no sockets, clock, files or processes.
     (
         "controller/",
         &[
-            "crate::app",
-            "crate::cli",
-            "crate::client",
-            "crate::command",
-            "crate::failure",
-            "crate::gate",
-            "crate::output",
-            "crate::settings",
-            "crate::transport",
-            "clap",
-            "tokio",
             "std::env",
             "std::fs",
             "std::net",
@@ -40,96 +45,39 @@ const BORDERS: [(&str, &[&str]); 7] = [
             "std::time::SystemTime",
         ],
     ),
-    // Clients are a library: typed errors without texts, no command line, printing or files.
-    (
-        "client/",
-        &[
-            "crate::app",
-            "crate::cli",
-            "crate::command",
-            "crate::failure",
-            "crate::files",
-            "crate::gate",
-            "crate::output",
-            "crate::settings",
-            "clap",
-            "std::env",
-            "std::fs",
-            "std::process",
-        ],
-    ),
-    // Bytes without meaning.
-    (
-        "transport/",
-        &[
-            "crate::app",
-            "crate::cli",
-            "crate::client",
-            "crate::command",
-            "crate::controller",
-            "crate::failure",
-            "crate::gate",
-            "crate::output",
-            "crate::settings",
-            "clap",
-            "std::time::SystemTime",
-        ],
-    ),
-    (
-        "output/",
-        &[
-            "crate::app",
-            "crate::cli",
-            "crate::client",
-            "crate::command",
-            "crate::controller",
-            "crate::gate",
-            "crate::transport",
-            "tokio",
-        ],
-    ),
-    (
-        "settings/",
-        &[
-            "crate::app",
-            "crate::cli",
-            "crate::client",
-            "crate::command",
-            "crate::gate",
-            "crate::output",
-            "crate::transport",
-            "tokio",
-        ],
-    ),
+    // Clients are a library: no files and no environment.
+    ("client/", &["std::env", "std::fs", "std::process"]),
+    ("transport/", &["std::time::SystemTime"]),
+    ("frame/output/", &["crate::client", "crate::controller", "crate::transport", "tokio"]),
+    ("frame/settings/", &["crate::client", "crate::transport", "tokio"]),
     // Every module can use this one, so it uses none.
-    (
-        "failure.rs",
-        &[
-            "crate::app",
-            "crate::cli",
-            "crate::client",
-            "crate::command",
-            "crate::controller",
-            "crate::gate",
-            "crate::output",
-            "crate::settings",
-            "crate::transport",
-            "clap",
-            "tokio",
-        ],
-    ),
+    ("frame/failure.rs", &["crate::client", "crate::controller", "crate::transport", "clap", "tokio"]),
     // Commands use the link of their family; only the link opens connections.
-    ("command/", &["crate::app", "tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"]),
+    ("frame/", CONNECTIONS),
+    ("command/", CONNECTIONS),
+    ("command/", &["crate::app"]),
+];
+
+/// Ways to another machine or process around the link of a family.
+const CONNECTIONS: &[&str] = &["tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"];
+
+/// Lower modules of the frame, and the modules of the frame that each of them may use.
+const FRAME: [(&str, &[&str]); 5] = [
+    ("failure", &[]),
+    ("settings", &["failure"]),
+    ("output", &["failure", "settings"]),
+    ("gate", &["failure", "output", "settings"]),
+    ("guardian", &["failure", "output", "settings"]),
 ];
 
 /// Commands that use a transport: links with their traces and faces, capture readers, sessions, simulator servers, the
 /// list of ports, the broker connection, and test peers.
 const LINKS: [&str; 45] = [
-    "command/decode/capture/mod.rs",
-    "command/decode/capture/report.rs",
-    "command/decode/capture/stream.rs",
-    "command/face/registration.rs",
-    "command/face/mod.rs",
+    "frame/decode/capture/mod.rs",
+    "frame/decode/capture/report.rs",
+    "frame/decode/capture/stream.rs",
+    "frame/face/registration.rs",
+    "frame/face/mod.rs",
     "command/fleet/metrics/mod.rs",
     "command/fleet/publish/uplink.rs",
     "command/fleet/service.rs",
@@ -137,40 +85,43 @@ const LINKS: [&str; 45] = [
     "command/fleet/session/host.rs",
     "command/fleet/session/list.rs",
     "command/fleet/session/open.rs",
-    "command/frame/attach.rs",
-    "command/frame/background.rs",
-    "command/frame/trace.rs",
-    "command/toyo/decode/capture.rs",
-    "command/toyo/face.rs",
-    "command/toyo/link/observer.rs",
-    "command/toyo/ports.rs",
-    "command/toyo/connect.rs",
-    "command/toyo/serve.rs",
-    "command/toyo/simulated.rs",
-    "command/toyo/testing.rs",
-    "command/toyo/trace.rs",
-    "command/yerc/decode/capture.rs",
-    "command/yerc/face.rs",
-    "command/yerc/link.rs",
-    "command/yerc/connect.rs",
-    "command/yerc/serve.rs",
-    "command/yerc/simulator_start.rs",
-    "command/yerc/trace.rs",
-    "command/yrcx/connect.rs",
-    "command/yrcx/decode/capture.rs",
-    "command/yrcx/decode/images.rs",
-    "command/yrcx/fieldbus.rs",
-    "command/yrcx/link_error.rs",
-    "command/yrcx/face.rs",
-    "command/yrcx/gate.rs",
-    "command/yrcx/hold.rs",
-    "command/yrcx/link.rs",
-    "command/yrcx/link/board.rs",
-    "command/yrcx/link/onlooker.rs",
-    "command/yrcx/simulated.rs",
-    "command/yrcx/testing.rs",
-    "command/yrcx/trace.rs",
+    "frame/attach.rs",
+    "frame/background.rs",
+    "frame/trace.rs",
+    "toyo/decode/capture.rs",
+    "toyo/face.rs",
+    "toyo/link/observer.rs",
+    "toyo/ports.rs",
+    "toyo/connect.rs",
+    "toyo/serve.rs",
+    "toyo/simulated.rs",
+    "toyo/testing.rs",
+    "toyo/trace.rs",
+    "yerc/decode/capture.rs",
+    "yerc/face.rs",
+    "yerc/link.rs",
+    "yerc/connect.rs",
+    "yerc/serve.rs",
+    "yerc/simulator_start.rs",
+    "yerc/trace.rs",
+    "yrcx/connect.rs",
+    "yrcx/decode/capture.rs",
+    "yrcx/decode/images.rs",
+    "yrcx/fieldbus.rs",
+    "yrcx/link_error.rs",
+    "yrcx/face.rs",
+    "yrcx/gate.rs",
+    "yrcx/hold.rs",
+    "yrcx/link.rs",
+    "yrcx/link/board.rs",
+    "yrcx/link/onlooker.rs",
+    "yrcx/simulated.rs",
+    "yrcx/testing.rs",
+    "yrcx/trace.rs",
 ];
+
+/// Parts of `src/` with commands.
+const COMMANDS: [&str; 5] = ["command/", "frame/", "toyo/", "yerc/", "yrcx/"];
 
 /// Words that write to the terminal or end the process, and the only folder that can contain them.
 const PRINTING: [&str; 8] = ["stdout()", "stderr()", "println!", "eprintln!", "print!", "eprint!", "Stdout", "Stderr"];
@@ -179,7 +130,7 @@ const EXITING: [&str; 3] = ["process::exit", "process::abort", "ExitCode::from("
 /// Ways to read a file, and the only modules that can contain them, because they check size and file type. The second
 /// one reads a lock file, the third is a test.
 const READING: [&str; 5] = ["fs::read(", "read_to_string(", "File::open(", "File::options(", ".read(true)"];
-const READERS: [&str; 3] = ["files/mod.rs", "transport/session/socket.rs", "command/yerc/var/command_tests.rs"];
+const READERS: [&str; 3] = ["files/mod.rs", "transport/session/socket.rs", "yerc/var/command_tests.rs"];
 
 /// Maximum lines of a source file.
 const LONGEST: usize = 700;
@@ -191,17 +142,34 @@ fn dependencies_have_one_direction() {
 }
 
 #[test]
+fn crates_depend_on_lower_crates() {
+    for (name, allowed) in CRATES {
+        let manifest = root().join(if name.is_empty() { String::new() } else { format!("src/{name}") }).join("Cargo.toml");
+        let text = std::fs::read_to_string(&manifest).expect("each crate has a manifest");
+        let all = text.split("\n[dependencies]\n").nth(1).expect("there are dependencies");
+        let own = all.lines().take_while(|line| !line.starts_with('['));
+        let used: Vec<&str> = own
+            .filter_map(|line| line.strip_prefix("armctl-"))
+            .filter_map(|line| line.split([' ', '.']).next())
+            .filter(|used| !allowed.contains(used))
+            .collect();
+        assert_eq!(used, [""; 0], "{}", manifest.display());
+    }
+}
+
+#[test]
 fn finds_forbidden_dependencies() {
     let found = |name: &str, text: &str| forbidden_paths(&Source::new(name, text)).len();
-    assert_eq!(found("controller/x.rs", "use {crate::text, armctl_transport::udp::Udp};"), 1);
-    assert_eq!(found("controller/yerc/x.rs", "fn now() { super::super::super::output::say() }"), 1);
+    assert_eq!(found("frame/output/x.rs", "use {crate::text, armctl_transport::udp::Udp};"), 1);
+    assert_eq!(found("frame/output/jq/x.rs", "fn now() { super::super::super::gate::ask() }"), 1);
+    assert_eq!(found("frame/settings/x.rs", "use crate::failure::Failure;\nuse crate::run::Run;"), 1);
     assert_eq!(
         found("controller/x.rs", "use std::time::{Duration, Instant};\nlet t = std::time::SystemTime::now();"),
         2
     );
     assert_eq!(found("transport/x.rs", "use armctl_controller::Now;"), 1);
-    assert_eq!(found("command/yerc/x.rs", "use crate::transport::udp::Udp;"), 1);
-    assert_eq!(found("command/yerc/link.rs", "use crate::transport::udp::Udp;"), 0);
+    assert_eq!(found("yerc/x.rs", "use crate::transport::udp::Udp;"), 1);
+    assert_eq!(found("yerc/link.rs", "use crate::transport::udp::Udp;"), 0);
 }
 
 #[test]
@@ -209,11 +177,11 @@ fn only_output_prints() {
     let mut wrong = Vec::new();
     // A skipped test must print a message.
     for source in
-        sources().iter().filter(|source| !source.name.starts_with("output/") && !source.name.contains("/tests/"))
+        sources().iter().filter(|source| !source.name.starts_with("frame/output/") && !source.name.contains("/tests/"))
     {
         for (line, text) in source.code.lines().enumerate() {
             for word in PRINTING.iter().filter(|word| has_word(text, word)) {
-                wrong.push(format!("src/{}:{}: {word} outside output/", source.name, line + 1));
+                wrong.push(format!("src/{}:{}: {word} outside frame/output/", source.name, line + 1));
             }
         }
     }
@@ -223,7 +191,7 @@ fn only_output_prints() {
 #[test]
 fn only_failure_has_exit_codes() {
     let mut wrong = Vec::new();
-    for source in sources().iter().filter(|source| source.name != "failure.rs") {
+    for source in sources().iter().filter(|source| source.name != "frame/failure.rs") {
         for (line, text) in source.code.lines().enumerate() {
             for word in EXITING {
                 for (at, _) in text.match_indices(word) {
@@ -290,7 +258,7 @@ fn both_licences_exist() {
 }
 
 /// Places where the text after a failure replaces a hint: the usage, the caller, each use of a helper.
-const HINT_ELSEWHERE: [&str; 3] = ["app/repl.rs", "command/yrcx/backup/content.rs", "settings/inventory.rs"];
+const HINT_ELSEWHERE: [&str; 3] = ["app/repl.rs", "yrcx/backup/content.rs", "frame/settings/inventory.rs"];
 
 #[test]
 fn every_usage_failure_has_a_hint() {
@@ -318,14 +286,26 @@ fn forbidden_paths(source: &Source) -> Vec<String> {
                 wrong.push(format!("{place}: {part} must not mention {path}"));
             }
         }
+        for (module, allowed) in FRAME.iter().filter(|(module, _)| in_frame(&source.name, module)) {
+            let used = path.strip_prefix("crate::frame::").and_then(|path| path.split("::").next());
+            if used.is_some_and(|used| used != *module && !allowed.contains(&used)) {
+                wrong.push(format!("{place}: {module} must not use {path}"));
+            }
+        }
         // The folder of a fieldbus has its name.
-        let in_bus = |scheme: &Scheme| source.name.starts_with(&format!("command/yrcx/{}/", scheme.bus));
+        let in_bus = |scheme: &Scheme| source.name.starts_with(&format!("yrcx/{}/", scheme.bus));
         let is_link = LINKS.contains(&source.name.as_str()) || BUSES.iter().any(in_bus);
-        if source.name.starts_with("command/") && !is_link && is_within(&path, "crate::transport") {
+        if COMMANDS.iter().any(|part| source.name.starts_with(part)) && !is_link && is_within(&path, "crate::transport") {
             wrong.push(format!("{place}: {path} belongs behind the family's link"));
         }
     }
     wrong
+}
+
+/// Whether a source belongs to a module of the frame.
+fn in_frame(name: &str, module: &str) -> bool {
+    let name = name.strip_prefix("frame/").unwrap_or_default();
+    name.strip_prefix(module).is_some_and(|rest| rest == ".rs" || rest.starts_with('/'))
 }
 
 /// Whether `path` is `prefix`, or inside it.

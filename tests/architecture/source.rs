@@ -130,7 +130,7 @@ fn resolve(module: &[String], path: &str) -> String {
 
 /// Path as if all members of the workspace were modules of one crate, as in `lib.rs`.
 fn is_in_crate(module: &[String], path: &str) -> String {
-    const MEMBERS: [&str; 4] = ["client", "controller", "files", "transport"];
+    const MEMBERS: [&str; 8] = ["client", "controller", "files", "frame", "toyo", "transport", "yerc", "yrcx"];
     let (first, rest) = path.split_once("::").unwrap_or((path, ""));
     let member = match first {
         "crate" => module.get(1).map(String::as_str).filter(|part| MEMBERS.contains(part)),
