@@ -2,7 +2,8 @@
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::fs::File;
+use std::io::{BufRead as _, BufReader, Read as _, Seek as _, Write as _};
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::process::{Child, ChildStdin, Command, Output, Stdio};
 use std::time::Duration;
@@ -35,9 +36,12 @@ impl Simulator {
     fn start_at(address: &str, arguments: &[&str]) -> Self {
         let mut command = armctl();
         command.args(["sim", "yrcx", "--bind", address, "--console", "--jq", ".data.target"]).args(arguments);
-        let mut process = command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let errors = tempfile::tempfile().unwrap();
+        command.stdin(Stdio::piped()).stderr(errors.try_clone().unwrap());
+        let mut process = command.spawn().unwrap();
         let mut target = String::new();
         BufReader::new(process.stdout.take().unwrap()).read_line(&mut target).unwrap();
+        assert!(!target.is_empty(), "the simulator did not start: {}", text_of(errors));
         let console = process.stdin.take().unwrap();
         Self { process, console, target: target.trim_end().to_owned() }
     }
@@ -59,6 +63,12 @@ impl Drop for Simulator {
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
+}
+
+/// Text of a file that another process has written.
+fn text_of(mut file: File) -> String {
+    file.rewind().unwrap();
+    std::io::read_to_string(file).unwrap()
 }
 
 /// Exit code and stderr.
