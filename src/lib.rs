@@ -1,27 +1,29 @@
 //! armctl talks to industrial robot controllers.
 //!
-//! A map of the crate, in the order a command line travels:
+//! The crates of the workspace, in the order in which a command line passes them:
 //!
-//! | module | holds |
+//! | crate or module | contents |
 //! |---|---|
 //! | [`app`] | from the words of a command line to an exit code; the prompt, command files, completion |
 //! | [`cli`] | the command line: global flags and the first word |
-//! | [`settings`] | which robots, and every setting with where it came from; target URLs; the inventory |
-//! | [`gate`] | what stands between a typed command and a machine |
-//! | [`command`] | what the operator types: arguments, report, run; no bytes, no sockets |
-//! | [`client`] | asks controllers and orders them: one driver a family, with typed errors; no words for people, no clap |
-//! | [`controller`] | what each controller understands: tables, codecs, sessions, simulators; no sockets, no clock, no clap |
-//! | [`transport`] | moves bytes or images, knows no meaning |
-//! | [`output`] | the only writer to stdout and stderr; text made harmless for terminals |
-//! | [`failure`] | how a command can fail, and the only place with exit numbers |
-//! | [`files`] | the one way to read local files: regular ones, up to a limit |
+//! | [`command`] | commands that are not of one family: status, top, backup, robots, session, help |
+//! | [`yerc`], [`yrcx`], [`toyo`] | the commands of a family: arguments, report, run; its link and its face |
+//! | [`frame`] | what every command runs on: run loop, stores, backups, and the four modules below |
+//! | [`settings`] | robots, and every setting with its origin; target URLs; the inventory |
+//! | [`gate`] | decides whether a command may run |
+//! | [`output`] | the only writer to stdout and stderr; makes text harmless for terminals |
+//! | [`failure`] | how a command can fail; the only place with exit codes |
+//! | [`client`] | one driver per family with typed errors; no texts for people, no clap |
+//! | [`controller`] | tables, codecs, sessions and simulators of each controller; no sockets, no clock, no clap |
+//! | [`transport`] | moves bytes or images without their meaning |
+//! | [`files`] | reads local files: regular files, up to a limit |
 //!
-//! Dependencies run one way: command to client, controller, transport and output; client to controller and transport;
-//! controller and transport never see each other. A test holds that.
+//! A crate uses only the crates below it. `controller` and `transport` do not use each other, and no family uses
+//! another family. A test checks the dependencies.
 //!
 //! # As a library
 //!
-//! [`client`] is all that a program needs that talks to a controller itself. `examples/` has one for each family.
+//! A program that controls a robot needs only [`client`]. `examples/` has an example for each family.
 //! This is `examples/yerc.rs`:
 //!
 //! ```rust,ignore

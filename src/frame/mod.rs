@@ -1,4 +1,16 @@
-//! Execution of all commands.
+//! Everything that a command runs on, for all families.
+//!
+//! | module | contents |
+//! |---|---|
+//! | [`run`], [`command`], [`report`], [`connection`] | the run loop, and the traits of a command and of its family |
+//! | [`gate`], [`authority`], [`dry_run`] | whether a command may run; the question before it; what it would send |
+//! | [`settings`] | robots, target URLs, the inventory |
+//! | [`output`] | the only writer to stdout and stderr |
+//! | [`failure`] | how a command can fail, with the exit code |
+//! | [`store`] | get, list, watch, set, copy, dump and restore for tables of a controller |
+//! | [`backup`], [`decode`], [`serve`] | what backups, decoders and simulators of all families have in common |
+//! | [`robot`] | reports that all families share: state, alarms, position, signals, motion, files |
+//! | [`face`] | what the rest of the program can ask of a family |
 //!
 //! A command is a struct of its arguments that implements [`Command`]. A group of subcommands is a clap enum. Both
 //! are [`CommandSet`]s. A line in the family's `commands!` list adds them to the command line, help, man page,
