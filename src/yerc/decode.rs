@@ -192,10 +192,7 @@ impl DecodedFrame {
     }
 }
 
-/// A field of a message, as a row of a table.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-#[serde(transparent)]
-pub struct FieldRow(pub FieldNote);
+armctl_frame::field_row!(FieldNote);
 
 impl decode::Field for FieldRow {
     const COLUMNS: &'static [&'static str] = &["offset", "size", "field", "raw", "meaning"];

@@ -10,6 +10,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use self::capture::ImageDecoder;
+use super::field_row::FieldRow;
 use super::raw::words;
 use armctl_controller::yrcx::describe::{Description, answer, command};
 use armctl_controller::yrcx::image::Words;
@@ -18,7 +19,6 @@ use armctl_frame::decode::capture::{Input, Selection, holds_telegram, parse_hex}
 use armctl_frame::decode::{self, field_table, in_parentheses, problem_lines, stdin_bytes};
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::view::{Section, View};
-pub use images::FieldRow;
 
 /// Decode words of YRCX remote commands and answers
 #[derive(Debug, Args)]

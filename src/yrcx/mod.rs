@@ -35,6 +35,7 @@ pub mod eip;
 mod explain;
 pub mod face;
 mod failure;
+mod field_row;
 pub mod fieldbus;
 #[cfg(test)]
 mod gate;

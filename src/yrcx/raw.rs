@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::decode::FieldRow;
+use super::field_row::FieldRow;
 use super::refusal::refused;
 use super::{link, overwrite};
 use crate::link::Yrcx;

@@ -82,6 +82,36 @@ pub trait Field: Serialize + JsonSchema {
     fn cells(&self) -> Vec<Cell>;
 }
 
+/// Declares `FieldRow`: a field of a family's decoder, in a type of the family's crate, for [`Field`]. JSON and schema
+/// are those of the field.
+#[macro_export]
+macro_rules! field_row {
+    ($note:ty) => {
+        /// A field of a message, as a row of a table.
+        #[derive(Debug, Clone, serde::Serialize)]
+        #[serde(transparent)]
+        pub struct FieldRow(pub $note);
+
+        impl schemars::JsonSchema for FieldRow {
+            fn inline_schema() -> bool {
+                <$note>::inline_schema()
+            }
+
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                <$note>::schema_name()
+            }
+
+            fn schema_id() -> std::borrow::Cow<'static, str> {
+                <$note>::schema_id()
+            }
+
+            fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                <$note>::json_schema(generator)
+            }
+        }
+    };
+}
+
 /// Fields as a table.
 pub fn field_table<F: Field>(fields: &[F]) -> Section {
     let mut table = Table::new(F::COLUMNS, F::NONE);

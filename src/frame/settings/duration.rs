@@ -56,7 +56,7 @@ pub(super) mod field {
 
     use super::Duration;
 
-    pub(in super::super) fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Duration>, D::Error> {
+    pub(in crate::settings) fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<Option<Duration>, D::Error> {
         let text = String::deserialize(source)?;
         super::parse_some(&text).map(Some).map_err(D::Error::custom)
     }

@@ -1,8 +1,8 @@
 //! Capture decoder that combines the decoders of all fieldbuses.
 
-use super::images::FieldRow;
 use super::images::{BusDecoder, Images};
 use crate::buses::BUSES;
+use crate::field_row::FieldRow;
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::decode::capture::{CaptureDecoder, DecodedCapture};
 use armctl_transport::capture::{Carrier, Message};

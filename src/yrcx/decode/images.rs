@@ -3,18 +3,14 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::field_row::FieldRow;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::changes::{Change, changes};
 use armctl_controller::yrcx::describe::{Description, FieldNote, answer, command};
 use armctl_controller::yrcx::image::{Image, Words};
 use armctl_controller::yrcx::signal::Side;
-use armctl_frame::decode;
 use armctl_frame::decode::capture::{DecodedCapture, DecodedMessage, cut, note};
-use armctl_frame::output::view::Cell;
 use armctl_transport::capture::Message;
 use armctl_transport::tap::Direction;
 
@@ -159,19 +155,5 @@ fn describe(decoded: &mut DecodedMessage<FieldRow>, description: Description) {
     decoded.fields = description.fields.into_iter().map(FieldRow).collect();
     if !description.problems.is_empty() {
         decoded.problem = Some(description.problems.join("; "));
-    }
-}
-
-/// A field of a message, as a row of a table.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-#[serde(transparent)]
-pub struct FieldRow(pub FieldNote);
-
-impl decode::Field for FieldRow {
-    const COLUMNS: &'static [&'static str] = &["word", "field", "raw", "meaning"];
-
-    fn cells(&self) -> Vec<Cell> {
-        let FieldNote { place, name, raw, meaning, .. } = &self.0;
-        [place, name, raw, meaning].map(|text| text.as_str().into()).into()
     }
 }

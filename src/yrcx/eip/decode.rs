@@ -4,8 +4,8 @@ use std::collections::{HashMap, HashSet};
 use std::net::{IpAddr, SocketAddr};
 
 use super::cip::{explain, may_be_message};
-use crate::decode::FieldRow;
 use crate::decode::images::{BusDecoder, Images, MOST, decoded};
+use crate::field_row::FieldRow;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::decode::capture::DecodedMessage;
