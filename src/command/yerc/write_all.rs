@@ -11,7 +11,7 @@ use crate::output::Screen;
 
 /// A write request and the names of its items.
 pub trait WriteOrder: Query<Answer = ()> {
-    /// Item type: a variable, a register, a group of signals.
+    /// Item type: a group of signals.
     type Item: Clone;
 
     /// All items that it writes.
@@ -92,11 +92,11 @@ fn summarize_failure<O: WriteOrder>(failure: Failure, orders: &[O], done: usize)
 mod tests {
     use super::*;
     use crate::controller::yerc::Model;
-    use crate::controller::yerc::variables::{WriteRegisterStep, plan_register_writes};
+    use crate::controller::yerc::variables::{WriteIoStep, plan_io_writes};
 
-    fn orders() -> Vec<WriteRegisterStep> {
-        let values: Vec<(u16, u16)> = [0, 1, 2, 10, 20, 21].map(|number| (number, 0)).into();
-        plan_register_writes(Model::Dx200, &values).unwrap()
+    fn orders() -> Vec<WriteIoStep> {
+        let values: Vec<(u16, u8)> = [2701, 2702, 2710, 2720, 2721].map(|group| (group, 0)).into();
+        plan_io_writes(Model::Dx200, &values).unwrap()
     }
 
     #[test]
@@ -105,24 +105,27 @@ mod tests {
         let message = |failure: &Failure, done| summarize_failure(failure.clone(), &orders(), done).message;
         assert_eq!(
             message(&refused, 1),
-            "the controller refused: no. Because; written: register 0..2; not written: register 10, 20..21"
+            "the controller refused: no. Because; written: group 2701..2702; not written: group 2710, 2720..2721"
         );
         assert_eq!(
             message(&refused, 0),
-            "the controller refused: no. Because; nothing was written; not written: register 0..2, 10, 20..21"
+            "the controller refused: no. Because; nothing was written; not written: group 2701..2702, 2710, 2720..2721"
         );
         assert_eq!([0, 1].map(|done| summarize_failure(refused.clone(), &orders(), done).kind.exit()), [3, 9]);
         let closed = Failure::new(Kind::NoAnswer, "nothing listens");
-        assert_eq!(message(&closed, 1), "nothing listens; written: register 0..2; not written: register 10, 20..21");
+        assert_eq!(
+            message(&closed, 1),
+            "nothing listens; written: group 2701..2702; not written: group 2710, 2720..2721"
+        );
         let lost = Failure::new(Kind::OutcomeUnknown, "no answer");
         assert_eq!(
             message(&lost, 1),
-            "no answer; written: register 0..2; written or not: register 10; not written: register 20..21"
+            "no answer; written: group 2701..2702; written or not: group 2710; not written: group 2720..2721"
         );
         let read_only = Failure::new(Kind::Rejected, "cell3 is read-only").hint("x");
         assert_eq!(
             message(&read_only, 0),
-            "cell3 is read-only; nothing was written; not written: register 0..2, 10, 20..21"
+            "cell3 is read-only; nothing was written; not written: group 2701..2702, 2710, 2720..2721"
         );
         for failure in [refused, read_only] {
             assert_eq!(summarize_failure(failure.clone(), &orders()[..1], 0), failure);
