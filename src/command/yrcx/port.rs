@@ -127,6 +127,8 @@ pub struct Get {
 }
 
 impl Watchable for Get {
+    type Value = Level;
+
     const WATCH: &'static str = "yrcx.port.watch";
     const WATCHED: Watched = Watched::ITEMS;
 }
