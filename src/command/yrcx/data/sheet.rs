@@ -150,6 +150,11 @@ impl Store for PointSheet {
         Numbered::<Points>::is_undefined(failure)
     }
 
+    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+        let added = rows.iter().filter(|(_, old, _)| old.is_none()).count();
+        if added == 0 { Vec::new() } else { vec![format!("New points are added: {added}.")] }
+    }
+
     async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Content>, Failure> {
         self.read_parts(link, screen, numbers, [true, true]).await
     }
@@ -182,11 +187,6 @@ impl Writable for PointSheet {
             None => held.comment,
         };
         Ok(Content { point, comment })
-    }
-
-    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
-        let added = rows.iter().filter(|(_, old, _)| old.is_none()).count();
-        if added == 0 { Vec::new() } else { vec![format!("New points are added: {added}.")] }
     }
 
     async fn read_old(
