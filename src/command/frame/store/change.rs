@@ -95,8 +95,9 @@ pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> R
                 Ok(is_written) => (is_written, Ok(Some(new))),
                 Err(failure) => (false, Err(failure)),
             };
+            let old_cells = old.as_ref().map(|old| table.cells(key, old)).unwrap_or_default();
             let old = old.as_ref().and_then(|old| table.value(old));
-            Written::new(item(&table, names, key, outcome), old, is_written)
+            Written::new(item(&table, names, key, outcome), old, is_written).with_old_cells(old_cells)
         })
         .collect();
     Ok(WrittenItems::new(columns(&table), items))
