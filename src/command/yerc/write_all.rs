@@ -1,39 +1,15 @@
-//! Several writes in a row, with an exact report if one of them fails.
-
-use std::collections::HashMap;
+//! Several writes of signals in a row, with an exact report if one of them fails.
 
 use super::link::Link;
 use crate::command::frame::interrupt::interruptible;
-use crate::controller::yerc::query::Query;
-use crate::controller::yerc::variables::PlannedRead;
+use crate::controller::typed;
+use crate::controller::yerc::variables::WriteIoStep;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// A write request and the names of its items.
-pub trait WriteOrder: Query<Answer = ()> {
-    /// Item type: a group of signals.
-    type Item: Clone;
-
-    /// All items that it writes.
-    fn items(&self) -> Vec<Self::Item>;
-
-    /// Short list of names.
-    fn listed(items: Vec<Self::Item>) -> String;
-}
-
-/// Reads the values that requests replace, one request per run; refused values are missing. A dry run notes the
-/// requests.
-pub async fn old_value<S: PlannedRead>(link: &mut Link, reads: &[S]) -> Result<HashMap<S::Item, S::Value>, Failure> {
-    let mut found = HashMap::new();
-    for read in reads {
-        found.extend(link.before(read).await?.into_iter().flatten());
-    }
-    Ok(found)
-}
-
 /// Sends the requests one after the other. The first failure or Ctrl-C ends the sequence. The failure lists what was
 /// written, what may have been written, and what was not.
-pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: &[O]) -> Result<(), Failure> {
+pub async fn write_all(link: &mut Link, screen: &Screen, orders: &[WriteIoStep]) -> Result<(), Failure> {
     link.plan_all(orders)?;
     let mut done = 0;
     let progress = (orders.len() > 1).then(|| screen.spinner("writing"));
@@ -41,12 +17,7 @@ pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: 
     let outcome = interruptible(async {
         for order in orders {
             if let Some(progress) = &progress {
-                progress.print_line(&format!(
-                    "writing {} ({} of {})",
-                    O::listed(order.items()),
-                    done + 1,
-                    orders.len()
-                ));
+                progress.print_line(&format!("writing {} ({} of {})", listed([order]), done + 1, orders.len()));
             }
             link.ask(order).await?;
             done += 1;
@@ -62,7 +33,7 @@ pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: 
 }
 
 /// Failure with the result of each request; the first `done` were confirmed, the next one failed.
-fn summarize_failure<O: WriteOrder>(failure: Failure, orders: &[O], done: usize) -> Failure {
+fn summarize_failure(failure: Failure, orders: &[WriteIoStep], done: usize) -> Failure {
     // The outcome of the failed request is unknown if its answer was lost or damaged, or after Ctrl-C. After every other
     // failure, it was refused or not sent.
     let is_unknown = matches!(failure.kind, Kind::OutcomeUnknown | Kind::Malformed | Kind::Interrupted);
@@ -72,14 +43,13 @@ fn summarize_failure<O: WriteOrder>(failure: Failure, orders: &[O], done: usize)
     let (written, rest) = orders.split_at(done.min(orders.len()));
     let unknown = if is_unknown { 1.min(rest.len()) } else { 0 };
     let (unknown, rest) = rest.split_at(unknown);
-    let names = |orders: &[O]| O::listed(orders.iter().flat_map(WriteOrder::items).collect());
     let mut parts = vec![failure.message.trim_end_matches('.').to_owned()];
     if written.is_empty() && unknown.is_empty() {
         parts.push("nothing was written".to_owned());
     }
     for (words, orders) in [("written", written), ("written or not", unknown), ("not written", rest)] {
         if !orders.is_empty() {
-            parts.push(format!("{words}: {}", names(orders)));
+            parts.push(format!("{words}: {}", listed(orders)));
         }
     }
     let message = parts.join("; ");
@@ -88,11 +58,17 @@ fn summarize_failure<O: WriteOrder>(failure: Failure, orders: &[O], done: usize)
     Failure { kind, message, ..failure }.hint(hint)
 }
 
+/// The groups that requests write.
+fn listed<'a>(orders: impl IntoIterator<Item = &'a WriteIoStep>) -> String {
+    let groups: Vec<u16> = orders.into_iter().flat_map(|order| order.written().iter().copied()).collect();
+    format!("group {}", typed::runs(&groups, ".."))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::controller::yerc::Model;
-    use crate::controller::yerc::variables::{WriteIoStep, plan_io_writes};
+    use crate::controller::yerc::variables::plan_io_writes;
 
     fn orders() -> Vec<WriteIoStep> {
         let values: Vec<(u16, u8)> = [2701, 2702, 2710, 2720, 2721].map(|group| (group, 0)).into();

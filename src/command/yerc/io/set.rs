@@ -1,13 +1,13 @@
 //! `yerc io set`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::str::FromStr;
 
 use clap::Args;
 
 use super::super::batch_split::{BatchSplit, plan_in_batches, read_in_batches};
 use super::super::switch_commands::usage;
-use super::super::write_all::{WriteOrder, old_value, write_all};
+use super::super::write_all::write_all;
 use super::{group_item, item, signal};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::names;
@@ -104,7 +104,10 @@ impl Command for Set {
         signal::is_readable(model, &groups, true)?;
         let (whole, partial): (Vec<u16>, Vec<u16>) =
             changes.keys().partition(|group| changes.get(group).is_some_and(|change| change.mask == u8::MAX));
-        let mut found = old_value(link, &plan_io_reads(model, &whole).map_err(usage)?).await?;
+        let mut found = HashMap::new();
+        for read in plan_io_reads(model, &whole).map_err(usage)? {
+            found.extend(link.before(&read).await?.into_iter().flatten());
+        }
         if link.is_dry() && !partial.is_empty() {
             return Err(plan(link, model, &partial, &changes)?);
         }
@@ -176,18 +179,6 @@ fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, 
         }
     }
     Ok(unknown())
-}
-
-impl WriteOrder for WriteIoStep {
-    type Item = u16;
-
-    fn items(&self) -> Vec<u16> {
-        self.written().to_vec()
-    }
-
-    fn listed(items: Vec<u16>) -> String {
-        format!("group {}", typed::runs(&items, ".."))
-    }
 }
 
 #[cfg(test)]
