@@ -8,7 +8,7 @@ use crate::command::frame::store::{
     Answers, Differing, Field, Ids, Row as TableRow, Single, Store, TableWords, Writable, ids,
 };
 use crate::command::robot::item::Plain;
-use crate::command::robot::position::Position;
+use crate::command::robot::position::FourAxes;
 use crate::command::yrcx::backup::{COMMENTS, POINTS};
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::yrcx::stores::{Draft as Texts, Kind as _, Numbered, Row};
@@ -41,7 +41,7 @@ pub struct Draft {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Commented {
     #[serde(flatten)]
-    point: Option<Position>,
+    point: Option<FourAxes>,
     comment: Option<String>,
 }
 
