@@ -255,7 +255,8 @@ impl<V, M> Written<V, M> {
     fn change_cells(&self) -> Vec<Cell> {
         let cell = |(at, new): (usize, &Cell)| match self.old_cells.get(at) {
             Some(old) if self.written && old.text != new.text => {
-                Cell { text: format!("{} -> {}", old.text, new.text), ..new.clone() }
+                let [old, text] = [old, new].map(|cell| if cell.text.is_empty() { "\"\"" } else { &cell.text });
+                Cell { text: format!("{old} -> {text}"), ..new.clone() }
             }
             _ => new.clone(),
         };

@@ -239,7 +239,7 @@ impl<T: EepromRow> Writable for T {
 
     fn typed(&self, key: T::Key, words: &[String]) -> Result<Changes, Failure> {
         let what = as_requested(T::WORDS.nouns[0], &T::name(key));
-        let changes = Changes::read_by(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
+        let changes = Changes::read(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
         if let Some(values) = changes.whole() {
             self.check(key, &values)?;
         }

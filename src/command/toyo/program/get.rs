@@ -343,7 +343,7 @@ mod tests {
         let failure = failure.unwrap();
         let why = "the controller refused RSTX 0002 (@NG): the status shows no reason";
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Mixed, Some("NG")));
-        assert_eq!(failure.message, format!("1 of 2000 failed: {why}"));
+        assert_eq!(failure.message, format!("1 of 2000 failed: step 2: {why}"));
         let steps = got["steps"].as_array().unwrap();
         assert_eq!(
             steps[0],
