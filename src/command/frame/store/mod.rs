@@ -16,7 +16,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use self::change::{Row, TableWrite, describe_change, overwriting, write};
+pub use self::change::{ComparedRow, Row, TableWrite, describe_change, overwriting, write, write_rows};
 pub use self::copy::Copy;
 pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
 pub use self::get::{Get, List};
