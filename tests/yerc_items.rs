@@ -200,13 +200,15 @@ fn falls_back_to_single_reads_of_registers_and_signals() {
 }
 
 #[test]
-fn reports_items_written_before_a_refusal() {
+fn reports_items_written_beside_a_refusal() {
     let target = controller("", |request| if request.instance == 20 { refused(request, 0x2110) } else { None });
-    let (exit, _, error) = at_target(&target, "register set 1=1 20=2 30=3");
-    let message = error["error"]["message"].as_str().unwrap();
-    assert_eq!(exit, 9, "{error}");
-    assert!(message.contains("written: register 1; not written: register 20, 30"), "{message}");
-    assert!(message.contains("0x79 (instance 20)"), "{message}");
+    let (exit, set, _) = at_target(&target, "register set 1=1 20=2 30=3");
+    let items = set["data"]["items"].as_array().unwrap();
+    let written: Vec<&Value> = items.iter().map(|item| &item["written"]).collect();
+    assert_eq!((exit, written), (9, vec![&json!(true), &json!(false), &json!(true)]), "{set}");
+    assert_eq!(items[1]["error"]["asked"], "M20");
+    let message = set["error"]["message"].as_str().unwrap();
+    assert!(message.starts_with("1 of 3 failed: M20: ") && message.contains("0x79 (instance 20)"), "{message}");
 }
 
 #[test]

@@ -85,8 +85,6 @@ pub const MISSING: &[(&str, &str, &str)] = &[
     ("yerc timer", "the protocol does not read timers", "`armctl yerc hours` reads the operating hours"),
     ("yerc param", "the protocol does not read single parameters",
         "`armctl yerc file get '*.PRM'` downloads the parameter files"),
-    ("yerc register list", "the protocol does not list registers in use",
-        "`armctl yerc register get 0..99` reads a range"),
     ("yerc point", "taught points of a Yaskawa controller are position variables P, BP and EX",
         "`armctl yerc var get P5` reads one; see `armctl yerc var -h`"),
     ("yerc job get", "jobs are files on a Yaskawa controller", "`armctl yerc file get WELD.JBI` downloads one"),

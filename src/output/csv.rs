@@ -2,8 +2,8 @@
 //! data.
 //!
 //! A column has the name of its field; fields of a nested object are joined with `_`: `error_code`. A list with a
-//! maximum length has one column per entry (`axes_1`). A list of plain values is one cell. A list of objects in a row
-//! is omitted. If a report has several lists, their names precede the field names.
+//! maximum length has one column per entry (`axes_1`). A list of plain values, or of named values, is one cell. A list
+//! of other objects in a row is omitted. If a report has several lists, their names precede the field names.
 
 use std::collections::BTreeSet;
 
@@ -15,6 +15,8 @@ use super::escape;
 const MAX_DEPTH: usize = 5;
 /// Column with the value of an entry.
 const VALUE: &str = "value";
+/// Field with the name of a value, in a list of named values.
+const NAME: &str = "name";
 /// Columns of the result of a robot.
 const OUTCOME: [&str; 5] = ["ok", "error_kind", "error_code", "error_message", "error_hint"];
 /// Longest list with one column per entry.
@@ -47,6 +49,15 @@ struct Column {
     name: String,
     /// JSON pointer, relative to the report or the entry.
     pointer: String,
+    /// Whether the fields of an object at this place have columns of their own.
+    has_fields: bool,
+}
+
+impl Column {
+    /// Value of this column in a report or an entry; none if the value has columns of its own.
+    fn find<'v>(&self, entry: &'v Value) -> Option<&'v Value> {
+        entry.pointer(&self.pointer).filter(|value| !(self.has_fields && value.is_object()))
+    }
 }
 
 impl Sheet {
@@ -55,7 +66,7 @@ impl Sheet {
         let mut sheet = Self { common: Vec::new(), lists: Vec::new(), outcome: Vec::new() };
         let all = fields(schema, &[schema]);
         if all.is_empty() {
-            sheet.common.push(Column { name: VALUE.to_owned(), pointer: String::new() });
+            sheet.common.push(Column { name: VALUE.to_owned(), pointer: String::new(), has_fields: false });
         }
         for (name, variants) in all {
             let entries: Vec<&Value> = variants.iter().flat_map(|one| items(schema, one)).collect();
@@ -126,7 +137,7 @@ impl Sheet {
             let has_values = columns.iter().any(|column| is_value(&column));
             let chosen =
                 columns.iter().filter(|column| if has_values { is_value(column) } else { !is_outcome(column) });
-            let cell_text = |column: &Column| entry.pointer(&column.pointer).map_or_else(String::new, plain);
+            let cell_text = |column: &Column| column.find(entry).map_or_else(String::new, plain);
             let before = before.iter().map(|text| escape::line(text).into_owned());
             let cells: Vec<String> = match typed_values(&entry[VALUE]) {
                 Some(values) => before.chain(values).collect(),
@@ -156,7 +167,7 @@ impl Sheet {
         let outcome: Vec<String> = self.outcome.iter().map(|column| outcome(column, error)).collect();
         let outcome = || outcome.iter().map(String::as_str);
         let cells = |columns: &[Column], value: &Value| -> Vec<String> {
-            columns.iter().map(|column| value.pointer(&column.pointer).map_or_else(String::new, cell)).collect()
+            columns.iter().map(|column| column.find(value).map_or_else(String::new, cell)).collect()
         };
         let mut common: Vec<String> = before.iter().map(|text| neutralize_formula(text)).collect();
         common.extend(cells(&self.common, data));
@@ -189,8 +200,8 @@ fn outcome(column: &str, error: Option<&Value>) -> String {
 
 /// Adds the columns of a field: its own if it can be a plain value, and those of nested fields.
 fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize, columns: &mut Vec<Column>) {
-    let leaf = || Column { name: name.to_owned(), pointer: place.to_owned() };
-    let Some(depth) = depth.checked_sub(1) else { return columns.push(leaf()) };
+    let leaf = |has_fields| Column { name: name.to_owned(), pointer: place.to_owned(), has_fields };
+    let Some(depth) = depth.checked_sub(1) else { return columns.push(leaf(false)) };
     let nested = fields(root, variants);
     let lists: Vec<&Value> =
         variants.iter().flat_map(|one| resolve_references(root, one)).filter(|one| is_list(one)).collect();
@@ -198,8 +209,11 @@ fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize,
     let length =
         lists.iter().filter_map(|list| list["maxItems"].as_u64()).max().filter(|length| *length <= MAX_COLUMNS);
     let is_plain = variants.iter().flat_map(|one| resolve_references(root, one)).any(is_plain);
-    if is_plain || (length.is_none() && !lists.is_empty() && fields(root, &of_list).is_empty()) {
-        columns.push(leaf());
+    let entry_fields = fields(root, &of_list);
+    let has_entry_field = |name: &str| entry_fields.iter().any(|(field, _)| field == name);
+    let is_one_cell = entry_fields.is_empty() || (has_entry_field(NAME) && has_entry_field(VALUE));
+    if is_plain || (length.is_none() && !lists.is_empty() && is_one_cell) {
+        columns.push(leaf(!nested.is_empty()));
     }
     for (field, of_field) in nested {
         add(root, &format!("{name}_{field}"), &pointer(place, &field), &of_field, depth, columns);
@@ -276,7 +290,7 @@ fn pointer(place: &str, field: &str) -> String {
     format!("{place}/{}", field.replace('~', "~0").replace('/', "~1"))
 }
 
-/// Value of a cell; empty if the value has its own columns.
+/// Text of a cell.
 fn cell(value: &Value) -> String {
     neutralize_formula(&text(value))
 }
@@ -306,8 +320,15 @@ fn text(value: &Value) -> String {
             let texts = values.iter().map(|value| value.as_str().map_or_else(|| value.to_string(), str::to_owned));
             texts.collect::<Vec<_>>().join(between)
         }
+        Value::Array(values) => named_values(values).unwrap_or_else(|| value.to_string()),
         _ => value.to_string(),
     }
+}
+
+/// A list of named values as it can be typed: `ax1=10.0 ax2=2.0`; `None` for another list.
+fn named_values(values: &[Value]) -> Option<String> {
+    let pair = |entry: &Value| Some(format!("{}={}", entry.get(NAME)?.as_str()?, text(entry.get(VALUE)?)));
+    Some(values.iter().map(pair).collect::<Option<Vec<_>>>()?.join(" "))
 }
 
 /// Makes a text harmless for terminals and spreadsheets. A text that could be a formula gets an apostrophe (OWASP).
@@ -433,10 +454,30 @@ mod tests {
         };
         let alarms = vec![alarm(Some(SubCode { raw: 7 }), Number::Whole(5)), alarm(None, Number::Point { x_mm: 1.5 })];
         let many = serde_json::to_value(Report { group: 1, alarms }).unwrap();
-        assert_eq!(
-            rows(&sheet(), &many),
-            "1,4315,7,5,,1,-2,\"a, b; c\",\n1,4315,,\"{\"\"x_mm\"\":1.5}\",1.5,1,-2,\"a, b; c\",\n"
-        );
+        assert_eq!(rows(&sheet(), &many), "1,4315,7,5,,1,-2,\"a, b; c\",\n1,4315,,,1.5,1,-2,\"a, b; c\",\n");
+    }
+
+    #[test]
+    fn list_of_named_values_is_one_cell() {
+        #[derive(Serialize, JsonSchema)]
+        struct Parameters {
+            items: Vec<Parameter>,
+        }
+        #[derive(Serialize, JsonSchema)]
+        struct Parameter {
+            value: Vec<Named>,
+        }
+        #[derive(Serialize, JsonSchema)]
+        struct Named {
+            name: &'static str,
+            value: Value,
+            unit: Option<&'static str>,
+        }
+        let value = |name, value| Named { name, value, unit: Some("mm") };
+        let items = vec![Parameter { value: vec![value("ax1", json!(10.5)), value("mode", json!("fast"))] }];
+        let sheet = Sheet::from_schema(&schema_for!(Parameters).to_value(), RowsOf::Lists);
+        assert_eq!(sheet.header(&[]), "value\n");
+        assert_eq!(rows(&sheet, &serde_json::to_value(Parameters { items }).unwrap()), "ax1=10.5 mode=fast\n");
     }
 
     #[test]

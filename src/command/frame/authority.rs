@@ -44,12 +44,6 @@ impl<'a> Authority<'a> {
         Self::new(Gate::default(), screen, robot, Risk::Read, Grant::up_to(Risk::Read))
     }
 
-    /// Authority for a part of the work on another screen.
-    #[must_use]
-    pub fn clone_for<'b>(&self, screen: &'b Screen, robot: &'b Robot) -> Authority<'b> {
-        Authority { gate: self.gate, screen, robot, granted: self.granted, grant: self.grant.clone() }
-    }
-
     /// Whether a person is asked before a change. In that time, other clients may change data.
     pub fn asks(&self) -> bool {
         self.gate.needs_yes(self.robot, self.granted) && self.grant.get() < self.granted

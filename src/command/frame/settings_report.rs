@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 
 use super::report::Report;
 use crate::command::face::shared_commands::CommonReport;
+use crate::command::robot::item::{Item, Written, WrittenItems};
 use crate::failure::Failure;
 use crate::gate::Change;
 use crate::output::view::View;
@@ -82,6 +83,12 @@ impl NewValue {
         }
     }
 
+    /// Adds the old value, for an item that can be read and written by its name.
+    pub fn into_item(self, kind: &'static str, old: &Old) -> WrittenItems<Value> {
+        let item = Item::new(kind, self.name, Ok(Some(self.new)));
+        WrittenItems::describe(self.text, vec![Written::new(item, old.value(), true)])
+    }
+
     /// Adds the old value.
     pub fn replaces(self, old: Old) -> Done {
         let Self { name: set, arguments: with, new, text: words } = self;
@@ -122,26 +129,6 @@ impl CommonReport for Done {
 impl Report for Done {
     fn view(&self) -> View {
         View::text(self.words.clone())
-    }
-}
-
-/// One of several items that a command wrote, as reads report it, with old and new value.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Written<T> {
-    /// Item.
-    #[serde(flatten)]
-    pub item: T,
-    old: Old,
-    /// New value.
-    new: Value,
-    /// Always true.
-    written: bool,
-}
-
-impl<T> Written<T> {
-    /// Adds old and new value.
-    pub fn new(item: T, old: Old, new: impl Into<Value>) -> Self {
-        Self { item, old, new: new.into(), written: true }
     }
 }
 

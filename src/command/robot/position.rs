@@ -1,8 +1,9 @@
 //! Positions: common keys of `position` in every family, `armctl position`, motions and taught points.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 
 use crate::command::Report;
@@ -47,6 +48,25 @@ pub struct Position {
     pub extended_form: Option<String>,
     /// Position in typed notation.
     pub text: Option<String>,
+}
+
+/// Position of a controller with at most four axes: the same keys, with fewer columns in CSV.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct FourAxes(pub Position);
+
+impl JsonSchema for FourAxes {
+    fn schema_name() -> Cow<'static, str> {
+        "FourAxes".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = Position::json_schema(generator);
+        if let Some(longest) = schema.pointer_mut("/properties/joints/maxItems") {
+            *longest = 4.into();
+        }
+        schema
+    }
 }
 
 /// Position of an axis.
@@ -313,7 +333,10 @@ impl Report for AllPositions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::frame::report::sheet_of;
+    use crate::command::robot::item::Items;
     use crate::failure::Kind;
+    use crate::output::csv::Sheet;
     use crate::output::render;
 
     fn cartesian() -> Position {
@@ -337,6 +360,15 @@ mod tests {
             |(name, pulses): (&str, &i32)| Joint { axis: name.to_owned(), pulses: Some(*pulses), ..Joint::default() };
         let joints = ["S", "L", "U"].into_iter().zip(values).map(joint).collect();
         Position { frame: "joint".to_owned(), joints, ..Position::default() }
+    }
+
+    #[test]
+    fn four_axes_have_the_columns_of_a_position_without_the_last_axes() {
+        let columns = |sheet: Sheet| sheet.columns().map(ToOwned::to_owned).collect::<Vec<_>>();
+        let (all, four) = (columns(sheet_of::<Items<Position>>()), columns(sheet_of::<Items<FourAxes>>()));
+        let is_kept = |column: &&String| !["_5_", "_6_", "_7_", "_8_"].iter().any(|axis| column.contains(axis));
+        assert_eq!((four.len(), all.len()), (all.iter().filter(is_kept).count(), four.len() + 16));
+        assert!(all.iter().filter(is_kept).eq(&four), "{four:?}");
     }
 
     #[test]

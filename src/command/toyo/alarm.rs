@@ -66,6 +66,8 @@ impl Command for List {
 }
 
 impl Watchable for List {
+    type Value = bool;
+
     const WATCH: &'static str = "toyo.alarm.watch";
     const WATCHED: Watched =
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };

@@ -92,7 +92,7 @@ impl Command for Set {
         let Self { values, task, speed } = self;
         let Context { link, authority, .. } = context;
         let letters = link.letters().await?;
-        let changes = Changes::read_by("coordinates", &point_table().body(), &letters, values)?;
+        let changes = Changes::read("coordinates", &point_table().body(), &letters, values)?;
         let coordinates = changes.whole().ok_or_else(|| {
             Failure::usage("coordinates: a value is missing; each axis needs one")
                 .hint("`toyo coordinate set -h` has examples")

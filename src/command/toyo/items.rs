@@ -1,10 +1,5 @@
 //! Batch reads: each item has its own result, and one refusal does not hide the other answers.
 
-use std::collections::BTreeMap;
-
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::eeprom::THERE;
 use super::link::{Link, Refusal};
 use super::refusal;
@@ -14,69 +9,8 @@ use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// Result of one item.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Item<T> {
-    /// Answered.
-    Answered {
-        #[serde(flatten)]
-        value: T,
-        /// True.
-        ok: bool,
-    },
-    /// Not answered.
-    Failed {
-        /// Key of the item.
-        #[serde(flatten)]
-        key: Key,
-        /// False.
-        ok: bool,
-        /// Reason, with the refused block.
-        error: Failure,
-    },
-}
-
-/// Key of an item: `counter` 5.
-pub type Key = BTreeMap<&'static str, i32>;
-
 /// Answer to each request.
 pub type Answers = Vec<Result<Record, Failure>>;
-
-impl<T> Item<T> {
-    /// Item for an answer. The value has the key `in_manual`.
-    pub fn kept(name: &'static str, number: i32, answer: Result<T, Failure>) -> Self {
-        match answer {
-            Ok(value) => Self::Answered { ok: true, value },
-            Err(error) => Self::Failed { ok: false, key: Key::from([(name, number)]), error },
-        }
-    }
-
-    /// Reason for a missing value.
-    pub fn error(&self) -> Option<&Failure> {
-        if let Self::Failed { error, .. } = self { Some(error) } else { None }
-    }
-}
-
-/// Failure as one word for a table cell.
-pub fn in_a_word(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Refused => "refused",
-        Kind::NoAnswer => "no answer",
-        _ => "no sense",
-    }
-}
-
-/// Failure of a report: the number of failed items, with the message of the first.
-pub fn failure<'f>(all: usize, errors: impl Iterator<Item = Option<&'f Failure>>) -> Option<Failure> {
-    let failed: Vec<&Failure> = errors.flatten().collect();
-    let first = *failed.first()?;
-    if failed.len() == all {
-        return Some(first.clone());
-    }
-    let message = format!("{} of {all} failed: {}", failed.len(), first.message);
-    Some(Failure { kind: Kind::Mixed, message, ..first.clone() })
-}
 
 /// Reads items in order, each with its own result. After a lost connection the remaining items are not read. A dry run
 /// records all requests and ends.

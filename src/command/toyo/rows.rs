@@ -215,32 +215,9 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
         Ok(())
     }
 
-    /// See [`Writable::NOT_RESTORED`].
-    const NOT_RESTORED: &'static str = "";
-
-    /// See [`Writable::is_restored`].
-    fn is_restored(_key: Self::Key) -> bool {
-        true
-    }
-
-    /// See [`Writable::is_absent`].
-    fn is_absent(_key: Self::Key) -> bool {
-        false
-    }
-
     /// Position of a row in the order of the writes.
     fn rank(_key: Self::Key) -> usize {
         0
-    }
-
-    /// See [`Writable::consequences`].
-    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// See [`Writable::follow_up_note`].
-    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
-        None
     }
 }
 
@@ -248,7 +225,6 @@ impl<T: EepromRow> Writable for T {
     type Draft = Changes;
 
     const RISK: Risk = Risk::Destroy;
-    const NOT_RESTORED: &'static str = <T as EepromRow>::NOT_RESTORED;
 
     fn draft(&self, key: T::Key, texts: &[Option<&str>]) -> Result<Changes, String> {
         if T::IS_MIXED {
@@ -263,7 +239,7 @@ impl<T: EepromRow> Writable for T {
 
     fn typed(&self, key: T::Key, words: &[String]) -> Result<Changes, Failure> {
         let what = as_requested(T::WORDS.nouns[0], &T::name(key));
-        let changes = Changes::read_by(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
+        let changes = Changes::read(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
         if let Some(values) = changes.whole() {
             self.check(key, &values)?;
         }
@@ -284,22 +260,6 @@ impl<T: EepromRow> Writable for T {
         };
         self.check(key, &values)?;
         Ok(self.cell(key, values)?.wanted)
-    }
-
-    fn consequences(&self, rows: &[Differing<'_, T>]) -> Vec<String> {
-        EepromRow::consequences(self, rows)
-    }
-
-    fn follow_up_note(&self, written: &[T::Key]) -> Option<String> {
-        EepromRow::follow_up_note(self, written)
-    }
-
-    fn is_restored(key: T::Key) -> bool {
-        <T as EepromRow>::is_restored(key)
-    }
-
-    fn is_absent(key: T::Key) -> bool {
-        <T as EepromRow>::is_absent(key)
     }
 
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {

@@ -8,13 +8,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use super::link::Link;
 use crate::client::toyo::Letters;
-use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Form, Number, Value};
 use crate::controller::toyo::layout::{Layout, Record, UNLISTED};
-use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 
 /// A slot for one value that the user types.
@@ -194,15 +191,10 @@ impl ValueSlot {
 }
 
 impl Changes {
-    /// Parses the values for a layout without coordinates: all values in order, or some as `name=value`. `what` names
-    /// the record in errors.
-    pub fn read(what: &str, layout: &Layout, typed: &[String]) -> Result<Self, Failure> {
-        Self::read_by(what, layout, &Letters::USUAL, typed)
-    }
-
-    /// Parses the values for a layout. Coordinates have these letters. With other letters than the usual ones,
-    /// coordinates need names, because their order could mean letters or axes.
-    pub fn read_by(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
+    /// Parses the values for a layout: all values in order, or some as `name=value`. `what` names the record in errors.
+    /// Coordinates have these letters. With other letters than the usual ones, coordinates need names, because their
+    /// order could mean letters or axes.
+    pub fn read(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
         let slots = slots(layout, letters);
         let wrong = |error: String| Failure::usage(format!("{what}: {error}"));
         let wrong_slot = |error: String| wrong(error).hint(usage(&slots, layout));
@@ -256,26 +248,6 @@ impl Changes {
     /// All values, if every field has a new one.
     pub fn whole(&self) -> Option<Vec<Value>> {
         self.0.iter().cloned().collect()
-    }
-
-    /// All values; unchanged fields keep the values that the controller answers to `read`. Also returns that answer, so
-    /// that it is read only once. A dry run has no answer. If it needs one, it records the block of `sketch` and ends
-    /// here.
-    pub async fn completed(
-        &self,
-        link: &mut Link,
-        read: &Request,
-        sketch: impl FnOnce(&[Option<Value>]) -> String,
-    ) -> Result<(Vec<Value>, Option<Record>), Failure> {
-        let stored = link.ask(read).await.known()?;
-        match (self.whole(), &stored) {
-            (Some(values), _) => Ok((values, stored)),
-            (None, Some(record)) => Ok((self.over(record)?, stored)),
-            (None, None) => {
-                link.plan_overwriting(read, &sketch(&self.0)).await?;
-                Err(unknown())
-            }
-        }
     }
 
     /// All values; unchanged fields keep the values of `found`.
@@ -413,7 +385,7 @@ mod tests {
 
     fn read(name: &str, typed: &[&str]) -> Result<String, String> {
         let typed: Vec<String> = typed.iter().map(|text| (*text).to_owned()).collect();
-        let changes = Changes::read(name, &body(name), &typed).map_err(|failure| failure.message)?;
+        let changes = Changes::read(name, &body(name), &Letters::USUAL, &typed).map_err(|failure| failure.message)?;
         Ok(body(name).emit(&changes.whole().unwrap()).unwrap())
     }
 
@@ -450,7 +422,7 @@ mod tests {
     #[test]
     fn omitted_values_stay_unchanged() {
         let layout = body("P08");
-        let changes = Changes::read("P08", &layout, &["high=9".to_owned()]).unwrap();
+        let changes = Changes::read("P08", &layout, &Letters::USUAL, &["high=9".to_owned()]).unwrap();
         assert_eq!(changes.whole(), None);
         assert_eq!(changes.applied(&[Value::Number(1), Value::Number(2)]), [Value::Number(1), Value::Number(90)]);
     }

@@ -68,6 +68,10 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("register get 1", Read, Read),
     ("register set 1=1", Write, Write),
     ("register watch 1", Read, Read),
+    ("register list", Read, Read),
+    ("register copy 1 2", Write, Write),
+    ("register dump DIR/registers.csv", Read, Read),
+    ("register restore DIR/words.csv", Write, Write),
     ("names get", Read, Read),
     ("names forget", Read, Read),
     ("servo on", Motion, Motion),
@@ -99,6 +103,7 @@ fn prepare(folder: &std::path::Path) {
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     std::fs::write(path("A.JBI"), "/JOB\r\n//NAME A\r\nNOP\r\nEND\r\n").unwrap();
     std::fs::write(path("dump.csv"), "name,value\nB0,7\n").unwrap();
+    std::fs::write(path("words.csv"), "name,value\nM1,7\n").unwrap();
     Bench::new("sim:").data(&["backup", &path("backup")]);
 }
 

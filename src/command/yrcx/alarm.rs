@@ -94,6 +94,8 @@ fn explained(entry: AlarmEntry<Part>, robot: &Robot) -> Result<AlarmEntry<Part>,
 }
 
 impl Watchable for List {
+    type Value = bool;
+
     const WATCH: &'static str = "yrcx.alarm.watch";
     const WATCHED: Watched =
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };

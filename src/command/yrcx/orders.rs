@@ -3,11 +3,13 @@
 //! (4.1).
 
 use clap::ValueEnum;
+use serde_json::Value as Json;
 
 use super::arguments::{Hand as HandSystem, Which};
 use super::single::one_row;
 use crate::command::commands;
 use crate::command::frame::settings_report::{Done, NewValue, number};
+use crate::command::robot::item::WrittenItems;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 
@@ -38,7 +40,7 @@ commands! {
 one_row! {
     /// Sets a speed.
     #[command(after_help = "`yrcx info speed` reads the speeds.")]
-    Speed(self) "yrcx.speed" -> Done {
+    Speed(self) "yrcx.speed" -> WrittenItems<Json> {
         /// Speed to set
         setting: SpeedSetting,
         /// Percent, 1 to 100
@@ -50,23 +52,19 @@ one_row! {
         SpeedSetting::Program => Command::SpeedProgram,
     },
     with draft => draft.with(Key::SpeedPercent, self.percent.trim_end_matches('%')),
-    done {
-        let setting = match self.setting {
-            SpeedSetting::Manual => "manual",
-            SpeedSetting::Auto => "automatic",
-            SpeedSetting::Program => "program",
+    done as answer => {
+        let (name, setting) = match self.setting {
+            SpeedSetting::Manual => ("manual", "manual"),
+            SpeedSetting::Auto => ("auto", "automatic"),
+            SpeedSetting::Program => ("program", "program"),
         };
         let percent = self.percent.trim_end_matches('%');
-        let name = match self.setting {
-            SpeedSetting::Manual => "manual_percent",
-            SpeedSetting::Auto => "auto_percent",
-            SpeedSetting::Program => "program_percent",
-        };
-        NewValue::of(name, number(percent), format!("set the {setting} speed to {percent} %"))
+        let words = format!("set the {setting} speed to {percent} %");
+        NewValue::of(name, number(percent), words).into_item("override", &answer.old)
     };
 
     /// Limits the torque of an axis, starting with the next motion; the parameter does not change.
-    TorqueLimit(self) "yrcx.torque-limit" -> Done {
+    TorqueLimit(self) "yrcx.torque-limit" -> WrittenItems<Json> {
         /// Axis, 1 to 4
         #[arg(long, value_name = "AXIS")]
         axis: String,
@@ -75,25 +73,25 @@ one_row! {
     }
     gives Command::TorqueLimit,
     with draft => draft.with(Key::Axes, self.axis.as_str()).with(Key::Torque, self.percent.trim_end_matches('%')),
-    done {
+    done as answer => {
         let percent = self.percent.trim_end_matches('%');
         let words = format!("limited the torque of axis {} to {percent} % , starting with the next motion", self.axis);
-        NewValue::of("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
+        NewValue::of(self.axis.as_str(), number(percent), words).into_item("torque limit", &answer.old)
     };
 
     /// Sets the inching distance.
-    InchDistance(self) "yrcx.inch-distance" -> Done {
+    InchDistance(self) "yrcx.inch-distance" -> WrittenItems<Json> {
         /// Pulses, or steps of 0.001 mm for Cartesian and tool axes; 1 to 10000
         distance: String,
     }
     gives Command::InchAmountSet,
     with draft => draft.with(Key::InchingAmount, self.distance.as_str()),
-    done {
+    done as answer => {
         let words = format!(
             "set the inching distance to {} (pulses, or steps of 0.001 mm for Cartesian and tool axes)",
             self.distance
         );
-        NewValue::of("inch_distance", number(&self.distance), words)
+        NewValue::of("inch-distance", number(&self.distance), words).into_item("inching distance", &answer.old)
     };
 
     /// Selects a shift.

@@ -9,9 +9,8 @@ use super::numbers::{Series, named, single};
 use super::several::ask_each;
 use super::single::one_row;
 use crate::command::frame::names;
-use crate::command::frame::settings_report::{Done, NewValue};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
-use crate::command::robot::item::{Columns, Item, Items};
+use crate::command::robot::item::{Columns, Item, Items, Written, WrittenItems};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, commands};
 use crate::controller::names::{Kind, Names};
@@ -127,6 +126,8 @@ pub struct Get {
 }
 
 impl Watchable for Get {
+    type Value = Level;
+
     const WATCH: &'static str = "yrcx.port.watch";
     const WATCHED: Watched = Watched::ITEMS;
 }
@@ -199,7 +200,7 @@ fn label(names: &Names, port: &str) -> Option<String> {
 one_row! {
     /// Switches all signals of a port, or one of them.
     #[command(after_help = NAMES)]
-    Set(self) "yrcx.port.set" -> Done {
+    Set(self) "yrcx.port.set" -> WrittenItems<Level, Bits> {
         /// Port or signal
         #[arg(value_name = "PORT", value_parser = signal_or_port, add = complete::OUTPUT_PORT)]
         place: PortSignal,
@@ -213,14 +214,19 @@ one_row! {
         let draft = draft.with(Key::PortType, kind).with(Key::Port, port).with_some(Key::PortBit, bit);
         draft.with(Key::Value, i32::from(self.value))
     },
-    done {
+    done as answer => {
         let place = self.place.describe();
         let words = if self.place.bit.is_some() {
             format!("switched {place} {}", if self.value == 1 { "on" } else { "off" })
         } else {
             format!("{place} = {} ({:08b})", self.value, self.value)
         };
-        NewValue::of(place, self.value, words)
+        let new = self.place.item(&Names::default(), Ok(Some(i32::from(self.value) << self.place.bit.unwrap_or(0))));
+        let old = answer.old.value().and_then(|old| old.as_i64()).map(|old| match self.place.bit {
+            Some(_) => Level::Signal(old == 1),
+            None => Level::Port(i32::try_from(old).unwrap_or_default()),
+        });
+        WrittenItems::describe(words, vec![Written::new(new, old, true)])
     };
 }
 
@@ -253,11 +259,12 @@ mod tests {
     #[test]
     fn the_examples_of_the_manual() {
         for (id, line, done) in [
-            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], json!({"set": "DO12", "old": null, "new": 7})),
-            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], json!({"set": "DO2.1", "old": null, "new": 1})),
+            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], json!(["DO12", "port", null, 7])),
+            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], json!(["DO2.1", "signal", null, true])),
         ] {
             assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
-            assert_eq!(read_example(id, &line), done);
+            let item = &read_example(id, &line)["items"][0];
+            assert_eq!(json!([item["name"], item["kind"], item["old"], item["new"]]), done);
         }
         let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
         assert_eq!(item(&read), json!(["DO12", "port", 7, "00000111"]));

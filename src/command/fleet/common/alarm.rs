@@ -65,7 +65,7 @@ pub fn schemas() -> [SchemaEntry; 4] {
     [
         SchemaEntry::of::<Present>("alarm.list"),
         SchemaEntry::of::<AllAlarms>("alarm.history"),
-        SchemaEntry::of::<Changes>("alarm.watch"),
+        SchemaEntry::of::<Changes<bool>>("alarm.watch"),
         SchemaEntry::of::<Done>("alarm.reset"),
     ]
 }

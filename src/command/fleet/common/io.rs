@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 
 use super::line::SharedLine;
 use crate::command::frame::watch::Changes;
-use crate::command::robot::io::{Filter, Signals};
+use crate::command::robot::io::{Filter, IoValue, Signals};
 use crate::command::{AnyCommand, SchemaEntry};
 use crate::failure::Failure;
 use crate::settings::duration;
@@ -66,6 +66,6 @@ pub fn schemas() -> [SchemaEntry; 3] {
     [
         SchemaEntry::of::<Signals>("io.get"),
         SchemaEntry::of::<Signals>("io.list"),
-        SchemaEntry::of::<Changes>("io.watch"),
+        SchemaEntry::of::<Changes<IoValue>>("io.watch"),
     ]
 }

@@ -5,6 +5,7 @@ use crate::command::frame::authority::Authority;
 use crate::command::frame::connection::Family;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::items::describe_request;
 use crate::command::frame::names;
 use crate::command::frame::settings_report::nothing_written;
 use crate::command::robot::item::{Written, WrittenItems};
@@ -49,8 +50,10 @@ pub struct TableWrite<'a, S: Store> {
 pub struct ComparedRow<S: Store> {
     /// The row.
     pub key: S::Key,
-    old: Option<S::Wire>,
-    new: S::Wire,
+    /// Content on the controller; none if it is unknown.
+    pub old: Option<S::Wire>,
+    /// New content.
+    pub new: S::Wire,
     /// Whether it was written, or why not.
     pub outcome: Result<bool, Failure>,
     /// Whether an earlier failure ended the work before this row.
@@ -73,7 +76,7 @@ impl<S: Store> ComparedRow<S> {
 pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
     let TableWrite { mut table, robot, link, screen, authority } = work;
     table.select(link).await.map_err(nothing_written)?;
-    let compared = write_selected(&table, link, screen, authority, rows).await;
+    let compared = write_rows(&table, link, screen, authority, rows).await;
     // After Ctrl-C nothing more is requested. The close of the link restores the selected table.
     let is_interrupted = |rows: &Vec<ComparedRow<S>>| {
         rows.iter().any(|row| row.outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted))
@@ -95,15 +98,16 @@ pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> R
                 Ok(is_written) => (is_written, Ok(Some(new))),
                 Err(failure) => (false, Err(failure)),
             };
+            let old_cells = old.as_ref().map(|old| table.cells(key, old)).unwrap_or_default();
             let old = old.as_ref().and_then(|old| table.value(old));
-            Written::new(item(&table, names, key, outcome), old, is_written)
+            Written::new(item(&table, names, key, outcome), old, is_written).with_old_cells(old_cells)
         })
         .collect();
     Ok(WrittenItems::new(columns(&table), items))
 }
 
 /// Compares rows with the controller, confirms the change, and writes the rows that differ.
-async fn write_selected<S: Writable>(
+pub async fn write_rows<S: Writable>(
     table: &S,
     link: &mut <S::Family as Family>::Link,
     screen: &Screen,
@@ -142,7 +146,13 @@ pub async fn compare<S: Writable>(
     for ((key, draft), old) in rows.iter().zip(answers.rows) {
         let old = match old {
             Ok(old) => old,
-            Err(failure) if S::risk(*key) < Risk::Destroy && failure.kind == Kind::Refused => None,
+            Err(failure) if S::risk(*key) < Risk::Destroy && failure.kind == Kind::Refused => {
+                // Without the old row, only a complete one can be written.
+                if table.complete_draft(*key, draft, None).is_err() {
+                    return Err(nothing_written(describe_request(&S::asked(*key), failure)));
+                }
+                None
+            }
             Err(failure) if S::is_undefined(&failure) => None,
             Err(failure) => return Err(nothing_written(failure)),
         };

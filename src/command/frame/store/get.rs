@@ -80,6 +80,8 @@ impl<S: Store> Command for Get<S> {
 }
 
 impl<S: Store> Watchable for Get<S> {
+    type Value = S::Value;
+
     const WATCH: &'static str = S::IDS.watch;
     const WATCHED: Watched = Watched::ITEMS;
 }

@@ -16,7 +16,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use self::change::{Row, TableWrite, describe_change, overwriting, write};
+pub use self::change::{ComparedRow, Row, TableWrite, describe_change, overwriting, write, write_rows};
 pub use self::copy::Copy;
 pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
 pub use self::get::{Get, List};
@@ -194,6 +194,9 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// Whether `get` reports a row that is not defined as null beside rows that are, and fails only if none is defined.
     const UNDEFINED_IS_NULL: bool = false;
 
+    /// Why `restore` skips rows unless they are typed.
+    const NOT_RESTORED: &'static str = "type them to write them";
+
     /// Help of `get` and `set` that is not a constant.
     fn help() -> Option<&'static str> {
         None
@@ -322,6 +325,26 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         false
     }
 
+    /// Whether `restore` writes this row if no rows are typed.
+    fn is_restored(_key: Self::Key) -> bool {
+        true
+    }
+
+    /// Whether this controller does not have the row, if it was not read; a backup without it is complete.
+    fn is_absent(_key: Self::Key) -> bool {
+        false
+    }
+
+    /// Consequences of the write, for the question.
+    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Note about steps after the write of these rows.
+    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
+        None
+    }
+
     /// Reads rows, each with its own result. A dry run notes the requests and fails with
     /// [`unknown`](super::dry_run::unknown).
     ///
@@ -352,19 +375,6 @@ pub trait Writable: Store {
         Self::RISK
     }
 
-    /// Why `restore` skips rows unless they are typed.
-    const NOT_RESTORED: &'static str = "type them to write them";
-
-    /// Whether `restore` writes this row if no rows are typed.
-    fn is_restored(_key: Self::Key) -> bool {
-        true
-    }
-
-    /// Whether this controller does not have the row, if it was not read; a backup without it is complete.
-    fn is_absent(_key: Self::Key) -> bool {
-        false
-    }
-
     /// What a row shall hold, from the text of each field; a field without text stays.
     ///
     /// # Errors
@@ -389,16 +399,6 @@ pub trait Writable: Store {
         draft: &Self::Draft,
         old: Option<&Self::Wire>,
     ) -> Result<Self::Wire, Failure>;
-
-    /// Consequences of the write, for the question.
-    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// Note about steps after the write of these rows.
-    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
-        None
-    }
 
     /// Reads rows before a write. A dry run can note another purpose for the requests.
     ///

@@ -7,7 +7,7 @@ use super::read::{read, row};
 use super::{BITS, Station, list};
 use crate::command::frame::names;
 use crate::command::frame::watch::{self, Watchable};
-use crate::command::robot::io::{Signals, WATCHED};
+use crate::command::robot::io::{IoValue, Signals, WATCHED};
 use crate::command::toyo::complete;
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context};
@@ -75,6 +75,8 @@ impl Command for Watched {
 }
 
 impl Watchable for Watched {
+    type Value = IoValue;
+
     const WATCH: &'static str = "toyo.io.watch";
     const WATCHED: watch::Watched = WATCHED;
 }

@@ -226,6 +226,8 @@ impl Store for Parameters {
     };
     const IDS: Ids = ids!("toyo.param");
     const COMPLETE: ValueKind = complete::PARAMETER;
+    const NOT_RESTORED: &'static str = "machine and special parameters are written if their group is typed, such as \
+                                        `param restore FILE machine special`";
 
     fn keys(text: &str) -> Result<Vec<Key>, String> {
         parse(text)
@@ -298,16 +300,6 @@ impl Store for Parameters {
         unlisted(Some(record)).or_else(unwritable)
     }
 
-    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
-        Ok(Answers::of(read(link, screen, keys).await?))
-    }
-}
-
-impl EepromRow for Parameters {
-    const IS_MIXED: bool = true;
-    const NOT_RESTORED: &'static str = "machine and special parameters are written if their group is typed, such as \
-                                        `param restore FILE machine special`";
-
     fn is_restored(key: Key) -> bool {
         !is_machine(key)
     }
@@ -315,6 +307,27 @@ impl EepromRow for Parameters {
     fn is_absent(key: Key) -> bool {
         !key.parameter.only_on.is_empty()
     }
+
+    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+        let is_machine = |key: &Key| key.parameter.group() == Group::Machine;
+        let changed: Vec<&Parameter> =
+            rows.iter().filter(|(key, ..)| is_machine(key)).map(|(key, ..)| key.parameter).collect();
+        let machine = (!changed.is_empty()).then(|| consequence_of(&changed));
+        let warnings = rows.iter().flat_map(|(key, old, new)| machine::warnings(key.parameter, *old, new.values()));
+        warnings.chain(machine).collect()
+    }
+
+    fn follow_up_note(&self, written: &[Key]) -> Option<String> {
+        written.iter().any(|key| key.parameter.group() == Group::Machine).then(|| POWER_CYCLE.to_owned())
+    }
+
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
+        Ok(Answers::of(read(link, screen, keys).await?))
+    }
+}
+
+impl EepromRow for Parameters {
+    const IS_MIXED: bool = true;
 
     fn rank(key: Key) -> usize {
         GROUPS.iter().position(|group| *group == key.parameter.group()).unwrap_or_default()
@@ -342,19 +355,6 @@ impl EepromRow for Parameters {
 
     fn check(&self, key: Key, values: &[Value]) -> Result<(), Failure> {
         machine::check(key.parameter, values)
-    }
-
-    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
-        let is_machine = |key: &Key| key.parameter.group() == Group::Machine;
-        let changed: Vec<&Parameter> =
-            rows.iter().filter(|(key, ..)| is_machine(key)).map(|(key, ..)| key.parameter).collect();
-        let machine = (!changed.is_empty()).then(|| consequence_of(&changed));
-        let warnings = rows.iter().flat_map(|(key, old, new)| machine::warnings(key.parameter, *old, new.values()));
-        warnings.chain(machine).collect()
-    }
-
-    fn follow_up_note(&self, written: &[Key]) -> Option<String> {
-        written.iter().any(|key| key.parameter.group() == Group::Machine).then(|| POWER_CYCLE.to_owned())
     }
 }
 

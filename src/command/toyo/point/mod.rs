@@ -21,7 +21,7 @@ use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::frame::store::{Answers, Field, Ids, Store, TableWords, ids, table_commands};
 use crate::command::frame::teach::parse_printed_position;
-use crate::command::robot::position::Position;
+use crate::command::robot::position::FourAxes;
 use crate::controller::Risk;
 use crate::controller::names::Kind;
 use crate::controller::toyo::field::{self, Value};
@@ -118,7 +118,7 @@ impl Store for Points {
     type Family = Toyo;
     type Key = i32;
     type Wire = Record;
-    type Value = Position;
+    type Value = FourAxes;
     type More = OfTask;
     type Options = TaskOptions;
 
@@ -197,8 +197,8 @@ impl Store for Points {
         values::difference(old, new, &self.letters)
     }
 
-    fn value(&self, record: &Record) -> Option<Position> {
-        record.is_listed().then(|| Coordinates::of(record, self.letters).position())
+    fn value(&self, record: &Record) -> Option<FourAxes> {
+        record.is_listed().then(|| FourAxes(Coordinates::of(record, self.letters).position()))
     }
 
     fn more(&self, _point: i32, record: Option<&Record>) -> OfTask {

@@ -137,7 +137,7 @@ pub struct Deleted {
 
 impl Report for Deleted {
     fn view(&self) -> View {
-        let lines = self.deleted.iter().map(|Step { step, instruction, .. }| format!("{step:04}  {instruction}\n"));
+        let lines = self.deleted.iter().map(|step| format!("{}\n", step.line()));
         View::text(format!("# deleted from task {}\n{}", self.task, lines.collect::<String>()))
     }
 }

@@ -10,11 +10,12 @@ use super::kept::Source;
 use super::steps;
 use crate::command::backup::manifest::Hash;
 use crate::command::frame::dry_run::unknown;
+use crate::command::frame::items::{ItemOutcome, verdict};
 use crate::command::frame::local_names::Target;
 use crate::command::frame::names;
 use crate::command::robot::file::FileItem;
 use crate::command::robot::item::Plain;
-use crate::command::toyo::items::{self, Answers, Item, in_a_word};
+use crate::command::toyo::items::Answers;
 use crate::command::toyo::link::{Link, Toyo, misuse};
 use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
@@ -127,7 +128,8 @@ impl Command for Get {
         let file = target.iter().fold(file, |file, target| file.with_path(target.path()));
         let shown = if is_whole { program::used(&read) } else { read.len() };
         let step = |(step, answer): (u16, Result<Record, Failure>)| {
-            Item::kept("step", step.into(), answer.map(|record| Step::of(step.into(), &record)))
+            let outcome = answer.map(|record| Instruction::of(&record));
+            ReadStep { step, outcome: ItemOutcome::new(format!("step {step}"), outcome) }
         };
         Ok(Got {
             task,
@@ -203,7 +205,7 @@ const NOT_WRITTEN: &str = "was not written, because the program is incomplete";
 fn unread(answers: &Answers) -> Unread {
     let why = |failure: &Failure| match failure.kind {
         // One reason for all steps that were not requested.
-        Kind::NoAnswer => in_a_word(failure.kind).to_owned(),
+        Kind::NoAnswer => "no answer".to_owned(),
         _ => escape::line(&failure.message).into_owned(),
     };
     let failed = answers.iter().enumerate().filter_map(|(index, answer)| Some((index, answer.as_ref().err()?)));
@@ -237,7 +239,7 @@ pub struct Got {
     /// Tags with their steps.
     tags: Vec<Tag>,
     /// Each step, without the NOPs at the end of the task.
-    steps: Vec<Item<Step>>,
+    steps: Vec<ReadStep>,
     /// Whether the text is the one that was written, with its labels and comments.
     is_source: bool,
     /// Text of the file, with `?` for steps that were not read; null if it went to a file.
@@ -255,21 +257,48 @@ struct Tag {
     step: usize,
 }
 
+/// A step, or why it was not read.
+#[derive(Debug, Serialize, JsonSchema)]
+struct ReadStep {
+    /// From 1.
+    step: u16,
+    #[serde(flatten)]
+    outcome: ItemOutcome<Instruction>,
+}
+
 /// A step.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Step {
     /// From 1.
-    pub step: usize,
+    step: usize,
+    #[serde(flatten)]
+    content: Instruction,
+}
+
+/// Content of a step.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Instruction {
     /// Instruction in the controller.
-    pub instruction: String,
+    instruction: String,
     /// Whether the manual lists it; other instructions cannot be written.
-    pub in_manual: bool,
+    in_manual: bool,
+}
+
+impl Instruction {
+    fn of(record: &Record) -> Self {
+        Self { instruction: record.written(), in_manual: record.is_listed() }
+    }
 }
 
 impl Step {
     /// A step as read.
     pub fn of(step: usize, record: &Record) -> Self {
-        Self { step, instruction: record.written(), in_manual: record.is_listed() }
+        Self { step, content: Instruction::of(record) }
+    }
+
+    /// Number and instruction: `0003  MOVP`.
+    pub fn line(&self) -> String {
+        format!("{:04}  {}", self.step, self.content.instruction)
     }
 }
 
@@ -289,7 +318,7 @@ impl Report for Got {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let failure = items::failure(self.read_steps, self.steps.iter().map(Item::error))?;
+        let failure = verdict(self.read_steps, self.steps.iter().filter_map(|step| step.outcome.error()))?;
         let [FileItem { error: Some(_), path: Some(file), .. }] = &self.files else { return Some(failure) };
         let message = format!("{}; {file} {NOT_WRITTEN}", failure.message);
         Some(Failure { message, ..failure })
@@ -314,7 +343,7 @@ mod tests {
         let failure = failure.unwrap();
         let why = "the controller refused RSTX 0002 (@NG): the status shows no reason";
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Mixed, Some("NG")));
-        assert_eq!(failure.message, format!("1 of 2000 failed: {why}"));
+        assert_eq!(failure.message, format!("1 of 2000 failed: step 2: {why}"));
         let steps = got["steps"].as_array().unwrap();
         assert_eq!(
             steps[0],

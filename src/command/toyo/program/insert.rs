@@ -165,7 +165,6 @@ pub struct Inserted {
 
 impl Report for Inserted {
     fn view(&self) -> View {
-        let Step { step, instruction, .. } = &self.inserted;
-        View::text(format!("inserted in task {}: {step:04} {instruction}", self.task))
+        View::text(format!("inserted in task {}: {}", self.task, self.inserted.line()))
     }
 }

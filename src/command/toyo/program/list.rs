@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::steps;
 use crate::command::frame::dry_run::unknown;
-use crate::command::toyo::items::{self, in_a_word};
+use crate::command::frame::items::{ItemError, verdict};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::tasks;
@@ -15,7 +15,7 @@ use crate::controller::Risk;
 use crate::controller::toyo::program::{tags, used};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::output::view::{Cell, Table, View};
 
 /// List the tasks with the number of steps of their programs.
 #[derive(Debug, Args)]
@@ -68,7 +68,9 @@ impl List {
                         listed.used_steps = Some(used(&read));
                         listed.tags = Some(tags(&read, 1).into_keys().collect());
                     }
-                    Err(error) if matches!(error.kind, Kind::Refused | Kind::Malformed) => listed.error = Some(error),
+                    Err(failure) if matches!(failure.kind, Kind::Refused | Kind::Malformed) => {
+                        listed.error = Some(ItemError::new(format!("task {task}"), failure));
+                    }
                     Err(failure) => return Err(failure),
                 }
             }
@@ -98,7 +100,8 @@ struct Task {
     tags: Option<Vec<i32>>,
     /// Reason why the program could not be read.
     #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<Failure>,
+    #[schemars(with = "ItemError")]
+    error: Option<ItemError>,
 }
 
 impl Report for Listed {
@@ -106,10 +109,7 @@ impl Report for Listed {
         let mut table = Table::new(&["task", "current", "steps", "used", "tags"], "no tasks");
         for Task { task, current, room_steps, used_steps, tags, error } in &self.tasks {
             let tags = tags.as_ref().map(|tags| tags.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "));
-            let tags = match error {
-                Some(error) => Cell::from(in_a_word(error.kind)).tone(Tone::Bad),
-                None => Cell::optional(tags),
-            };
+            let tags = error.as_ref().map_or_else(|| Cell::optional(tags), ItemError::cell);
             table.row([
                 (*task).into(),
                 if *current { "yes" } else { "" }.into(),
@@ -122,6 +122,6 @@ impl Report for Listed {
     }
 
     fn failure(&self) -> Option<Failure> {
-        items::failure(self.tasks.len(), self.tasks.iter().map(|task| task.error.as_ref()))
+        verdict(self.tasks.len(), self.tasks.iter().filter_map(|task| task.error.as_ref()))
     }
 }

@@ -75,6 +75,8 @@ impl Command for Get {
 }
 
 impl Watchable for Get {
+    type Value = IoValue;
+
     const WATCH: &'static str = "yerc.io.watch";
     const WATCHED: Watched = WATCHED;
 }

@@ -7,7 +7,7 @@ use crate::command::frame::store::{
     Copy, Dump, Get, Ids, List, Restore, TableWords, TableWrite, Writable as _, WrittenOf, ids, write,
 };
 use crate::command::frame::teach::parse_printed_position;
-use crate::command::robot::position::Position;
+use crate::command::robot::position::FourAxes;
 use crate::command::yrcx::backup::{POINTS, Records};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
@@ -44,7 +44,7 @@ commands! {
 pub struct Points;
 
 impl Kind for Points {
-    type Value = Position;
+    type Value = FourAxes;
     const WORDS: TableWords = TableWords {
         nouns: ["point", "points"],
         placeholder: "POINT",
@@ -74,8 +74,8 @@ impl Kind for Points {
         Some(format!("{} {}{hand}", axes.join(", "), unit.symbol()))
     }
 
-    fn value(values: &Values) -> Option<Position> {
-        position(values, unit_of(values))
+    fn value(values: &Values) -> Option<FourAxes> {
+        position(values, unit_of(values)).map(FourAxes)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::command::frame::store::{
     Answers, Differing, Field, Ids, Row as TableRow, Single, Store, TableWords, Writable, ids,
 };
 use crate::command::robot::item::Plain;
-use crate::command::robot::position::Position;
+use crate::command::robot::position::FourAxes;
 use crate::command::yrcx::backup::{COMMENTS, POINTS};
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::yrcx::stores::{Draft as Texts, Kind as _, Numbered, Row};
@@ -41,7 +41,7 @@ pub struct Draft {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Commented {
     #[serde(flatten)]
-    point: Option<Position>,
+    point: Option<FourAxes>,
     comment: Option<String>,
 }
 
@@ -150,6 +150,11 @@ impl Store for PointSheet {
         Numbered::<Points>::is_undefined(failure)
     }
 
+    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+        let added = rows.iter().filter(|(_, old, _)| old.is_none()).count();
+        if added == 0 { Vec::new() } else { vec![format!("New points are added: {added}.")] }
+    }
+
     async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Content>, Failure> {
         self.read_parts(link, screen, numbers, [true, true]).await
     }
@@ -182,11 +187,6 @@ impl Writable for PointSheet {
             None => held.comment,
         };
         Ok(Content { point, comment })
-    }
-
-    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
-        let added = rows.iter().filter(|(_, old, _)| old.is_none()).count();
-        if added == 0 { Vec::new() } else { vec![format!("New points are added: {added}.")] }
     }
 
     async fn read_old(

@@ -5,7 +5,7 @@ use clap::Args;
 use super::row;
 use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
-use crate::command::robot::io::{Signals, WATCHED};
+use crate::command::robot::io::{IoValue, Signals, WATCHED};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::{Command, ConnectMode, Context};
@@ -50,6 +50,8 @@ impl Command for Outputs {
 }
 
 impl Watchable for Outputs {
+    type Value = IoValue;
+
     const WATCH: &'static str = "yrcx.io.watch";
     const WATCHED: Watched = WATCHED;
 
