@@ -36,6 +36,7 @@ pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command
             }
             remove_unlike_flag(&mut error, &typed, whole);
             let tip = suggest_alternative(&mut error, &typed)
+                .or_else(|| suggest_range(args, &typed, whole))
                 .or_else(|| suggest_place(&mut error, ContextKind::InvalidArg, &typed, whole))
                 .or_else(|| suggest_quotes(&error, args, &typed, whole))
                 .or_else(|| suggest_flag_or_value(&mut error, &typed, whole));
@@ -87,6 +88,16 @@ fn suggest_families(error: &clap::Error, typed: &TypedLine<'_>) -> Option<String
     let named = if of.is_empty() { Family::ALL.to_vec() } else { of };
     let lines: Vec<String> = named.iter().map(|family| format!("`armctl explain {family} {code}`")).collect();
     Some(format!("add the family of the code: {}", lines.join(" or ")))
+}
+
+/// Suggestion for numbers that are selected with `--from` and `--to`.
+fn suggest_range(args: &[OsString], typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let has = |flag: &str| command.get_arguments().any(|argument| argument.get_long() == Some(flag));
+    let words = args.iter().rev().map_while(|word| word.to_str()?.parse::<u32>().ok());
+    let numbers: Vec<u32> = words.collect();
+    let (from, to) = (numbers.iter().min()?, numbers.iter().max()?);
+    (has("from") && has("to")).then(|| format!("name the first and the last with flags: --from {from} --to {to}"))
 }
 
 /// Suggestion for a flag that is a value here, or a value that belongs to a flag.
@@ -555,6 +566,7 @@ mod tests {
                 "armctl toyo run point 1 --speed 10",
                 "the speed override scales all speeds: see `armctl toyo override -h`",
             ),
+            ("armctl toyo program get 5 6 7", "name the first and the last with flags: --from 5 --to 7"),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
             ("armctl explain 28", "add the family of the code: `armctl explain yerc 28` or `armctl explain toyo 28`"),
         ] {
@@ -567,7 +579,6 @@ mod tests {
     fn suggests_an_example_unless_it_is_dangerous() {
         for (line, expected) in [
             ("armctl yerc status x", "example: `armctl yerc status`"),
-            ("armctl toyo program get 5 6 7", "example: `armctl toyo program get`"),
             ("armctl yerc var get B0 --bananas", "example: `armctl yerc var get B0`"),
             ("armctl robots list --bananas", "example: `armctl robots list`"),
         ] {
