@@ -38,6 +38,7 @@ pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command
             let tip = suggest_alternative(&mut error, &typed)
                 .or_else(|| suggest_range(args, &typed, whole))
                 .or_else(|| suggest_place(&mut error, ContextKind::InvalidArg, &typed, whole))
+                .or_else(|| suggest_needed_flag(&error, args, &typed, whole))
                 .or_else(|| suggest_quotes(&error, args, &typed, whole))
                 .or_else(|| suggest_flag_or_value(&mut error, &typed, whole));
             let has_tip = error.get(ContextKind::SuggestedArg).or(error.get(ContextKind::Suggested)).is_some();
@@ -118,16 +119,41 @@ fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: 
         return None;
     }
     let takes_value = |argument: &&Arg| argument.get_action().takes_values() && !argument.is_global_set();
-    // Where one of several flags is needed, the value belongs to one of them.
+    let flags = needed_flags(command).unwrap_or_else(|| {
+        let flags = command.get_arguments().filter(takes_value);
+        flags.filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect()
+    });
+    after_flag(&flags)
+}
+
+/// Suggestion for a value of a flag that is missing, where one of several flags is needed.
+fn suggest_needed_flag(
+    error: &clap::Error,
+    args: &[OsString],
+    typed: &TypedLine<'_>,
+    whole: &Command,
+) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let flags = needed_flags(command)?;
+    let is_typed = |flag: &String| args.iter().any(|word| word.to_str().is_some_and(|word| word.starts_with(flag)));
+    if word.starts_with("--") || flags.iter().any(is_typed) {
+        return None;
+    }
+    after_flag(&flags)
+}
+
+/// Flags with a value of which one is needed; `None` if the command has no such flags.
+fn needed_flags(command: &Command) -> Option<Vec<String>> {
     let needed: Vec<_> = command.get_groups().filter(|group| group.is_required_set()).collect();
-    let is_needed = |argument: &&Arg| {
-        needed.is_empty() || needed.iter().any(|group| group.get_args().any(|id| id == argument.get_id()))
-    };
-    let flags: Vec<String> = command
-        .get_arguments()
-        .filter(|argument| takes_value(argument) && is_needed(argument))
-        .filter_map(|argument| Some(format!("--{}", argument.get_long()?)))
-        .collect();
+    let is_needed = |argument: &&Arg| needed.iter().any(|group| group.get_args().any(|id| id == argument.get_id()));
+    let takes_value = |argument: &&Arg| argument.get_action().takes_values();
+    let flags = command.get_arguments().filter(is_needed).filter(takes_value);
+    let flags: Vec<String> = flags.filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect();
+    (!flags.is_empty()).then_some(flags)
+}
+
+fn after_flag(flags: &[String]) -> Option<String> {
     (!flags.is_empty()).then(|| format!("type the value after its flag: {}", flags.join(", ")))
 }
 
@@ -560,11 +586,12 @@ mod tests {
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
             ("armctl yerc job start --name WELD", "type NAME without --name"),
+            ("armctl yrcx point set 19 1,2,3,4", "type the value after its flag: --mm, --pulse, --position"),
             ("armctl yrcx move 19", "type the value after its flag: --point, --to, --to-pulse"),
             ("armctl robots discover --for 3s", "robots discover ends by itself: remove --for"),
             (
                 "armctl toyo run point 1 --speed 10",
-                "the speed override scales all speeds: see `armctl toyo override -h`",
+                "no command sets the speed of one move; the stored override scales all of them: `armctl toyo override set 10`",
             ),
             ("armctl toyo program get 5 6 7", "name the first and the last with flags: --from 5 --to 7"),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),

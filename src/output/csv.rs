@@ -2,8 +2,8 @@
 //! data.
 //!
 //! A column has the name of its field; fields of a nested object are joined with `_`: `error_code`. A list with a
-//! maximum length has one column per entry (`axes_1`). A list of plain values is one cell. A list of objects in a row
-//! is omitted. If a report has several lists, their names precede the field names.
+//! maximum length has one column per entry (`axes_1`). A list of plain values is one cell, and so is the
+//! value of an entry if it consists of several values. Any other list of objects in a row is omitted. If a report has several lists, their names precede the field names.
 
 use std::collections::BTreeSet;
 
@@ -198,7 +198,9 @@ fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize,
     let length =
         lists.iter().filter_map(|list| list["maxItems"].as_u64()).max().filter(|length| *length <= MAX_COLUMNS);
     let is_plain = variants.iter().flat_map(|one| resolve_references(root, one)).any(is_plain);
-    if is_plain || (length.is_none() && !lists.is_empty() && fields(root, &of_list).is_empty()) {
+    let of_fields = fields(root, &of_list);
+    let is_one_cell = of_fields.is_empty() || name == VALUE && of_fields.iter().any(|(field, _)| field == VALUE);
+    if is_plain || (length.is_none() && !lists.is_empty() && is_one_cell) {
         columns.push(leaf());
     }
     for (field, of_field) in nested {
@@ -298,6 +300,9 @@ fn plain(value: &Value) -> String {
 
 fn text(value: &Value) -> String {
     let is_scalar = |value: &Value| !value.is_object() && !value.is_array();
+    let parts = |values: &[Value]| {
+        values.iter().map(|entry| entry.get(VALUE).filter(|value| is_scalar(value)).cloned()).collect()
+    };
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
@@ -305,6 +310,10 @@ fn text(value: &Value) -> String {
             let between = if values.iter().any(Value::is_string) { "; " } else { " " };
             let texts = values.iter().map(|value| value.as_str().map_or_else(|| value.to_string(), str::to_owned));
             texts.collect::<Vec<_>>().join(between)
+        }
+        Value::Array(values) => {
+            let parts: Option<Vec<Value>> = parts(values);
+            parts.map_or_else(|| value.to_string(), |parts| text(&Value::Array(parts)))
         }
         _ => value.to_string(),
     }
@@ -437,6 +446,34 @@ mod tests {
             rows(&sheet(), &many),
             "1,4315,7,5,,1,-2,\"a, b; c\",\n1,4315,,\"{\"\"x_mm\"\":1.5}\",1.5,1,-2,\"a, b; c\",\n"
         );
+    }
+
+    #[test]
+    fn value_of_several_values_is_one_cell() {
+        #[derive(JsonSchema)]
+        #[expect(dead_code, reason = "only its schema matters")]
+        struct Part {
+            name: String,
+            value: Value,
+        }
+        #[derive(JsonSchema)]
+        #[expect(dead_code, reason = "only its schema matters")]
+        struct Item {
+            name: String,
+            value: Option<Vec<Part>>,
+            others: Vec<Part>,
+        }
+        #[derive(JsonSchema)]
+        #[expect(dead_code, reason = "only its schema matters")]
+        struct Items {
+            items: Vec<Item>,
+        }
+        let sheet = Sheet::from_schema(&schema_for!(Items).to_value(), RowsOf::Lists);
+        assert_eq!(sheet.header(&[]), "name,value\n");
+        let numbers = json!([{"name": "AX1", "value": 10.5}, {"name": "AX2", "value": -2}]);
+        let texts = json!([{"name": "START", "value": 0}, {"name": "MODE", "value": "M-1"}]);
+        let items = json!({"items": [{"name": "P01", "value": numbers}, {"name": "1", "value": texts}, {"name": "2", "value": null}]});
+        assert_eq!(rows(&sheet, &items), "P01,10.5 -2\n1,0; M-1\n2,\n");
     }
 
     #[test]

@@ -71,7 +71,7 @@ pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc names", &["list"], "the command is `armctl names list -r ROBOT`"),
     ("yrcx info", &["position"], "the command is `armctl yrcx position`"),
     ("toyo run point", &["--speed"],
-        "the speed override scales all speeds: see `armctl toyo override -h`"),
+        "no command sets the speed of one move; the stored override scales all of them: `armctl toyo override set 10`"),
 ];
 
 /// Synonyms of verbs, with the verbs that a noun can have.
