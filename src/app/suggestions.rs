@@ -36,6 +36,7 @@ pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command
             }
             remove_unlike_flag(&mut error, &typed, whole);
             let tip = suggest_alternative(&mut error, &typed)
+                .or_else(|| suggest_format(&mut error))
                 .or_else(|| suggest_range(args, &typed, whole))
                 .or_else(|| suggest_place(&mut error, ContextKind::InvalidArg, &typed, whole))
                 .or_else(|| suggest_needed_flag(&error, args, &typed, whole))
@@ -91,6 +92,14 @@ fn suggest_families(error: &clap::Error, typed: &TypedLine<'_>) -> Option<String
     Some(format!("add the family of the code: {}", lines.join(" or ")))
 }
 
+/// Suggestion for a format that is typed as a flag.
+fn suggest_format(error: &mut clap::Error) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let format = ["csv", "jsonl", "table"].into_iter().find(|format| word.strip_prefix("--") == Some(format))?;
+    error.remove(ContextKind::SuggestedArg);
+    Some(format!("use -o {format}"))
+}
+
 /// Suggestion for numbers that are selected with `--from` and `--to`.
 fn suggest_range(args: &[OsString], typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
@@ -123,6 +132,9 @@ fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: 
         let flags = command.get_arguments().filter(takes_value);
         flags.filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect()
     });
+    if flags.len() > MAX_SUGGESTIONS {
+        return Some(format!("type the value after its flag: see `armctl {} -h`", typed.path.join(" ")));
+    }
     after_flag(&flags)
 }
 
@@ -165,11 +177,15 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
     if kind == ContextKind::InvalidArg && (word.starts_with('-') || typed.path.len() > 1) {
         return None;
     }
-    let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) =
-        lines(&word, typed, whole).into_iter().partition(|line| risk(&line.0, whole).is_none());
+    // The path without the wrong word leads no further.
+    let lines = lines(&word, typed, whole).into_iter().filter(|line| parse_words(&line.0) != typed.path);
+    let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) = lines.partition(|line| risk(&line.0, whole).is_none());
     let mut commands_by_risk: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
     for line in &dangerous {
-        if let (Some((_, noun)), Some(risk)) = (parse_words(&line.0).split_last(), risk(&line.0, whole)) {
+        let words = parse_words(&line.0);
+        let is_noun = find_command(&words, whole).0.is_some_and(Command::has_subcommands);
+        let noun = if is_noun { &words[..] } else { &words[..words.len().saturating_sub(1)] };
+        if let Some(risk) = risk(&line.0, whole) {
             commands_by_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
@@ -505,6 +521,7 @@ mod tests {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
         assert_eq!(tip("armctl toyo get"), None);
+        assert_eq!(tip("armctl toyo run 1"), None, "the path so far leads no further");
         assert_eq!(tip("armctl status nonsense").as_deref(), Some("example: `armctl status`"));
     }
 
@@ -594,6 +611,11 @@ mod tests {
                 "no command sets the speed of one move; the stored override scales all of them: `armctl toyo override set 10`",
             ),
             ("armctl toyo program get 5 6 7", "name the first and the last with flags: --from 5 --to 7"),
+            ("armctl yerc move joint P2", "type the value after its flag: see `armctl yerc move joint -h`"),
+            ("armctl alarm history --csv", "use -o csv"),
+            ("armctl compare a b", "the command is `armctl diff`"),
+            ("armctl names add clamp 27010", "the command is `armctl names set NAME ADDRESS -r ROBOT`"),
+            ("armctl toyo program run", "the command is one that moves or powers the robot: see `armctl toyo run -h`"),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
             ("armctl explain 28", "add the family of the code: `armctl explain yerc 28` or `armctl explain toyo 28`"),
         ] {

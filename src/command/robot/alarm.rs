@@ -36,9 +36,9 @@ pub struct Alarm {
 pub fn hint_after(family: Family, code: Option<&str>) -> String {
     let first = match code {
         Some(code) => format!("`armctl explain {family} {code}` shows what to do"),
-        None => format!("`{family} alarm history` shows the alarm; remove the cause"),
+        None => format!("`armctl {family} alarm history` shows the alarm; remove the cause"),
     };
-    format!("{first}, then use `{family} alarm reset`")
+    format!("{first}, then use `armctl {family} alarm reset`")
 }
 
 /// Alarm, error or warning.
