@@ -166,6 +166,11 @@ mod tests {
         Repeat { within: Some(within), ..Repeat::default() }
     }
 
+    async fn answer_after(time: Duration) -> Result<(), Failure> {
+        tokio::time::sleep(time).await;
+        Ok(())
+    }
+
     #[tokio::test(start_paused = true)]
     async fn the_deadline_bounds_every_look() {
         let (robot, within) = (robot(), Duration::from_secs(1));
@@ -180,14 +185,13 @@ mod tests {
         rounds.deadline().bound(&robot, silent()).await.unwrap_err();
         assert_eq!(rounds.began.elapsed(), within + SHORTEST_LOOK);
         assert!(rounds.is_cut(&failure));
-        let answer = async { Ok(tokio::time::sleep(SHORTEST_LOOK / 2).await) };
+        let answer = answer_after(SHORTEST_LOOK / 2);
         assert_eq!(rounds.deadline().bound(&robot, answer).await, Ok(()));
     }
 
     #[tokio::test(start_paused = true)]
     async fn without_a_deadline_nothing_is_cut() {
         let hour = Duration::from_secs(3600);
-        let slow = async { Ok(tokio::time::sleep(hour).await) };
-        assert_eq!(Deadline::NONE.bound(&robot(), slow).await, Ok(()));
+        assert_eq!(Deadline::NONE.bound(&robot(), answer_after(hour)).await, Ok(()));
     }
 }
