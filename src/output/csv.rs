@@ -320,10 +320,10 @@ fn text(value: &Value) -> String {
 }
 
 /// Makes a text harmless for terminals and spreadsheets. A text that could be a formula gets an apostrophe (OWASP).
-/// Signed numbers and a single dash are not formulas.
+/// Signed numbers, one or several, and a single dash are not formulas.
 pub(super) fn neutralize_formula(text: &str) -> String {
     let shown = escape::lines(text);
-    let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
+    let is_plain = shown == "-" || shown.split(' ').all(|number| number.parse::<f64>().is_ok());
     if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
 }
 
@@ -555,6 +555,7 @@ mod tests {
             ("=1+1", "'=1+1\n"),
             ("@SUM", "'@SUM\n"),
             ("-12.5", "-12.5\n"),
+            ("-12.5 7 -1", "-12.5 7 -1\n"),
             ("-", "-\n"),
             ("-x", "'-x\n"),
             ("\u{1b}[2J", "\\x1b[2J\n"),
