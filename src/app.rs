@@ -28,6 +28,8 @@ use clap::builder::StyledStr;
 use self::parser::{Parser, Refusal};
 use self::prepare::{Invocation, PreparedCommand};
 use crate::cli::{Cli, Globals, Words};
+#[cfg(unix)]
+use crate::command::frame::background::{DETACHED, close_inherited_files};
 use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::RunError;
 use crate::failure::{Failure, Kind};
@@ -50,6 +52,10 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         // If the shell has closed the pipe, the error does not matter.
         let _ = Screen::new(Format::Table, ColorChoice::Never, true, 0).data(&answer);
         return ExitCode::SUCCESS;
+    }
+    #[cfg(unix)]
+    if args.iter().any(|word| word == DETACHED) {
+        close_inherited_files();
     }
     let mut args = with_family(args);
     if let Some(version) = parser::version(&args) {

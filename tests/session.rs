@@ -453,6 +453,25 @@ fn reports_the_stop_input_after_a_lost_link_returns() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn background_session_keeps_no_file_of_its_starter_open() {
+    let (_simulator, desk) = cell_arguments();
+    let inherited = desk.folder.path().join("inherited");
+    let command = desk.command("-r cell session open --background --json");
+    let open = format!("exec 7>'{}' 8</dev/null 9>&1; exec \"$0\" \"$@\"", inherited.display());
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &open]).arg(command.get_program()).args(command.get_args()).stdin(Stdio::null());
+    shell.env_clear().envs(command.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    // If the session kept descriptor 9 open, this would wait for its end.
+    let output = shell.output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let opened: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let files = std::fs::read_dir(format!("/proc/{}/fd", opened["data"]["pid"])).unwrap();
+    let files: Vec<PathBuf> = files.filter_map(|file| std::fs::read_link(file.unwrap().path()).ok()).collect();
+    assert!(inherited.exists() && !files.is_empty() && !files.contains(&inherited), "{files:?}");
+}
+
 #[test]
 fn background_session_is_ready_when_reported() {
     let (_simulator, desk) = cell_arguments();

@@ -36,7 +36,10 @@ pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command
             }
             remove_unlike_flag(&mut error, &typed, whole);
             let tip = suggest_alternative(&mut error, &typed)
+                .or_else(|| suggest_format(&mut error))
+                .or_else(|| suggest_range(args, &typed, whole))
                 .or_else(|| suggest_place(&mut error, ContextKind::InvalidArg, &typed, whole))
+                .or_else(|| suggest_needed_flag(&error, args, &typed, whole))
                 .or_else(|| suggest_quotes(&error, args, &typed, whole))
                 .or_else(|| suggest_flag_or_value(&mut error, &typed, whole));
             let has_tip = error.get(ContextKind::SuggestedArg).or(error.get(ContextKind::Suggested)).is_some();
@@ -89,6 +92,24 @@ fn suggest_families(error: &clap::Error, typed: &TypedLine<'_>) -> Option<String
     Some(format!("add the family of the code: {}", lines.join(" or ")))
 }
 
+/// Suggestion for a format that is typed as a flag.
+fn suggest_format(error: &mut clap::Error) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let format = ["csv", "jsonl", "table"].into_iter().find(|format| word.strip_prefix("--") == Some(format))?;
+    error.remove(ContextKind::SuggestedArg);
+    Some(format!("use -o {format}"))
+}
+
+/// Suggestion for numbers that are selected with `--from` and `--to`.
+fn suggest_range(args: &[OsString], typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let has = |flag: &str| command.get_arguments().any(|argument| argument.get_long() == Some(flag));
+    let words = args.iter().rev().map_while(|word| word.to_str()?.parse::<u32>().ok());
+    let numbers: Vec<u32> = words.collect();
+    let (from, to) = (numbers.iter().min()?, numbers.iter().max()?);
+    (has("from") && has("to")).then(|| format!("name the first and the last with flags: --from {from} --to {to}"))
+}
+
 /// Suggestion for a flag that is a value here, or a value that belongs to a flag.
 fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
@@ -107,16 +128,44 @@ fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: 
         return None;
     }
     let takes_value = |argument: &&Arg| argument.get_action().takes_values() && !argument.is_global_set();
-    // Where one of several flags is needed, the value belongs to one of them.
+    let flags = needed_flags(command).unwrap_or_else(|| {
+        let flags = command.get_arguments().filter(takes_value);
+        flags.filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect()
+    });
+    if flags.len() > MAX_SUGGESTIONS {
+        return Some(format!("type the value after its flag: see `armctl {} -h`", typed.path.join(" ")));
+    }
+    after_flag(&flags)
+}
+
+/// Suggestion for a value of a flag that is missing, where one of several flags is needed.
+fn suggest_needed_flag(
+    error: &clap::Error,
+    args: &[OsString],
+    typed: &TypedLine<'_>,
+    whole: &Command,
+) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let flags = needed_flags(command)?;
+    let is_typed = |flag: &String| args.iter().any(|word| word.to_str().is_some_and(|word| word.starts_with(flag)));
+    if word.starts_with("--") || flags.iter().any(is_typed) {
+        return None;
+    }
+    after_flag(&flags)
+}
+
+/// Flags with a value of which one is needed; `None` if the command has no such flags.
+fn needed_flags(command: &Command) -> Option<Vec<String>> {
     let needed: Vec<_> = command.get_groups().filter(|group| group.is_required_set()).collect();
-    let is_needed = |argument: &&Arg| {
-        needed.is_empty() || needed.iter().any(|group| group.get_args().any(|id| id == argument.get_id()))
-    };
-    let flags: Vec<String> = command
-        .get_arguments()
-        .filter(|argument| takes_value(argument) && is_needed(argument))
-        .filter_map(|argument| Some(format!("--{}", argument.get_long()?)))
-        .collect();
+    let is_needed = |argument: &&Arg| needed.iter().any(|group| group.get_args().any(|id| id == argument.get_id()));
+    let takes_value = |argument: &&Arg| argument.get_action().takes_values();
+    let flags = command.get_arguments().filter(is_needed).filter(takes_value);
+    let flags: Vec<String> = flags.filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect();
+    (!flags.is_empty()).then_some(flags)
+}
+
+fn after_flag(flags: &[String]) -> Option<String> {
     (!flags.is_empty()).then(|| format!("type the value after its flag: {}", flags.join(", ")))
 }
 
@@ -128,11 +177,15 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
     if kind == ContextKind::InvalidArg && (word.starts_with('-') || typed.path.len() > 1) {
         return None;
     }
-    let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) =
-        lines(&word, typed, whole).into_iter().partition(|line| risk(&line.0, whole).is_none());
+    // The path without the wrong word leads no further.
+    let lines = lines(&word, typed, whole).into_iter().filter(|line| parse_words(&line.0) != typed.path);
+    let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) = lines.partition(|line| risk(&line.0, whole).is_none());
     let mut commands_by_risk: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
     for line in &dangerous {
-        if let (Some((_, noun)), Some(risk)) = (parse_words(&line.0).split_last(), risk(&line.0, whole)) {
+        let words = parse_words(&line.0);
+        let is_noun = find_command(&words, whole).0.is_some_and(Command::has_subcommands);
+        let noun = if is_noun { &words[..] } else { &words[..words.len().saturating_sub(1)] };
+        if let Some(risk) = risk(&line.0, whole) {
             commands_by_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
@@ -468,6 +521,7 @@ mod tests {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
         assert_eq!(tip("armctl toyo get"), None);
+        assert_eq!(tip("armctl toyo run 1"), None, "the path so far leads no further");
         assert_eq!(tip("armctl status nonsense").as_deref(), Some("example: `armctl status`"));
     }
 
@@ -549,12 +603,19 @@ mod tests {
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
             ("armctl yerc job start --name WELD", "type NAME without --name"),
+            ("armctl yrcx point set 19 1,2,3,4", "type the value after its flag: --mm, --pulse, --position"),
             ("armctl yrcx move 19", "type the value after its flag: --point, --to, --to-pulse"),
             ("armctl robots discover --for 3s", "robots discover ends by itself: remove --for"),
             (
                 "armctl toyo run point 1 --speed 10",
-                "the speed override scales all speeds: see `armctl toyo override -h`",
+                "no command sets the speed of one move; the stored override scales all of them: `armctl toyo override set 10`",
             ),
+            ("armctl toyo program get 5 6 7", "name the first and the last with flags: --from 5 --to 7"),
+            ("armctl yerc move joint P2", "type the value after its flag: see `armctl yerc move joint -h`"),
+            ("armctl alarm history --csv", "use -o csv"),
+            ("armctl compare a b", "the command is `armctl diff`"),
+            ("armctl names add clamp 27010", "the command is `armctl names set NAME ADDRESS -r ROBOT`"),
+            ("armctl toyo program run", "the command is one that moves or powers the robot: see `armctl toyo run -h`"),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
             ("armctl explain 28", "add the family of the code: `armctl explain yerc 28` or `armctl explain toyo 28`"),
         ] {
@@ -567,7 +628,6 @@ mod tests {
     fn suggests_an_example_unless_it_is_dangerous() {
         for (line, expected) in [
             ("armctl yerc status x", "example: `armctl yerc status`"),
-            ("armctl toyo program get 5 6 7", "example: `armctl toyo program get`"),
             ("armctl yerc var get B0 --bananas", "example: `armctl yerc var get B0`"),
             ("armctl robots list --bananas", "example: `armctl robots list`"),
         ] {

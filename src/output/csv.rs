@@ -312,6 +312,9 @@ fn plain(value: &Value) -> String {
 
 fn text(value: &Value) -> String {
     let is_scalar = |value: &Value| !value.is_object() && !value.is_array();
+    let parts = |values: &[Value]| {
+        values.iter().map(|entry| entry.get(VALUE).filter(|value| is_scalar(value)).cloned()).collect()
+    };
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
@@ -332,10 +335,10 @@ fn named_values(values: &[Value]) -> Option<String> {
 }
 
 /// Makes a text harmless for terminals and spreadsheets. A text that could be a formula gets an apostrophe (OWASP).
-/// Signed numbers and a single dash are not formulas.
+/// Signed numbers, one or several, and a single dash are not formulas.
 pub(super) fn neutralize_formula(text: &str) -> String {
     let shown = escape::lines(text);
-    let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
+    let is_plain = shown == "-" || shown.split(' ').all(|number| number.parse::<f64>().is_ok());
     if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
 }
 
@@ -559,6 +562,7 @@ mod tests {
             ("=1+1", "'=1+1\n"),
             ("@SUM", "'@SUM\n"),
             ("-12.5", "-12.5\n"),
+            ("-12.5 7 -1", "-12.5 7 -1\n"),
             ("-", "-\n"),
             ("-x", "'-x\n"),
             ("\u{1b}[2J", "\\x1b[2J\n"),

@@ -126,6 +126,11 @@ impl Robot {
         self.model.value.named().or_else(cached).or_else(simulated)
     }
 
+    /// What a command line calls it: its name in the inventory, or its URL.
+    pub fn as_typed(&self) -> &str {
+        if self.target.origin == Origin::Robot { &self.name } else { self.target.value.url() }
+    }
+
     /// Label in messages: `cell3 (udp://192.168.1.31)`.
     pub fn label(&self) -> String {
         let url = self.target.value.url();

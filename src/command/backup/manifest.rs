@@ -224,7 +224,12 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
 /// Reads the manifest in `folder`, which must exist.
 pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
     read(folder)?.ok_or_else(|| {
-        let failure = Failure::local(format!("{} holds no {MANIFEST}", folder.display()));
+        let shown = folder.display();
+        let failure = Failure::local(if folder.exists() {
+            format!("{shown} holds no {MANIFEST}")
+        } else {
+            format!("there is no folder {shown}")
+        });
         match folders_in(folder).first() {
             Some(one) => {
                 failure.hint(format!("the backups are in its subfolders: select one, as in {}", one.display()))

@@ -132,15 +132,18 @@ impl Command for Overview {
             },
             Err(failure) => Err(failure),
         };
-        let report = match found {
-            Err(failure) if failure.kind == Kind::NoAnswer => {
-                OverviewReport { failure: Some(failure), ..OverviewReport::default() }
-            }
-            found => found?,
-        };
+        let report = found.or_else(|failure| self.without_answer(context.robot, failure))?;
         let mut report = OverviewReport { family: context.robot.family.name(), ..report };
         report.state.fault.explain(context.robot)?;
         Ok(report)
+    }
+
+    /// A robot that does not answer is a state.
+    fn without_answer(&self, robot: &Robot, failure: Failure) -> Result<OverviewReport, Failure> {
+        if failure.kind != Kind::NoAnswer {
+            return Err(failure);
+        }
+        Ok(OverviewReport { family: robot.family.name(), failure: Some(failure), ..OverviewReport::default() })
     }
 
     /// Summary line: `32 robots, 30 answer, 1 alarm`.

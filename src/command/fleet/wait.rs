@@ -26,7 +26,7 @@ const NOUNS: [&str; 7] = ["io", "var", "counter", "timer", "register", "port", "
 pub struct Wait {
     /// The condition: idle, servo-on, clamp=on, 'B5>=3', fault_code=4315, '.data.position.z_mm > 100'
     condition: String,
-    /// Longest wait, then exit code 8 [default: no limit]
+    /// Longest wait, then exit code 8, or 4 without an answer [default: no limit]
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
 }

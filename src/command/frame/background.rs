@@ -18,6 +18,9 @@ use crate::settings::Robot;
 use crate::transport::session::location::SessionFolder;
 use crate::transport::session::{detach, process, terminate};
 
+/// Flag of the process in the background.
+pub const DETACHED: &str = "--detached";
+
 /// Result of opening a session.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Opened {
@@ -69,7 +72,7 @@ pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Scre
     if let Some(path) = inventory {
         words.extend(["--config".into(), path.into()]);
     }
-    words.extend(["-r", &robot.name, "session", "open", "--detached"].map(OsString::from));
+    words.extend(["-r", &robot.name, "session", "open", DETACHED].map(OsString::from));
     let opened = start(robot, words.into_iter()).await?;
     screen.note(&format!(
         "{}: session opened (process {}); `armctl session close {}` closes it",
@@ -78,6 +81,19 @@ pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Scre
         robot.name
     ));
     Ok(())
+}
+
+/// Closes the files that the starter of this process left open. A lock or pipe of another program must not stay open as
+/// long as the session. Only a process that has opened no file itself may call it.
+#[cfg(unix)]
+pub fn close_inherited_files() {
+    // Without this folder nothing is known of open files.
+    let Ok(open) = std::fs::read_dir("/dev/fd") else { return };
+    let open: Vec<i32> = open.filter_map(|file| file.ok()?.file_name().to_str()?.parse().ok()).collect();
+    for file in open.into_iter().filter(|file| *file > 2) {
+        // One of them was open for the list only, and is closed already.
+        let _ = nix::unistd::close(file);
+    }
 }
 
 /// Starts this program in the background with these arguments, and waits until its link is up.

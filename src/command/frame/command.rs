@@ -134,6 +134,11 @@ pub trait Command {
         None
     }
 
+    /// Outcome for a robot that did not answer before the end of `--for`.
+    fn without_answer(&self, _robot: &Robot, failure: Failure) -> Result<Self::Report, Failure> {
+        Err(failure)
+    }
+
     /// Executes the command. In a dry run, requests that change something are noted and count as done. A read ends
     /// with the failure [`unknown`](super::dry_run::unknown), and nothing after it can be planned unless the command
     /// handles it.
@@ -177,6 +182,10 @@ pub trait AnyCommand {
     /// See [`Command::summary`].
     fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
         None
+    }
+    /// See [`Command::without_answer`].
+    fn without_answer(&self, _robot: &Robot, failure: Failure) -> Outcome {
+        Err(failure)
     }
     /// Columns of its report, if they are known without one.
     fn sheet(&self) -> Option<Sheet> {
@@ -254,6 +263,10 @@ impl<C: Command> AnyCommand for C {
 
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         Command::summary(self, envelopes)
+    }
+
+    fn without_answer(&self, robot: &Robot, failure: Failure) -> Outcome {
+        Ok(Box::new(Command::without_answer(self, robot, failure)?))
     }
 
     fn sheet(&self) -> Option<Sheet> {

@@ -46,6 +46,11 @@ impl Condition {
     /// If the filter is not valid.
     pub fn new(text: &str) -> Result<Self, Failure> {
         let text = text.trim();
+        if serde_json::from_str::<Value>(text).is_ok() {
+            // As a filter, this would be true at once.
+            return Err(Failure::usage(format!("'{text}' is not a condition"))
+                .hint(format!("write the value to wait for, such as {text}=on")));
+        }
         let comparison = Comparison::parse(text);
         let (filter, keys) = match (STATES.iter().find(|(state, _)| *state == text), &comparison) {
             (Some((_, filter)), _) => (each(filter), paths(filter)),
@@ -254,6 +259,7 @@ mod tests {
         assert!(holds(".data.servo_on", &status) && holds(".data.alarms == []", &status));
         assert!(holds(".data.servo_on and (.data.alarms | length) <= 0", &status));
         assert!(Condition::new(".[").is_err() && Condition::new("idel").is_err());
+        assert!(Condition::new("27010").is_err() && Condition::new("true").is_err(), "always true");
     }
 
     #[test]

@@ -12,13 +12,12 @@ use anyhow::Context as _;
 use futures_util::StreamExt as _;
 use futures_util::stream;
 use serde::Serialize;
-use tokio::time::timeout_at;
 
 use self::failure_log::FailureLog;
 pub use self::print::as_value;
 use self::print::{ReportPosition, with_time};
 pub use self::rounds::Repeat;
-use self::rounds::Rounds;
+use self::rounds::{Deadline, Rounds};
 use super::attach::{identify, is_held_by_other_process};
 use super::authority::{self, Authority};
 use super::background;
@@ -26,7 +25,7 @@ use super::command::{AnyCommand, AnyContext};
 use super::connection::{Access, Connection, Entry, FamilyArguments};
 use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{MotionInProgress, catch_interrupts, interruptible};
-use super::report::Outcome;
+use super::report::{AnyReport, Outcome};
 use super::script_line::Line;
 use super::share::open_shared_session;
 use crate::controller::Risk;
@@ -281,8 +280,16 @@ impl Run {
         among: Option<ReportPosition<'_>>,
     ) -> Result<(), RunError> {
         let stopped = |failure| RunError::for_robot(robot, command, failure);
-        let (mut link, _) = self.connect(command, robot).await.map_err(stopped)?;
-        let watched = self.watch_over(command, robot, &mut *link, among).await;
+        let every = if command.is_endless() { Duration::ZERO } else { DEFAULT_INTERVAL };
+        let rounds = Rounds::new(&self.repeat, every);
+        let (mut link, _) = match self.connect(command, robot, rounds.deadline()).await {
+            Ok(link) => link,
+            Err(failure) => {
+                let report = command.without_answer(robot, failure).map_err(stopped)?;
+                return self.end_unconnected(command, robot, &*report, &rounds);
+            }
+        };
+        let watched = self.watch_over(command, robot, &mut *link, (rounds, among)).await;
         let closed = link.close(&self.screen).await;
         watched?;
         closed.map_err(stopped)
@@ -293,65 +300,94 @@ impl Run {
         command: &dyn AnyCommand,
         robot: &Robot,
         link: &mut dyn Connection,
-        among: Option<ReportPosition<'_>>,
+        (mut rounds, among): (Rounds<'_>, Option<ReportPosition<'_>>),
     ) -> Result<(), RunError> {
         let stopped = |failure| RunError::for_robot(robot, command, failure);
         let mut silences = FailureLog::new(self, robot);
-        let mut rounds =
-            Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { DEFAULT_INTERVAL });
+        let mut last = None;
         loop {
             let grant = Grant::up_to(Risk::Read);
-            let attempt = self.attempt(command, robot, link, &grant);
-            let attempted = match rounds.deadline().filter(|_| command.is_endless()) {
-                Some(deadline) => timeout_at(deadline, attempt).await,
-                None => Ok(attempt.await),
-            };
-            let Ok(outcome) = attempted else { return rounds.end().map_err(stopped) };
-            let silence = match outcome {
+            let outcome = self.attempt(command, robot, link, (&grant, rounds.deadline())).await;
+            if failure_of(&outcome).is_some_and(|failure| rounds.is_cut(&failure)) {
+                break;
+            }
+            match &outcome {
                 Ok(report) => {
                     silences.end();
                     let position = among.unwrap_or_else(|| self.round(rounds.is_first(), command.is_endless()));
                     if !self.repeat.is_quiet {
-                        self.print(robot, command.id(), &*report, position)?;
+                        self.print(robot, command.id(), &**report, position)?;
                     }
-                    let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
-                    let failure = report.failure().filter(|failure| {
-                        self.repeat.is_quiet && failure.kind == Kind::NoAnswer && !self.repeat.allows(failure)
-                    });
-                    if let Some(failure) = failure.as_ref().filter(|_| !is_met && rounds.is_first()) {
-                        return Err(stopped(failure.clone()));
+                    if rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)? {
+                        return if self.repeat.is_quiet { self.print_last(command, robot, &**report) } else { Ok(()) };
                     }
-                    if self.repeat.is_quiet && (is_met || (failure.is_none() && rounds.is_last())) {
-                        self.print(robot, command.id(), &*report, ReportPosition::Alone)?;
-                    }
-                    if is_met {
-                        return Ok(());
-                    }
-                    failure
                 }
                 // A watch continues while a robot does not answer; any other failure ends it.
                 Err(failure)
-                    if failure.kind == Kind::NoAnswer && !self.repeat.ends_with(&failure, rounds.is_first()) =>
+                    if failure.kind == Kind::NoAnswer && !self.repeat.ends_with(failure, rounds.is_first()) =>
                 {
                     if self.repeat.is_quiet {
                         // It is reported at the end if the robot is still silent.
                     } else if self.is_for_people() {
-                        silences.report(&failure);
+                        silences.report(failure);
                     } else {
                         self.emit(with_time(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
                     }
-                    Some(failure)
                 }
-                Err(failure) => return Err(self.interrupted(robot, command, failure)?),
-            };
-            if !rounds.next().await.map_err(stopped)? {
-                return match silence {
-                    Some(failure) if self.repeat.is_quiet => Err(stopped(failure)),
-                    Some(failure) => Err(RunError { failure, envelope: None, is_reported: true }),
-                    None => rounds.end().map_err(stopped),
-                };
+                Err(failure) => return Err(self.interrupted(robot, command, failure.clone())?),
+            }
+            let ends = self.silence(&outcome).is_some_and(|silence| self.repeat.ends_with(&silence, rounds.is_first()));
+            last = Some(outcome);
+            if ends || !rounds.next().await.map_err(stopped)? {
+                break;
             }
         }
+        let Some(last) = last else { return rounds.end().map_err(stopped) };
+        match (self.silence(&last), last) {
+            (Some(failure), Err(_)) if !self.repeat.is_quiet => {
+                Err(RunError { failure, envelope: None, is_reported: true })
+            }
+            (Some(failure), _) => Err(stopped(failure)),
+            (None, last) => {
+                if let Ok(report) = last
+                    && self.repeat.is_quiet
+                {
+                    self.print_last(command, robot, &*report)?;
+                }
+                rounds.end().map_err(stopped)
+            }
+        }
+    }
+
+    /// Ends a watch whose only look ended before there was a connection.
+    fn end_unconnected(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        report: &dyn AnyReport,
+        rounds: &Rounds<'_>,
+    ) -> Result<(), RunError> {
+        let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
+        if is_met || !self.repeat.is_quiet {
+            self.print_last(command, robot, report)?;
+        }
+        if is_met {
+            return Ok(());
+        }
+        let stopped = |failure| Err(RunError::for_robot(robot, command, failure));
+        report.failure().map_or_else(|| rounds.end().or_else(stopped), stopped)
+    }
+
+    /// Missing answer of a robot, if it decides how a watch ends. The report of a plain watch shows it as a state.
+    fn silence(&self, outcome: &Outcome) -> Option<Failure> {
+        let counts = outcome.is_err() || self.repeat.until.is_some();
+        let failure = failure_of(outcome).filter(|failure| counts && failure.kind == Kind::NoAnswer)?;
+        (!self.repeat.allows(&failure)).then_some(failure)
+    }
+
+    /// Prints the last report of a wait.
+    fn print_last(&self, command: &dyn AnyCommand, robot: &Robot, report: &dyn AnyReport) -> Result<(), RunError> {
+        Ok(self.print(robot, command.id(), report, ReportPosition::Alone)?)
     }
 
     /// Failure that ends a watch. In a stream for programs it is written to stdout in order.
@@ -369,8 +405,8 @@ impl Run {
         if self.gate.dry_run {
             return Ok(Box::new(DryRun::from(self.plan(command, robot, &self.screen).await?)));
         }
-        let (mut link, grant) = self.connect(command, robot).await?;
-        let outcome = self.attempt(command, robot, &mut *link, &grant).await;
+        let (mut link, grant) = self.connect(command, robot, Deadline::NONE).await?;
+        let outcome = self.attempt(command, robot, &mut *link, (&grant, Deadline::NONE)).await;
         // The result of the command matters more than that of its trace.
         let closed = link.close(&self.screen).await;
         let report = outcome?;
@@ -378,7 +414,11 @@ impl Run {
         Ok(report)
     }
 
-    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
+    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot, end: Deadline) -> Result<Granted, Failure> {
+        end.bound(robot, self.connect_unbounded(command, robot)).await
+    }
+
+    async fn connect_unbounded(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
         let access = self.access(command, robot);
         let grant = access.grant.clone();
         let access = match &self.line {
@@ -429,8 +469,20 @@ impl Run {
         self.gate.on_interrupt == OnInterrupt::Leave && !command.jogs()
     }
 
-    /// One run, with a guardian if the robot may move.
+    /// One run until the end of `--for`. If it ends first, the robot counts as one that does not answer.
     async fn attempt(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        link: &mut dyn Connection,
+        (grant, end): (&Grant, Deadline),
+    ) -> Outcome {
+        let attempt = async { Ok(self.attempt_guarded(command, robot, link, grant).await) };
+        end.bound(robot, attempt).await.unwrap_or_else(|failure| command.without_answer(robot, failure))
+    }
+
+    /// One run, with a guardian if the robot may move.
+    async fn attempt_guarded(
         &self,
         command: &dyn AnyCommand,
         robot: &Robot,
@@ -520,6 +572,11 @@ impl Run {
     pub fn begin_trace(&self) -> Result<(), Failure> {
         begin_trace(self.trace.as_deref().filter(|_| !self.gate.dry_run && self.line.is_none()))
     }
+}
+
+/// Failure of a robot, or of its report.
+fn failure_of(outcome: &Outcome) -> Option<Failure> {
+    outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |report| report.failure())
 }
 
 /// Truncates the `--trace` file; `-` is not a file.

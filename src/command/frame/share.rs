@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::time::Duration;
 
 use super::attach::is_held;
-use super::background::start;
+use super::background::{DETACHED, start};
 use super::connection::Driver;
 use crate::failure::{Failure, Kind};
 use crate::settings::{Origin, Robot, Sessions, duration};
@@ -47,7 +47,7 @@ fn session_arguments(robot: &Robot) -> Vec<OsString> {
     }
     let (idle, family, url) = (duration::display(IDLE_TIMEOUT), robot.family.name(), robot.target.value.url());
     let (flag, name) = if robot.target.origin == Origin::Robot { ("-r", &robot.name[..]) } else { ("-t", url) };
-    let opens = [flag, name, "session", "open", "--detached", "--idle", &idle, "--family", family];
+    let opens = [flag, name, "session", "open", DETACHED, "--idle", &idle, "--family", family];
     words.extend(opens.map(OsString::from));
     words
 }

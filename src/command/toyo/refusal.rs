@@ -138,14 +138,17 @@ fn kind_of(start: Command) -> Option<(ProgramKind, &'static str)> {
     Some(match start {
         Command::Spst => (
             ProgramKind::Sequential,
-            "use `toyo mode sequential`; `toyo param set M10 I` ends easy and external point mode",
+            "use `armctl toyo mode sequential`; `armctl toyo param set M10 I` ends easy and external point mode",
         ),
         Command::Ppst => (
             ProgramKind::Palletizing,
-            "use `toyo mode palletizing`; `toyo param set M10 I` ends easy and external point mode",
+            "use `armctl toyo mode palletizing`; `armctl toyo param set M10 I` ends easy and external point mode",
         ),
-        Command::Sesy => (ProgramKind::Easy, "use `toyo param set M10 E` to select easy mode"),
-        Command::Extp => (ProgramKind::ExternalPoint, "use `toyo param set M10 P` to select external point mode"),
+        Command::Sesy => (ProgramKind::Easy, "use `armctl toyo param set M10 E` to select easy mode"),
+        Command::Extp => (
+            ProgramKind::ExternalPoint,
+            "use `armctl toyo param set M10 P` to select external point mode, then repeat the command",
+        ),
         _ => return None,
     })
 }

@@ -125,7 +125,7 @@ impl Command for Palletizing {
 
 /// Start the easy program, or continue it after a stop (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Parameter M10 selects easy mode: `toyo param set M10 E`.")]
+#[command(after_help = "Parameter M10 selects easy mode: `armctl toyo param set M10 E`.")]
 pub struct Easy {
     /// Program to select first; default: the current program
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=8))]
@@ -162,7 +162,10 @@ impl Command for Easy {
 
 /// Move to a row of the coordinate table, and wait for the end of the move (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Parameter M10 selects external point mode: `toyo param set M10 P`.")]
+#[command(
+    after_help = "Parameter M10 selects external point mode: `armctl toyo param set M10 P`. The protocol has no \
+    speed of a single move: the override, which is stored, scales all speeds: `armctl toyo override set 10`."
+)]
 pub struct Point {
     /// Row of the coordinate table, 1 to 999, or a name
     #[arg(value_name = "N", value_parser = parse_point, add = complete::POINT)]

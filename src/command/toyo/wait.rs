@@ -187,7 +187,7 @@ pub(super) async fn explain_present_error(link: &mut Link, fail: &impl Fn(&str) 
         Ok(Status { error: code, .. }) => {
             let error = errors::explain(code);
             fail(&format!("an error occurred ({})", error.in_a_line()))
-                .hint(refusal::cure(error.remedy))
+                .hint(format!("{}; see `armctl explain toyo {code:02X}`", refusal::cure(error.remedy)))
                 .code(format!("{code:02X}"))
         }
         Err(failure) => fail(&format!("an error occurred, but its code could not be read: {}", failure.message))

@@ -6,9 +6,11 @@ use super::alarm;
 use super::link::Link;
 use super::switch_commands::usage;
 use crate::command::frame::dry_run::Reason;
+use crate::command::robot::alarm::hint_after;
 use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
 use crate::controller::yerc::query::{Query as _, ReadAlarm};
 use crate::failure::{Failure, Kind};
+use crate::settings::target::Family;
 
 /// Interval of status reads. A controller answers in 5 to 20 ms, and a shorter interval has no benefit.
 pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(50);
@@ -67,9 +69,7 @@ impl StandstillCause {
         };
         let place = place.map(|place| format!("; position: {place}")).unwrap_or_default();
         let hint = match self {
-            Self::Alarm => {
-                "`yerc alarm list` shows the alarm; remove the cause, then use `yerc alarm reset`".to_owned()
-            }
+            Self::Alarm => hint_after(Family::Yerc, code.as_deref()),
             Self::Error => "read the pendant; `yerc alarm cancel` clears the error".to_owned(),
             Self::Hold(by) => {
                 let how = HOLDS.iter().find(|row| row.1 == by).map_or("release it", |row| row.2);

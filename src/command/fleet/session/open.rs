@@ -14,7 +14,7 @@ use super::host::{OpenResult, SessionHost};
 use crate::command::ValueKind;
 use crate::command::families;
 use crate::command::frame::attach::{folder_failure, format_since, identify, session_key};
-use crate::command::frame::background::{self, Opened, Start};
+use crate::command::frame::background::{self, DETACHED, Opened, Start};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::repeat_limiter::{Line, RepeatLimiter};
 use crate::command::frame::run::{Run, RunError};
@@ -83,7 +83,7 @@ impl Open {
         catch_interrupts();
         if self.background {
             let words = std::env::args_os().skip(1);
-            let words = words.map(|word| if word == "--background" { "--detached".into() } else { word });
+            let words = words.map(|word| if word == "--background" { DETACHED.into() } else { word });
             return run.local("session.open", &background::start(robot, words).await?);
         }
         if !self.detached {

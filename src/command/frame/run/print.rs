@@ -32,8 +32,8 @@ pub enum ReportPosition<'a> {
     Line,
     /// A line of a robot in a watch of several robots.
     LineOf(&'a Robot),
-    /// One of several robots.
-    Among { robot: &'a Robot, first: bool },
+    /// One of several robots, with its label.
+    Among { label: &'a str, first: bool },
 }
 
 impl Run {
@@ -85,8 +85,9 @@ impl Run {
         for (index, (robot, outcome)) in robots.iter().zip(outcomes).enumerate() {
             let reason = match outcome {
                 Ok(report) => {
-                    views.push((robot, report.view()));
-                    report.failure()
+                    let failure = report.failure();
+                    views.push(RobotView { robot, view: report.view(), has_failed: failure.is_some(), alike: 0 });
+                    failure
                 }
                 Err(failure) => Some(failure.clone()),
             };
@@ -101,7 +102,7 @@ impl Run {
                 self.show_csv(&sheet.with_outcome(), &rows, place)?;
             }
         } else {
-            self.show_many(&views, place)?;
+            self.show_many(&fold_failed(views), place)?;
         }
         let summary = command.summary(&envelopes).filter(|_| self.has_trailer());
         if let Some(summary) = summary.and_then(|summary| said.summary(summary).map(str::to_owned)) {
@@ -121,12 +122,14 @@ impl Run {
 
     /// Merges tables with the same columns into one, with the robot in front; other views are printed one below the
     /// other.
-    fn show_many(&self, views: &[(&Robot, View)], place: ReportPosition<'_>) -> Result<(), Failure> {
-        let tables = views.iter().map(|(robot, view)| Some((robot.name.as_str(), view.as_table()?)));
+    fn show_many(&self, views: &[RobotView<'_>], place: ReportPosition<'_>) -> Result<(), Failure> {
+        let names: Vec<String> = views.iter().map(|of| of.named(&of.robot.name)).collect();
+        let tables = names.iter().zip(views).map(|(name, of)| Some((name.as_str(), of.view.as_table()?)));
         match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
             Some(table) => self.show(&View::table(table), place),
-            None => views.iter().enumerate().try_for_each(|(index, (robot, view))| {
-                self.show(view, ReportPosition::Among { robot, first: index == 0 })
+            None => views.iter().enumerate().try_for_each(|(index, of)| {
+                let label = of.named(&of.robot.label());
+                self.show(&of.view, ReportPosition::Among { label: &label, first: index == 0 })
             }),
         }
     }
@@ -253,8 +256,8 @@ impl Run {
             }
             ReportPosition::Next if self.redraw.is_on() => text,
             ReportPosition::Next => format!("\n{text}"),
-            ReportPosition::Among { robot, first } => {
-                format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
+            ReportPosition::Among { label, first } => {
+                format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(label))
             }
         };
         screen.data(&self.redraw.with_erase(text))
@@ -266,10 +269,54 @@ fn sheet_of(report: &dyn AnyReport) -> Sheet {
     Sheet::from_schema(&report.schema().to_value(), report.rows())
 }
 
+/// Maximum number of robots that failed alike and are listed individually.
+const MIN_GROUP: usize = 5;
+
+/// View of a robot, among others.
+struct RobotView<'r> {
+    robot: &'r Robot,
+    view: View,
+    has_failed: bool,
+    /// Number of other robots with the same view.
+    alike: usize,
+}
+
+impl RobotView<'_> {
+    /// Name, with the number of robots that failed alike.
+    fn named(&self, name: &str) -> String {
+        if self.alike == 0 { name.to_owned() } else { format!("{name} and {} more", self.alike) }
+    }
+}
+
+/// Merges views of many robots that failed alike. A robot that works always has its own.
+fn fold_failed(views: Vec<RobotView<'_>>) -> Vec<RobotView<'_>> {
+    let mut groups: Vec<(View, usize)> = Vec::new();
+    let group_of = |groups: &[(View, usize)], view: &View| groups.iter().position(|(other, _)| other == view);
+    for RobotView { view, .. } in views.iter().filter(|of| of.has_failed) {
+        match group_of(&groups, view) {
+            Some(at) => groups[at].1 += 1,
+            None => groups.push((view.clone(), 1)),
+        }
+    }
+    groups.retain(|(_, robots)| *robots > MIN_GROUP);
+    let mut folded = Vec::new();
+    for of in views {
+        match group_of(&groups, &of.view).filter(|_| of.has_failed) {
+            Some(at) => {
+                let alike = std::mem::take(&mut groups[at].1);
+                // Only the first of the group has not been counted yet.
+                if alike > 0 {
+                    folded.push(RobotView { alike: alike - 1, ..of });
+                }
+            }
+            None => folded.push(of),
+        }
+    }
+    folded
+}
+
 /// Failures of robots, with common ones merged.
 fn common_failures(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
-    /// Maximum number of robots that are listed individually.
-    const MIN_GROUP: usize = 5;
     /// Maximum number of robot names in a merged failure.
     const MAX_NAMES: usize = 3;
 
@@ -366,17 +413,37 @@ mod tests {
     use crate::settings::Sources;
     use crate::settings::inventory::Inventory;
 
+    fn robots(count: u16) -> Vec<Robot> {
+        let one = |at: u16| {
+            format!("[[robot]]\nname = \"r{at}\"\nfamily = \"yerc\"\ntarget = \"udp://127.0.0.1:{}\"\n", 2000 + at)
+        };
+        let inventory = Inventory::parse(&(0..count).map(one).collect::<String>(), "robots.toml").unwrap();
+        let mut sources = Sources { inventory, ..Sources::default() };
+        sources.selection.all = true;
+        sources.robots(None).unwrap()
+    }
+
+    #[test]
+    fn merges_rows_of_robots_that_failed_alike() {
+        let names = |failed: &dyn Fn(usize) -> bool, count: u16| -> Vec<String> {
+            let robots = robots(count);
+            let view = |(at, robot)| RobotView {
+                robot,
+                view: View::text(if failed(at) { "no answer" } else { "stopped" }.to_owned()),
+                has_failed: failed(at),
+                alike: 0,
+            };
+            let folded = fold_failed(robots.iter().enumerate().map(view).collect());
+            folded.iter().map(|of| of.named(&of.robot.name)).collect()
+        };
+        assert_eq!(names(&|_| true, 2500), ["r0 and 2499 more"]);
+        assert_eq!(names(&|at| at != 1, 8), ["r0 and 6 more", "r1"]);
+        assert_eq!(names(&|_| true, 5).len(), 5, "few are listed");
+        assert_eq!(names(&|_| false, 8).len(), 8, "robots that work are listed");
+    }
+
     #[test]
     fn merges_common_failures() {
-        let robots = |count: u16| -> Vec<Robot> {
-            let one = |at: u16| {
-                format!("[[robot]]\nname = \"r{at}\"\nfamily = \"yerc\"\ntarget = \"udp://127.0.0.1:{}\"\n", 2000 + at)
-            };
-            let inventory = Inventory::parse(&(0..count).map(one).collect::<String>(), "robots.toml").unwrap();
-            let mut sources = Sources { inventory, ..Sources::default() };
-            sources.selection.all = true;
-            sources.robots(None).unwrap()
-        };
         let failures = |robots: &[Robot]| -> Vec<String> {
             let failure = |robot: &Robot| {
                 let message = format!("{}: nothing listens on UDP port {}", robot.label(), 2000 + robots.len());

@@ -3,13 +3,17 @@
 use std::time::Duration;
 
 use serde::Serialize;
-use tokio::time::Instant;
+use tokio::time::{Instant, timeout_at};
 
 use super::print::as_value;
 use crate::command::frame::condition::Condition;
 use crate::command::frame::interrupt::interruptible;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
+use crate::settings::{Robot, duration};
+
+/// Time that every look has, even if `--for` ends earlier: a robot that answers at once is not missed.
+const SHORTEST_LOOK: Duration = Duration::from_millis(250);
 
 /// `--watch`, `--count`, `--until`, `--for`.
 #[derive(Debug, Default)]
@@ -46,6 +50,31 @@ impl Repeat {
     }
 }
 
+/// End of `--for`. Everything that waits for a robot takes one, so that no wait can outlast it.
+#[derive(Debug, Clone, Copy)]
+pub struct Deadline(Option<(Instant, Duration)>);
+
+impl Deadline {
+    /// For a command that runs once.
+    pub const NONE: Self = Self(None);
+
+    /// Result of `work` with a robot, or a missing answer when the time is over.
+    pub async fn bound<T>(self, robot: &Robot, work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
+        let Some((end, within)) = self.0 else { return work.await };
+        let end = end.max(Instant::now() + SHORTEST_LOOK);
+        timeout_at(end, work).await.unwrap_or_else(|_| {
+            let (label, typed, within) = (robot.label(), robot.as_typed(), duration::display(within));
+            Err(Failure::new(Kind::NoAnswer, format!("{label}: no answer within {within} (--for)"))
+                .hint(format!("use a longer --for, or find the reason with `armctl robots check {typed}`")))
+        })
+    }
+
+    /// Whether the time is over.
+    fn is_over(self) -> bool {
+        self.0.is_some_and(|(end, _)| Instant::now() >= end)
+    }
+}
+
 /// Rounds of a watch, at fixed intervals without drift.
 #[derive(Debug)]
 pub struct Rounds<'a> {
@@ -61,9 +90,15 @@ impl<'a> Rounds<'a> {
         Self { repeat, every: repeat.every.unwrap_or(every), began: Instant::now(), completed: 0 }
     }
 
-    /// Deadline of `--for`.
-    pub fn deadline(&self) -> Option<Instant> {
-        self.repeat.within.map(|within| self.began + within)
+    /// End of `--for`.
+    pub fn deadline(&self) -> Deadline {
+        Deadline(self.repeat.within.map(|within| (self.began + within, within)))
+    }
+
+    /// Whether `--for` ended during a round in which a robot did not answer. Only the first round counts then: it is
+    /// not known whether a robot that answered before would have answered.
+    pub fn is_cut(&self, failure: &Failure) -> bool {
+        !self.is_first() && failure.kind == Kind::NoAnswer && self.deadline().is_over()
     }
 
     pub fn is_first(&self) -> bool {
@@ -113,5 +148,50 @@ impl<'a> Rounds<'a> {
         let Some(until) = &self.repeat.until else { return Ok(()) };
         Err(Failure::new(Kind::ConditionNotMet, format!("the condition '{until}' was not met"))
             .hint("--for sets how long to wait for it"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::target::Family;
+    use crate::settings::{Sources, target};
+
+    fn robot() -> Robot {
+        let simulator = "sim:".parse::<target::Target>().unwrap();
+        Sources::default().at(&simulator, Family::Yerc).unwrap()
+    }
+
+    fn repeat(within: Duration) -> Repeat {
+        Repeat { within: Some(within), ..Repeat::default() }
+    }
+
+    async fn answer_after(time: Duration) -> Result<(), Failure> {
+        tokio::time::sleep(time).await;
+        Ok(())
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn the_deadline_bounds_every_look() {
+        let (robot, within) = (robot(), Duration::from_secs(1));
+        let repeat = repeat(within);
+        let mut rounds = Rounds::new(&repeat, Duration::from_millis(200));
+        let silent = || std::future::pending::<Result<(), Failure>>();
+        let failure = rounds.deadline().bound(&robot, silent()).await.unwrap_err();
+        assert_eq!((failure.kind, rounds.began.elapsed()), (Kind::NoAnswer, within), "{failure}");
+        assert!(!rounds.is_cut(&failure), "the robot never answered");
+        // A look that begins at the end is short, and says nothing about a robot that answered before.
+        rounds.completed = 1;
+        rounds.deadline().bound(&robot, silent()).await.unwrap_err();
+        assert_eq!(rounds.began.elapsed(), within + SHORTEST_LOOK);
+        assert!(rounds.is_cut(&failure));
+        let answer = answer_after(SHORTEST_LOOK / 2);
+        assert_eq!(rounds.deadline().bound(&robot, answer).await, Ok(()));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn without_a_deadline_nothing_is_cut() {
+        let hour = Duration::from_secs(3600);
+        assert_eq!(Deadline::NONE.bound(&robot(), answer_after(hour)).await, Ok(()));
     }
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::failure_log::RoundFailures;
 use super::print::{ReportPosition, envelopes, with_robot_name, with_time};
 use super::rounds::Rounds;
-use super::{DEFAULT_INTERVAL, Granted, Run, RunError, run_parallel};
+use super::{DEFAULT_INTERVAL, Granted, Run, RunError, failure_of, run_parallel};
 use crate::command::frame::{AnyCommand, Outcome};
 use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
@@ -28,8 +28,10 @@ impl Run {
             self.verdict(&outcomes)?;
             return Ok(self.check(&printed)?);
         }
-        let mut links = run_parallel(robots.iter().map(|robot| self.connect(command, robot))).await;
-        let verdict = self.run_connected(command, robots, &mut links).await;
+        let rounds = Rounds::new(&self.repeat, DEFAULT_INTERVAL);
+        let end = rounds.deadline();
+        let mut links = run_parallel(robots.iter().map(|robot| self.connect(command, robot, end))).await;
+        let verdict = self.run_connected(command, robots, (&mut links, rounds)).await;
         let mut closed = Ok(());
         for (link, _) in links.into_iter().flatten() {
             closed = closed.and(link.close(&self.screen).await);
@@ -42,9 +44,10 @@ impl Run {
         &self,
         command: &dyn AnyCommand,
         robots: &[Robot],
-        links: &mut [Result<Granted, Failure>],
+        (links, mut rounds): (&mut [Result<Granted, Failure>], Rounds<'_>),
     ) -> Result<(), RunError> {
-        let mut rounds = Rounds::new(&self.repeat, DEFAULT_INTERVAL);
+        let end = rounds.deadline();
+        let mut last: Option<Vec<Outcome>> = None;
         let mut reported = RoundFailures::nothing(self, robots);
         let mut reconnect_at = Instant::now() + RECONNECT_EVERY;
         loop {
@@ -55,23 +58,29 @@ impl Run {
             let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
                 // A robot that did not answer may be reachable now.
                 if matches!(link, Err(failure) if failure.kind == Kind::NoAnswer && reconnects) {
-                    *link = self.connect(command, robot).await;
+                    *link = self.connect(command, robot, end).await;
                 }
                 match link {
-                    Ok((link, grant)) => self.attempt(command, robot, &mut **link, grant).await,
-                    Err(failure) => Err(failure.clone()),
+                    Ok((link, grant)) => self.attempt(command, robot, &mut **link, (grant, end)).await,
+                    Err(failure) => command.without_answer(robot, failure.clone()),
                 }
             });
-            let outcomes = run_parallel(attempts).await;
+            let mut outcomes = run_parallel(attempts).await;
+            let is_cut = failures(&outcomes).any(|failure| rounds.is_cut(&failure));
+            if is_cut {
+                outcomes = last.take().unwrap_or(outcomes);
+            }
             let place = self.round(rounds.is_first(), false);
-            let is_met = if self.repeat.is_quiet {
+            let is_met = if is_cut {
+                false
+            } else if self.repeat.is_quiet {
                 rounds.is_met(&envelopes(robots, command.id(), &outcomes)?, &self.screen)?
             } else {
                 let envelopes = self.print_many(command, robots, &outcomes, (place, &mut reported))?;
                 rounds.is_met(&envelopes, &self.screen)?
             };
             let ends = |failure: Failure| self.repeat.ends_with(&failure, rounds.is_first());
-            let goes_on = !is_met && !failures(&outcomes).any(ends) && rounds.next().await?;
+            let goes_on = !is_met && !is_cut && !failures(&outcomes).any(ends) && rounds.next().await?;
             if self.repeat.is_quiet && !goes_on {
                 self.print_many(command, robots, &outcomes, (ReportPosition::First, &mut reported))?;
             }
@@ -82,6 +91,7 @@ impl Run {
                 self.verdict(&outcomes)?;
                 return rounds.end().map_err(RunError::from);
             }
+            last = Some(outcomes);
         }
     }
 
@@ -126,7 +136,5 @@ impl Run {
 
 /// Failures of robots and of their reports.
 fn failures(outcomes: &[Outcome]) -> impl Iterator<Item = Failure> {
-    outcomes
-        .iter()
-        .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |report| report.failure()))
+    outcomes.iter().filter_map(failure_of)
 }

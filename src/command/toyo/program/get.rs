@@ -44,6 +44,7 @@ use crate::output::view::{Cell, View};
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
 pub struct Get {
     /// A new file; default: stdout
+    #[arg(value_parser = parse_file)]
     file: Option<PathBuf>,
     /// Task, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
@@ -69,6 +70,16 @@ pub struct Get {
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
+}
+
+/// Parses the name of a file. A number is meant as a step.
+fn parse_file(text: &str) -> Result<PathBuf, String> {
+    let is_step = text.starts_with(|first: char| first.is_ascii_digit())
+        && text.chars().all(|one| one.is_ascii_digit() || ",.-".contains(one));
+    if is_step {
+        return Err(format!("steps are selected with --from and --to; a file of this name is ./{text}"));
+    }
+    Ok(text.into())
 }
 
 impl Command for Get {

@@ -11,7 +11,7 @@ use super::WhichOrAll;
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::wait_arguments::ProgramEnd;
-use crate::command::robot::alarm::AlarmEntry;
+use crate::command::robot::alarm::{AlarmEntry, hint_after};
 use crate::command::robot::program::{Program, ProgramState};
 use crate::command::yrcx::alarm;
 use crate::command::yrcx::info::Part;
@@ -23,6 +23,7 @@ use crate::controller::yrcx::table;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 use crate::settings::duration;
+use crate::settings::target::Family;
 
 /// Runs a program, or all registered programs. The controller answers when it has accepted the start.
 #[derive(Debug, Args)]
@@ -152,14 +153,12 @@ async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>)
     let latest = alarm::latest(link).await?;
     let is_new = latest.as_ref().is_some_and(|latest| before != Some(latest));
     let (why, hint) = if output::EMERGENCY_STOP.is_on(&image) {
-        ("the emergency stop was triggered".to_owned(), "release it, then `yrcx recover`")
+        ("the emergency stop was triggered".to_owned(), "release it, then `yrcx recover`".to_owned())
     } else if output::ALARM.is_on(&image) || is_new {
         let alarm = latest.as_ref().and_then(|latest| Some((latest.alarm.code.as_ref()?, latest.alarm.text.as_ref()?)));
         let why = alarm.map_or_else(|| "an alarm".to_owned(), |(code, text)| format!("alarm {code} ({text})"));
-        (
-            format!("{why} occurred"),
-            "`yrcx alarm history` shows the alarm; remove the cause, then use `yrcx alarm reset`",
-        )
+        let code = latest.as_ref().and_then(|latest| latest.alarm.code.as_deref());
+        (format!("{why} occurred"), hint_after(Family::Yrcx, code))
     } else {
         return Ok(());
     };
