@@ -312,9 +312,6 @@ fn plain(value: &Value) -> String {
 
 fn text(value: &Value) -> String {
     let is_scalar = |value: &Value| !value.is_object() && !value.is_array();
-    let parts = |values: &[Value]| {
-        values.iter().map(|entry| entry.get(VALUE).filter(|value| is_scalar(value)).cloned()).collect()
-    };
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
