@@ -15,11 +15,12 @@ use crate::command::face::layers::Layers;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::Start;
-use crate::failure::Failure;
+use crate::failure::{Failure, plain};
+use crate::files;
 use crate::settings::Robot;
 use crate::settings::target::{Address, Bus, Place, Sim, Target};
 use crate::transport::image::tap::Tap;
-use crate::transport::image::{ImageLink, LinkError};
+use crate::transport::image::{Cause, ImageLink, LinkError};
 
 /// A fieldbus: connection, diagnosis and simulation.
 #[derive(Debug)]
@@ -82,6 +83,30 @@ pub struct At<'a> {
     pub tap: Tap,
 }
 
+impl<'a> At<'a> {
+    /// Options of the URL.
+    pub fn options<O: 'static>(&self) -> Result<&'a O, LinkError> {
+        options(self.bus)
+    }
+}
+
+/// Options of the URL of a fieldbus.
+pub fn options<O: 'static>(bus: &Bus) -> Result<&O, LinkError> {
+    bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{bus:?} is a URL of another fieldbus"))))
+}
+
+/// Reads the file with which a manufacturer describes a device.
+pub fn device_file<T, E: fmt::Display>(
+    path: &Path,
+    most: u64,
+    advice: &'static str,
+    parse: impl FnOnce(&[u8]) -> Result<T, E>,
+) -> Result<T, LinkError> {
+    let wrong = |why: String| Cause::new(format!("{}: {why}", path.display()));
+    let bytes = files::read(path, most).map_err(|error| LinkError::Local(wrong(plain(&error)).advice(advice)))?;
+    parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
+}
+
 /// Purpose of a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
@@ -99,6 +124,17 @@ pub trait Board: fmt::Debug + Any {
     /// Closes the connection.
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()>;
 }
+
+/// The explicit messaging client of one fieldbus.
+pub trait BusBoard: Board {
+    /// Name of the fieldbus.
+    const BUS: &'static str;
+    /// The device, in the reason why `--unit` is rejected.
+    const DEVICE: &'static str;
+}
+
+/// Vendor id of the manufacturer of YRCX at the ODVA: EtherNet/IP and DeviceNet.
+pub const MAKER: u16 = 636;
 
 /// Converts a client to a trait object.
 pub fn boxed(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, LinkError> {

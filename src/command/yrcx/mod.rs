@@ -44,6 +44,7 @@ mod info;
 mod io;
 pub mod link;
 mod link_error;
+mod messages;
 mod motion;
 mod numbers;
 mod orders;

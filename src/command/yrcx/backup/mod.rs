@@ -6,9 +6,10 @@ mod content;
 mod parts;
 mod restore;
 mod save;
+mod settings;
 #[cfg(test)]
 mod tests;
 
-pub use parts::{COMMENTS, HANDS, PALLETS, POINTS, Records, SHIFTS, VARIABLES};
 pub use restore::restore;
 pub use save::{Backup, back_up, points};
+pub use settings::{SETTINGS, Setting};

@@ -8,7 +8,6 @@ use crate::command::frame::store::{
 };
 use crate::command::frame::teach::parse_printed_position;
 use crate::command::robot::position::Position;
-use crate::command::yrcx::backup::{POINTS, Records};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::position::{Unit, mm, position, unit_of};
@@ -56,8 +55,17 @@ impl Kind for Points {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.point");
-    const RECORDS: &'static Records = &POINTS;
-    const HEADINGS: &'static [&'static str] = &["unit", "axis 1", "axis 2", "axis 3", "axis 4", "hand"];
+    const READ: (table::Command, Key) = (table::Command::PointGet, Key::Point);
+    const WRITE: table::Command = table::Command::PointSet;
+    const NUMBERS: &'static [&'static str] = &["0..29999"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("unit", Key::Unit, "unit"),
+        ("axis_1", Key::Axis1, "axis 1"),
+        ("axis_2", Key::Axis2, "axis 2"),
+        ("axis_3", Key::Axis3, "axis 3"),
+        ("axis_4", Key::Axis4, "axis 4"),
+        ("hand_system", Key::HandSystem, "hand"),
+    ];
     const IS_SMALL: bool = false;
 
     fn line(values: &Values) -> Option<String> {

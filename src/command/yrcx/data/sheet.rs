@@ -9,7 +9,6 @@ use crate::command::frame::store::{
 };
 use crate::command::robot::item::Plain;
 use crate::command::robot::position::Position;
-use crate::command::yrcx::backup::{COMMENTS, POINTS};
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::yrcx::stores::{Draft as Texts, Kind as _, Numbered, Row};
 use crate::controller::Risk;
@@ -64,10 +63,10 @@ impl PointSheet {
         [has_points, has_comments]: [bool; 2],
     ) -> Result<Answers<Content>, Failure> {
         if link.is_dry() {
-            let parts = [(&POINTS, has_points), (&COMMENTS, has_comments)];
-            let parts = parts.into_iter().filter(|(_, is_read)| *is_read);
-            let orders = parts.flat_map(|(records, _)| numbers.iter().map(|number| records.read(*number)));
-            link.plan_all(&orders.collect::<Result<Vec<_>, Failure>>()?)?;
+            let points = numbers.iter().filter(|_| has_points).map(|number| Numbered::<Points>::read_order(*number));
+            let comments =
+                numbers.iter().filter(|_| has_comments).map(|number| Numbered::<Comments>::read_order(*number));
+            link.plan_all(&points.chain(comments).collect::<Result<Vec<_>, Failure>>()?)?;
         }
         let mut asked = numbers.len();
         let points: Vec<Result<Option<Row>, Failure>> = if has_points {
@@ -127,7 +126,7 @@ impl Store for PointSheet {
     }
 
     fn texts(&self, Content { point, comment }: &Content) -> Vec<String> {
-        let blank = || vec![String::new(); Points::HEADINGS.len()];
+        let blank = || vec![String::new(); Points::FIELDS.len()];
         let point = point.as_ref().map_or_else(blank, |row| self.points.texts(row));
         let comment = comment.as_ref().map_or_else(|| vec![String::new()], |row| self.comments.texts(row));
         [point, comment].concat()
@@ -161,7 +160,7 @@ impl Writable for PointSheet {
     const RISK: Risk = Risk::Destroy;
 
     fn draft(&self, number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
-        let (point, comment) = texts.split_at(Points::HEADINGS.len());
+        let (point, comment) = texts.split_at(Points::FIELDS.len());
         if point[0].is_none() && point[1..5].iter().any(Option::is_some) {
             return Err("column unit is missing: the axes are in mm or in pulses".to_owned());
         }
@@ -242,7 +241,7 @@ mod tests {
     fn held(texts: [&str; 6]) -> Content {
         let texts: Vec<Option<String>> = texts.into_iter().map(|text| Some(text.to_owned())).collect();
         let point = Numbered::<Points>::default().complete_draft(7, &texts, None).unwrap();
-        Content { point: Some(point), comment: Some(Row::new::<Comments>(7, Values::default())) }
+        Content { point: Some(point), comment: Some(Row::new::<Comments>(Values::default())) }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::check;
-use super::connect::{adapter, options, request_timeout};
+use super::connect::{adapter, request_timeout};
 use crate::command::face::layers::Layers;
 use crate::command::yrcx::fieldbus::{self, At};
 use crate::command::yrcx::link_error::not_open;
@@ -16,7 +16,7 @@ use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
 use crate::output::view::Cell;
 use crate::settings::target::bus::Scheme;
-use crate::settings::target::devicenet::DeviceNet;
+use crate::settings::target::devicenet::{BUS, DeviceNet};
 use crate::transport::devicenet::error::Error;
 use crate::transport::devicenet::link::{produced, read};
 use crate::transport::devicenet::network::{Connection, Network, Tap};
@@ -25,8 +25,6 @@ use crate::transport::devicenet::settings::{Purpose, Settings};
 use crate::transport::devicenet::wire::{Request, class, connection};
 use crate::transport::image::LinkError;
 
-/// Vendor id of the manufacturer of YRCX.
-pub const MAKER: u16 = 636;
 /// Time to listen for the polls of another master.
 const LISTEN: Duration = Duration::from_secs(1);
 
@@ -46,7 +44,7 @@ impl Board {
     /// Node of a URL.
     pub(super) fn new(at: &At<'_>) -> Result<Self, LinkError> {
         Ok(Self {
-            node: options(at)?.clone(),
+            node: at.options::<DeviceNet>()?.clone(),
             scheme: at.bus.scheme,
             label: at.robot.label(),
             timeout: request_timeout(at),
@@ -172,6 +170,11 @@ impl Board {
         Failure::new(Kind::NoAnswer, format!("MAC {} does not answer; {others}", self.node.mac))
             .hint("check mac of the URL, and the number that is set at the controller")
     }
+}
+
+impl fieldbus::BusBoard for Board {
+    const BUS: &'static str = BUS;
+    const DEVICE: &'static str = "node";
 }
 
 impl fieldbus::Board for Board {

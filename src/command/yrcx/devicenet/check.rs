@@ -1,7 +1,8 @@
 //! Layers of `armctl robots check` for a DeviceNet node: from the adapter to the image of the controller.
 
-use super::board::{Board, MAKER};
+use super::board::Board;
 use crate::command::face::layers::Layers;
+use crate::command::yrcx::fieldbus::MAKER;
 use crate::controller::yrcx::image::Image;
 use crate::failure::Kind;
 use crate::transport::devicenet::can::BusState;

@@ -52,6 +52,11 @@ impl Board {
         &self.eip
     }
 
+    /// Robot in messages.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
     /// TCP address.
     pub fn address(&self) -> SocketAddrV4 {
         self.client.target()
@@ -161,6 +166,11 @@ impl Board {
     }
 }
 
+impl fieldbus::BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "board";
+}
+
 impl fieldbus::Board for Board {
     fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
         check::look(self, layers).boxed_local()
@@ -244,9 +254,6 @@ const CLASSES: [(u32, &str); 7] = [
     (0xF5, "TCP/IP interface"),
     (0xF6, "Ethernet link"),
 ];
-
-/// Vendor id of the manufacturer of YRCX.
-pub const MAKER: u16 = 636;
 
 /// Identity of a board. The name is untrusted.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]

@@ -1,7 +1,8 @@
 //! Layers of `armctl robots check` for a network board: from the host name to the image of the controller.
 
-use super::board::{Board, MAKER};
+use super::board::Board;
 use crate::command::face::layers::Layers;
+use crate::command::yrcx::fieldbus::MAKER;
 use crate::controller::yrcx::image::Image;
 use crate::settings::target::eip::Eip;
 use crate::transport::eip::probe::Presence;

@@ -42,7 +42,7 @@ impl Board {
     /// Line of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
         let (label, timeout) = (at.robot.label(), at.robot.timeout.value);
-        Ok(Self { profibus: connect::options(at)?.clone(), label, timeout, tap: at.tap.clone() })
+        Ok(Self { profibus: at.options::<Profibus>()?.clone(), label, timeout, tap: at.tap.clone() })
     }
 
     /// Line without a robot.
@@ -142,6 +142,11 @@ impl Board {
             Err(error) => Err(ProfibusError::Gone { text: error.to_string() }.into()),
         }
     }
+}
+
+impl fieldbus::BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "station";
 }
 
 impl fieldbus::Board for Board {

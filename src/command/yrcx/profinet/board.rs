@@ -33,7 +33,7 @@ pub struct Board {
 impl Board {
     /// Station of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
-        Ok(Self { profinet: connect::options(at.bus)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
+        Ok(Self { profinet: at.options::<Profinet>()?.clone(), label: at.robot.label(), tap: at.tap.clone() })
     }
 
     /// Options of the URL.
@@ -135,6 +135,11 @@ impl Board {
     pub fn failure_of(&self, error: &LinkError) -> Failure {
         not_open(&self.label, &SCHEME, error)
     }
+}
+
+impl fieldbus::BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "station";
 }
 
 impl fieldbus::Board for Board {
