@@ -6,6 +6,7 @@ use std::net::SocketAddr;
 use std::path::Path;
 use std::time::Duration;
 
+use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -126,11 +127,28 @@ pub trait Board: fmt::Debug + Any {
 }
 
 /// The explicit messaging client of one fieldbus.
-pub trait BusBoard: Board {
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait BusBoard: fmt::Debug + Any + Sized {
     /// Name of the fieldbus.
     const BUS: &'static str;
     /// The device, in the reason why `--unit` is rejected.
     const DEVICE: &'static str;
+
+    /// Checks the layers: [`Board::check`].
+    async fn look(&mut self, layers: &mut Layers) -> Option<Image>;
+
+    /// Closes the connection, if there is one.
+    async fn end(self) {}
+}
+
+impl<B: BusBoard> Board for B {
+    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
+        self.look(layers).boxed_local()
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
+        self.end().boxed_local()
+    }
 }
 
 /// Vendor id of the manufacturer of YRCX at the ODVA: EtherNet/IP and DeviceNet.
@@ -210,15 +228,21 @@ pub trait Serve {
         false
     }
 
-    /// Starts the server in its own threads or tasks. `simulator` selects one of several simulators of the fieldbus.
-    /// `link` is the name of the pseudo-terminal, `faults` the text of `--fault`.
-    fn serve(
-        &self,
-        simulator: Option<&str>,
-        start: Start,
-        link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure>;
+    /// Starts the server in its own threads or tasks.
+    fn serve(&self, work: ToServe<'_>) -> Result<Served, Failure>;
+}
+
+/// A controller to serve.
+#[derive(Debug)]
+pub struct ToServe<'a> {
+    /// One of several simulators of the fieldbus.
+    pub simulator: Option<&'a str>,
+    /// Its start state.
+    pub start: Start,
+    /// Name of the pseudo-terminal.
+    pub link: Option<&'a Path>,
+    /// Text of `--fault`.
+    pub faults: Option<&'a str>,
 }
 
 /// Operations of the console of a simulator on its fieldbus.

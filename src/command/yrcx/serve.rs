@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::buses::Servers;
-use super::fieldbus::{Fieldbus, Served};
+use super::fieldbus::{Fieldbus, Served, ToServe};
 use super::given::Given;
 use super::simulated::start;
 use crate::command::serve::{self, Serving, Started};
@@ -79,7 +79,8 @@ impl serve::Serve for ServeArgs {
         if self.link.is_some() && !serve.has_terminal() {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
         }
-        let server = serve.serve(wanted, start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref())?;
+        let (start, link, faults) = (start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref());
+        let server = serve.serve(ToServe { simulator: wanted, start, link, faults })?;
         Ok(Started {
             reach: serve::connect_hint("yrcx", &server.target),
             report: Serving { family: "yrcx", target: server.target.clone() },

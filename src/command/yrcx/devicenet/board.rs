@@ -2,15 +2,13 @@
 
 use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::check;
 use super::connect::{adapter, request_timeout};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus::{self, At};
+use crate::command::yrcx::fieldbus::{At, BusBoard};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
@@ -172,18 +170,16 @@ impl Board {
     }
 }
 
-impl fieldbus::BusBoard for Board {
+impl BusBoard for Board {
     const BUS: &'static str = BUS;
     const DEVICE: &'static str = "node";
-}
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
+    async fn look(&mut self, layers: &mut Layers) -> Option<Image> {
+        check::look(self, layers).await
     }
 
-    fn close(mut self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        async move { self.release().await }.boxed_local()
+    async fn end(mut self) {
+        self.release().await;
     }
 }
 

@@ -2,14 +2,12 @@
 
 use std::net::SocketAddrV4;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{check, connect};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus::{self, At};
+use crate::command::yrcx::fieldbus::{At, BusBoard};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::text;
 use crate::controller::yrcx::image::Image;
@@ -166,18 +164,16 @@ impl Board {
     }
 }
 
-impl fieldbus::BusBoard for Board {
+impl BusBoard for Board {
     const BUS: &'static str = SCHEME.bus;
     const DEVICE: &'static str = "board";
-}
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
+    async fn look(&mut self, layers: &mut Layers) -> Option<Image> {
+        check::look(self, layers).await
     }
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        self.client.close().boxed_local()
+    async fn end(self) {
+        self.client.close().await;
     }
 }
 

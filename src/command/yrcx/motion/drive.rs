@@ -6,7 +6,7 @@ use super::{Motion, MotionReport, Target, single_target};
 use crate::command::yrcx::arguments::Pace;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
 /// Target of one axis; shared with push.
@@ -111,10 +111,6 @@ impl Motion for Drive {
         let Destination { to, to_pulse, .. } = &self.destination;
         single_target(&self.axis, to.as_ref(), to_pulse.as_ref())
     }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
-    }
 }
 
 /// Moves one axis by a relative distance.
@@ -165,10 +161,6 @@ impl Motion for Drivei {
     fn targets(&self) -> Vec<Target> {
         let Distance { by, by_pulse, .. } = &self.distance;
         single_target(&self.axis, by.as_ref(), by_pulse.as_ref())
-    }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
     }
 }
 

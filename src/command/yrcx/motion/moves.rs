@@ -7,7 +7,7 @@ use crate::command::yrcx::arguments::{Arch, Axes, Hand, Pace, Ramps};
 use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
 /// Moves to a point, or to coordinates.
@@ -111,10 +111,6 @@ impl Motion for Move {
 
     fn targets(&self) -> Vec<Target> {
         targets(&self.axes, &self.to, &self.to_pulse)
-    }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
     }
 }
 

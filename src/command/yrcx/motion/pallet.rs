@@ -6,7 +6,7 @@ use super::{Motion, MotionReport};
 use crate::command::yrcx::arguments::{Arch, Pace, Ramps};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
 /// Moves to a pallet position.
@@ -45,10 +45,6 @@ impl Motion for Pallet {
 
     fn manner(&self) -> String {
         format!("all axes, {}", self.pace.describe())
-    }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
     }
 }
 

@@ -7,7 +7,7 @@ use crate::command::yrcx::arguments::{Axes, Hand, Pace, Ramps};
 use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
 /// Moves by distances.
@@ -90,10 +90,6 @@ impl Motion for Movei {
 
     fn targets(&self) -> Vec<Target> {
         targets(&self.axes, &self.by, &self.by_pulse)
-    }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
     }
 }
 
