@@ -208,11 +208,9 @@ impl Writable for Parameters {
             let least = key.0.span.0;
             let [one, other] = draft.map_or([least, least + 1], |value| [value; 2]);
             let [one, other] = [one, other].map(|value| self.write_order(*key, &value.to_string()));
-            link.plan_depending(
-                &one?,
-                &other?,
-                Reason::default().depending_on("the current value: written if different"),
-            );
+            let about = Self::asked(*key);
+            let reason = Reason::about(&about).depending_on("the current value: written if different");
+            link.plan_depending(&one?, &other?, reason);
         }
         Ok(())
     }

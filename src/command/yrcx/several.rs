@@ -2,14 +2,9 @@
 //! its own result.
 
 use super::link::Link;
-use super::link::Yrcx;
-use super::numbers::Numbers;
 use super::refusal::refused;
-use crate::command::Context;
-use crate::command::frame::items::ItemOutcome;
 use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::order::Order;
-use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -55,35 +50,6 @@ async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) 
         Ok(Ok(done)) => (check_echo(order, &done.values).map(|()| done.values), true),
         Err(failure) => (Err(failure), false),
     }
-}
-
-/// Reads items by number; `key` is the field of the number, `nouns` the singular and plural name of the items.
-///
-/// # Errors
-/// What ends the whole, or the failure of the only item.
-pub async fn read_numbers<V>(
-    context: Context<'_, Yrcx>,
-    [noun, nouns]: [&str; 2],
-    (command, key): (Command, Key),
-    numbers: &[Numbers],
-    of: impl Fn(&Values) -> V,
-) -> Result<Vec<(i32, ItemOutcome<V>)>, Failure> {
-    let Context { link, screen, .. } = context;
-    let numbers = Numbers::of(numbers);
-    let orders = numbers.iter().map(|number| Ok(link.draft(command)?.with(key, *number).build()?));
-    let orders = orders.collect::<Result<Vec<Order>, Failure>>()?;
-    let answers = ask_each(link, screen, &format!("reading {nouns}"), &orders).await?;
-    let outcomes = numbers.into_iter().zip(answers.outcomes);
-    let outcomes = outcomes.map(|(number, outcome)| {
-        (number, ItemOutcome::new(format!("{noun} {number}"), outcome.map(|values| of(&values))))
-    });
-    let outcomes: Vec<_> = outcomes.collect();
-    if let [(_, only)] = &outcomes[..]
-        && let Some(error) = only.error()
-    {
-        return Err(error.failure());
-    }
-    Ok(outcomes)
 }
 
 /// Whether a refusal concerns remote commands in general, so that the next command would be refused as well.

@@ -261,7 +261,8 @@ impl<K: Kind> Writable for Numbered<K> {
 
     async fn plan(&self, link: &mut Link, rows: &[store::Row<Self>]) -> Result<(), Failure> {
         for (number, draft) in rows {
-            let reason = Reason::default().depending_on("the current data: written if different");
+            let about = Self::asked(*number);
+            let reason = Reason::about(&about).depending_on("the current data: written if different");
             let is_pulse = draft.iter().flatten().any(|text| text == "pulse");
             let sample = |key: Key, which: usize| match key {
                 Key::HandSystem if is_pulse => "",

@@ -170,7 +170,8 @@ impl Writable for Settings {
     async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
         for (setting, draft) in rows {
             let order = self.write_order(setting, draft.as_deref().unwrap_or_default())?;
-            let reason = Reason::default().depending_on("the current value: written if different");
+            let about = Self::asked(setting);
+            let reason = Reason::about(&about).depending_on("the current value: written if different");
             link.plan_depending(&order, &order, reason);
         }
         Ok(())

@@ -1,5 +1,7 @@
 //! Points with their comments, as a spreadsheet has them: `yrcx point dump` and `restore`.
 
+use std::collections::{HashMap, HashSet};
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -54,18 +56,17 @@ impl Content {
 }
 
 impl PointSheet {
-    /// Reads points or comments or both; comments only of points that are defined.
+    /// Reads points, if they are wanted, and the comments of some of them, if they are defined.
     async fn read_parts(
         &self,
         link: &mut Link,
         screen: &Screen,
-        numbers: &[i32],
-        [has_points, has_comments]: [bool; 2],
+        (numbers, has_points): (&[i32], bool),
+        commented: &[i32],
     ) -> Result<Answers<Content>, Failure> {
         if link.is_dry() {
             let points = numbers.iter().filter(|_| has_points).map(|number| Numbered::<Points>::read_order(*number));
-            let comments =
-                numbers.iter().filter(|_| has_comments).map(|number| Numbered::<Comments>::read_order(*number));
+            let comments = commented.iter().map(|number| Numbered::<Comments>::read_order(*number));
             link.plan_all(&points.chain(comments).collect::<Result<Vec<_>, Failure>>()?)?;
         }
         let mut asked = numbers.len();
@@ -76,20 +77,21 @@ impl PointSheet {
         } else {
             numbers.iter().map(|_| Ok(None)).collect()
         };
-        let defined = numbers.iter().zip(&points).filter(|(_, point)| has_comments && point.is_ok());
-        let defined: Vec<i32> = defined.map(|(number, _)| *number).collect();
+        let undefined = numbers.iter().zip(&points).filter(|(_, point)| point.is_err());
+        let undefined: HashSet<i32> = undefined.map(|(number, _)| *number).collect();
+        let commented: Vec<i32> = commented.iter().copied().filter(|number| !undefined.contains(number)).collect();
         let comments =
-            if defined.is_empty() { Vec::new() } else { self.comments.read(link, screen, &defined).await?.rows };
-        let mut comments = comments.into_iter();
-        let content = |point: Result<Option<Row>, Failure>| {
+            if commented.is_empty() { Vec::new() } else { self.comments.read(link, screen, &commented).await?.rows };
+        let mut comments: HashMap<i32, _> = commented.into_iter().zip(comments).collect();
+        let content = |(number, point): (&i32, Result<Option<Row>, Failure>)| {
             let point = point?;
-            let comment = match comments.next().transpose() {
+            let comment = match comments.remove(number).transpose() {
                 Err(failure) if !Self::is_undefined(&failure) => return Err(failure),
                 comment => comment.ok().flatten().flatten(),
             };
             Ok(Some(Content { point, comment }))
         };
-        Ok(Answers { rows: points.into_iter().map(content).collect(), asked })
+        Ok(Answers { rows: numbers.iter().zip(points).map(content).collect(), asked })
     }
 }
 
@@ -150,7 +152,7 @@ impl Store for PointSheet {
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Content>, Failure> {
-        self.read_parts(link, screen, numbers, [true, true]).await
+        self.read_parts(link, screen, (numbers, true), numbers).await
     }
 }
 
@@ -196,8 +198,9 @@ impl Writable for PointSheet {
     ) -> Result<Answers<Content>, Failure> {
         let numbers: Vec<i32> = rows.iter().map(|(number, _)| *number).collect();
         let has_points = rows.iter().any(|(_, draft)| draft.point.is_some());
-        let has_comments = rows.iter().any(|(_, draft)| draft.comment.is_some());
-        self.read_parts(link, screen, &numbers, [has_points, has_comments]).await
+        let commented = rows.iter().filter(|(_, draft)| draft.comment.is_some());
+        let commented: Vec<i32> = commented.map(|(number, _)| *number).collect();
+        self.read_parts(link, screen, (&numbers, has_points), &commented).await
     }
 
     async fn plan(&self, link: &mut Link, rows: &[TableRow<Self>]) -> Result<(), Failure> {
