@@ -135,7 +135,7 @@ pub trait BusBoard: fmt::Debug + Any + Sized {
     const DEVICE: &'static str;
 
     /// Checks the layers: [`Board::check`].
-    async fn look(&mut self, layers: &mut Layers) -> Option<Image>;
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>>;
 
     /// Closes the connection, if there is one.
     async fn end(self) {}
@@ -143,11 +143,35 @@ pub trait BusBoard: fmt::Debug + Any + Sized {
 
 impl<B: BusBoard> Board for B {
     fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        self.look(layers).boxed_local()
+        async move {
+            match self.look(layers).await {
+                Ok(image) => image,
+                Err((layer, failure)) => {
+                    layers.fail(layer, &failure);
+                    None
+                }
+            }
+        }
+        .boxed_local()
     }
 
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
         self.end().boxed_local()
+    }
+}
+
+/// Result of a check, or the layer that failed.
+pub type Checked<T> = Result<T, (&'static str, Failure)>;
+
+/// Failures of a layer.
+pub trait InLayer<T> {
+    /// Names the layer.
+    fn in_layer(self, layer: &'static str) -> Checked<T>;
+}
+
+impl<T> InLayer<T> for Result<T, Failure> {
+    fn in_layer(self, layer: &'static str) -> Checked<T> {
+        self.map_err(|failure| (layer, failure))
     }
 }
 

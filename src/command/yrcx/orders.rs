@@ -44,24 +44,11 @@ one_row! {
         /// Percent, 1 to 100
         percent: String,
     }
-    gives match self.setting {
-        SpeedSetting::Manual => Command::SpeedManual,
-        SpeedSetting::Auto => Command::SpeedAuto,
-        SpeedSetting::Program => Command::SpeedProgram,
-    },
+    gives self.setting.row().0,
     with draft => draft.with(Key::SpeedPercent, self.percent.trim_end_matches('%')),
     done {
-        let setting = match self.setting {
-            SpeedSetting::Manual => "manual",
-            SpeedSetting::Auto => "automatic",
-            SpeedSetting::Program => "program",
-        };
+        let (_, name, setting) = self.setting.row();
         let percent = self.percent.trim_end_matches('%');
-        let name = match self.setting {
-            SpeedSetting::Manual => "manual_percent",
-            SpeedSetting::Auto => "auto_percent",
-            SpeedSetting::Program => "program_percent",
-        };
         NewValue::of(name, number(percent), format!("set the {setting} speed to {percent} %"))
     };
 
@@ -204,6 +191,17 @@ enum SpeedSetting {
     Auto,
     /// Of programs, and of motions without a speed argument
     Program,
+}
+
+impl SpeedSetting {
+    /// Command, name in reports, and name in texts.
+    const fn row(self) -> (Command, &'static str, &'static str) {
+        match self {
+            Self::Manual => (Command::SpeedManual, "manual_percent", "manual"),
+            Self::Auto => (Command::SpeedAuto, "auto_percent", "automatic"),
+            Self::Program => (Command::SpeedProgram, "program_percent", "program"),
+        }
+    }
 }
 
 /// Servo states.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::check;
 use super::connect::{adapter, request_timeout};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus::{At, BusBoard};
+use crate::command::yrcx::fieldbus::{At, BusBoard, Checked};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
@@ -174,7 +174,7 @@ impl BusBoard for Board {
     const BUS: &'static str = BUS;
     const DEVICE: &'static str = "node";
 
-    async fn look(&mut self, layers: &mut Layers) -> Option<Image> {
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
         check::look(self, layers).await
     }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::{check, connect};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus::{At, BusBoard};
+use crate::command::yrcx::fieldbus::{At, BusBoard, Checked};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::text;
 use crate::controller::yrcx::image::Image;
@@ -168,7 +168,7 @@ impl BusBoard for Board {
     const BUS: &'static str = SCHEME.bus;
     const DEVICE: &'static str = "board";
 
-    async fn look(&mut self, layers: &mut Layers) -> Option<Image> {
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
         check::look(self, layers).await
     }
 
