@@ -38,7 +38,6 @@ mod failure;
 pub mod fieldbus;
 #[cfg(test)]
 mod gate;
-mod given;
 mod hold;
 mod info;
 mod io;
@@ -73,5 +72,6 @@ mod teach;
 mod testing;
 pub mod top;
 pub mod trace;
+mod typed_arguments;
 mod unit;
 mod var;

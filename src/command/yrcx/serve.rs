@@ -7,8 +7,8 @@ use clap::Args;
 
 use super::buses::Servers;
 use super::fieldbus::{Fieldbus, Served, ToServe};
-use super::given::Given;
 use super::simulated::start;
+use super::typed_arguments::TypedArguments;
 use crate::command::serve::{self, Serving, Started};
 use crate::controller::simulator::console::help_line;
 use crate::failure::Failure;
@@ -25,7 +25,7 @@ pub struct ServeArgs {
     #[arg(long, value_name = "BUS", value_parser = simulators().map(|(name, _)| name).collect::<Vec<_>>())]
     bus: Option<String>,
     #[command(flatten)]
-    servers: Given<Servers>,
+    servers: TypedArguments<Servers>,
     /// Faults, such as drop=5%,delay=0..50ms,seed=7 or stall; `armctl help simulator` lists them
     #[arg(long, value_name = "FAULTS")]
     fault: Option<String>,

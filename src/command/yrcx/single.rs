@@ -139,10 +139,5 @@ pub(super) use one_row;
 /// Text of a field of an answer; none if the answer does not have the field.
 pub fn shown(command: table::Command, values: &Values, key: Key) -> Option<String> {
     let value = values.value(key)?;
-    // A layout can have several fields of a key.
-    let counts = |field: &table::Field| {
-        let other = |key| values.int(key).unwrap_or_default();
-        field.when.is_none_or(|when| (when.least..=when.most).contains(&other(when.key)))
-    };
-    command.row().answer().find(|field| field.key == key && counts(field)).map(|field| field.show(value))
+    command.row().answer().find(|field| field.key == key).map(|field| field.show(value))
 }

@@ -141,10 +141,7 @@ impl StatusReport {
             sequence_running: output::SEQUENCE_RUNNING.is_on(image),
             program_reset: output::PROGRAM_RESET.is_on(image),
             warning: output::WARNING.is_on(image),
-            servos: None,
-            not_asked: None,
-            joints: None,
-            errors: Vec::new(),
+            ..Self::default()
         }
     }
 }

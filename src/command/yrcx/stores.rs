@@ -10,7 +10,6 @@ use serde::Serialize;
 use super::link::{Link, Yrcx};
 use super::numbers::{Numbers, named, runs};
 use super::several::{ask_each, is_undefined};
-use super::single::shown;
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::store::{self, Answers, Differing, Field, Ids, Single, Store, TableWords, Writable};
@@ -18,7 +17,7 @@ use crate::command::robot::item::Plain;
 use crate::controller::Risk;
 use crate::controller::names::Kind as Label;
 use crate::controller::yrcx::order::Order;
-use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::table::{self, Command};
 use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -99,7 +98,15 @@ impl Row {
 
     /// Row with these values.
     pub fn new<K: Kind>(values: Values) -> Self {
-        let texts = K::FIELDS.iter().map(|(_, key, _)| shown(K::READ.0, &values, *key).unwrap_or_default()).collect();
+        // A layout can have several fields of a key.
+        let counts = |field: &&'static table::Field| {
+            field.when.is_none_or(|when| (when.least..=when.most).contains(&int(&values, when.key)))
+        };
+        let text = |key: Key| {
+            let mut fields = K::READ.0.row().answer().filter(|field| field.key == key);
+            Some(fields.find(counts)?.show(values.value(key)?))
+        };
+        let texts = K::FIELDS.iter().map(|(_, key, _)| text(*key).unwrap_or_default()).collect();
         Self { values, texts, order: None }
     }
 }

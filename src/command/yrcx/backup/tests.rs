@@ -233,7 +233,7 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
     let failure = failure.unwrap();
     assert_eq!(failure.kind, Kind::Mixed);
     assert!(failure.message.contains("settings-2: "), "{failure}");
-    let parameters = item(&data, "parameters-1");
+    let parameters = item(&data, "parameters-2");
     assert_eq!((&parameters["state"], &item(&data, "points-00000")["written"]), (&json!("failed"), &json!(13)));
     assert!(parameters["left_out"].as_array().unwrap().len() > 3, "{parameters}");
 }
