@@ -1,5 +1,6 @@
 //! Restore of the parts that are tables: comparison with the controller, question, and writes.
 
+use std::fmt;
 use std::path::Path;
 
 use super::manifest;
@@ -87,7 +88,7 @@ pub struct Replaced {
 
 impl Replaced {
     /// Values of a table that was compared.
-    pub fn of<F: Family>(part: impl ToString, table: &Table<F>) -> Self {
+    pub fn of<F: Family>(part: &dyn fmt::Display, table: &Table<F>) -> Self {
         let (values, notes) = (table.replaced(), table.consequences());
         Self { part: part.to_string(), nouns: table.nouns(), values, notes }
     }

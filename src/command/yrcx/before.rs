@@ -2,9 +2,9 @@
 
 use serde_json::Value as Json;
 
-use super::backup::{SETTINGS, Setting};
 use super::link::Link;
 use super::overwrite::there;
+use super::robot_settings::{SETTINGS, Setting};
 use super::single::shown;
 use super::var::held;
 use crate::command::frame::settings_report::{OLD_VALUE, Old, nothing_written};

@@ -61,6 +61,7 @@ pub mod profinet;
 mod program;
 mod raw;
 mod refusal;
+mod robot_settings;
 mod serve;
 mod several;
 pub mod simulated;

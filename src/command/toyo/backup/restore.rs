@@ -212,8 +212,8 @@ impl Asked {
             }
         }
         let compared = || parts.iter().zip(&results).filter(|(_, result)| !needs_power_cycle && result.error.is_none());
-        let machine_values = machine.iter().map(|table| Replaced::of("machine", table));
-        let values = compared().map(|(job, _)| Replaced::of(job.part, &job.table));
+        let machine_values = machine.iter().map(|table| Replaced::of(&"machine", table));
+        let values = compared().map(|(job, _)| Replaced::of(&job.part, &job.table));
         let replaced: Vec<_> = machine_values.chain(values).chain(speed.as_ref().and_then(replaced_speed)).collect();
         authority.confirm(&overwriting(folder, &replaced)).await?;
         steps::open(link).await?;

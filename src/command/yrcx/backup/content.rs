@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::Part;
 use super::save::{GAP, gap_after};
-use super::settings::Settings;
 use crate::command::backup::manifest::{About, Entry};
 use crate::command::backup::parts::Table;
 use crate::command::frame::dry_run::{Known as _, Reason};
@@ -18,6 +17,7 @@ use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::yrcx::numbers::runs;
 use crate::command::yrcx::overwrite::there;
 use crate::command::yrcx::param::{Parameters, Setting};
+use crate::command::yrcx::robot_settings::Settings;
 use crate::command::yrcx::several::{ask_each, is_undefined};
 use crate::command::yrcx::single::shown;
 use crate::command::yrcx::stores::Numbered;

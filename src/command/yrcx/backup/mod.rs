@@ -6,10 +6,8 @@ mod content;
 mod parts;
 mod restore;
 mod save;
-mod settings;
 #[cfg(test)]
 mod tests;
 
 pub use restore::restore;
 pub use save::{Backup, back_up, points};
-pub use settings::{SETTINGS, Setting};

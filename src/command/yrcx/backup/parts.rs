@@ -3,12 +3,12 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::settings::Settings;
 use crate::command::backup::parts::Table;
 use crate::command::frame::store::{self, Writable};
 use crate::command::yrcx::data::{Hands, Pallets, PointSheet, Shifts};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::param::Parameters;
+use crate::command::yrcx::robot_settings::Settings;
 use crate::command::yrcx::stores::Numbered;
 use crate::command::yrcx::var::Variables;
 use crate::controller::findings::Finding;

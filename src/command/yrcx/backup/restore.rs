@@ -50,7 +50,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -
     check_origin(link, &manifest.controller, *force).await?;
     compare_all(link, screen, tables(&mut jobs).zip(&mut items)).await?;
     let compared = jobs.iter().zip(&items).filter(|(_, item)| item.error.is_none());
-    let replaced: Vec<Replaced> = compared.map(|(job, _)| Replaced::of(job.part, &job.table)).collect();
+    let replaced: Vec<Replaced> = compared.map(|(job, _)| Replaced::of(&job.part, &job.table)).collect();
     authority.confirm(&overwriting(folder, &replaced)).await?;
     write_all(link, screen, tables(&mut jobs).zip(&mut items)).await;
     Ok(Restored::new(folder, items))

@@ -61,21 +61,21 @@ pub async fn back_up(context: Context<'_, Yrcx>, making: SaveOptions) -> Result<
     let Context { link, screen, robot, several, .. } = context;
     link.no_unit("a backup contains the whole controller")?;
     let task = Task::new(making, robot, several)?;
-    let asked = Asked::of(&task.scope)?;
+    let selection = Selection::of(&task.scope)?;
     if link.is_dry() {
-        return dry_run(link, screen, &asked).await;
+        return dry_run(link, screen, &selection).await;
     }
-    interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task, asked))).await
+    interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task, selection))).await
 }
 
-/// Requested points.
-struct Asked {
+/// Selected parts and points.
+struct Selection {
     only: Only,
     /// Selected points; `None` searches until a gap.
     points: Option<BTreeSet<i32>>,
 }
 
-impl Asked {
+impl Selection {
     fn of(scope: &[String]) -> Result<Self, Failure> {
         let ranges = scope.iter().filter_map(|word| word.strip_prefix(OF_POINTS));
         let ranges = ranges.map(PointSheet::keys).collect::<Result<Vec<_>, _>>().map_err(Failure::usage)?;
@@ -90,11 +90,11 @@ impl Asked {
     }
 }
 
-async fn dry_run(link: &mut Link, screen: &Screen, asked: &Asked) -> Result<BackedUp, Failure> {
+async fn dry_run(link: &mut Link, screen: &Screen, selection: &Selection) -> Result<BackedUp, Failure> {
     Controller::plan(link)?;
     let parts = Part::without_points(1..=4).chain([Part::Points(0)]);
-    for part in parts.filter(|part| asked.has(*part)) {
-        content::plan(link, screen, part, asked.points.as_ref()).await?;
+    for part in parts.filter(|part| selection.has(*part)) {
+        content::plan(link, screen, part, selection.points.as_ref()).await?;
     }
     Err(unknown())
 }
@@ -103,18 +103,18 @@ async fn save(
     link: &mut Link,
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
-    asked: Asked,
+    selection: Selection,
 ) -> Result<BackedUp, Failure> {
     let controller = Controller::ask(link).await?;
     let robots = controller.robots.clone();
     let list = task.begin((screen, robot), controller.clone(), |earlier, _| earlier.controller.robots == robots)?;
     let numbers = robots.iter().map(|robot| robot.robot);
-    let parts: Vec<Part> = Part::without_points(numbers).filter(|part| asked.has(*part)).collect();
-    let mut reading = Reading { link, screen, task, controller, asked, list };
+    let parts: Vec<Part> = Part::without_points(numbers).filter(|part| selection.has(*part)).collect();
+    let mut reading = Reading { link, screen, task, controller, selection, list };
     let goes_on = reading.all(&parts).await?;
-    let Reading { asked, mut list, .. } = reading;
+    let Reading { selection, mut list, .. } = reading;
     let tried: Vec<String> = list.files().iter().map(|file| file.name.clone()).collect();
-    let rest = parts.into_iter().chain(Some(Part::Points(0)).filter(|part| asked.has(*part))).filter(|_| !goes_on);
+    let rest = parts.into_iter().chain(Some(Part::Points(0)).filter(|part| selection.has(*part))).filter(|_| !goes_on);
     let rest = rest.filter(|part| !tried.contains(&part.to_string()));
     // Refusals appear only in the manifest.
     let kept = list.files().iter_mut().filter(|file| file.more.state == State::Kept);
@@ -128,7 +128,7 @@ struct Reading<'a> {
     screen: &'a Screen,
     task: &'a Task<Controller>,
     controller: Controller,
-    asked: Asked,
+    selection: Selection,
     list: BackupWriter<'a, Controller>,
 }
 
@@ -153,12 +153,12 @@ impl Reading<'_> {
             let part = Part::Points(thousand);
             let first = i32::from(thousand * THOUSAND);
             let within = first..first + i32::from(THOUSAND);
-            let is_open = self.asked.points.is_none() && gap < GAP;
-            let given = self.asked.points.as_ref().map(|points| points.range(within.clone()).copied().collect());
+            let is_open = self.selection.points.is_none() && gap < GAP;
+            let given = self.selection.points.as_ref().map(|points| points.range(within.clone()).copied().collect());
             let given: Vec<i32> = given.unwrap_or_else(|| if is_open { within.clone().collect() } else { Vec::new() });
             let always: BTreeSet<i32> = of_pallets.range(within.clone()).copied().collect();
             let numbers: BTreeSet<i32> = given.into_iter().chain(always.iter().copied()).collect();
-            if numbers.is_empty() || !self.asked.has(part) {
+            if numbers.is_empty() || !self.selection.has(part) {
                 continue;
             }
             let numbers: Vec<i32> = numbers.into_iter().collect();

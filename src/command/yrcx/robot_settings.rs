@@ -1,11 +1,11 @@
 //! Settings of a robot that can be read and written, as a table.
 
+use super::link::{Link, Yrcx};
+use super::several::{ask_each, is_undefined};
+use super::single::shown;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::store::{Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids};
 use crate::command::robot::item::Plain;
-use crate::command::yrcx::link::{Link, Yrcx};
-use crate::command::yrcx::several::{ask_each, is_undefined};
-use crate::command::yrcx::single::shown;
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table::Command;
