@@ -2,7 +2,8 @@
 //! its own result.
 
 use super::link::Link;
-use super::refusal::refused;
+use super::refusal::{object, refused};
+use crate::command::frame::dry_run::unknown;
 use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::value::{Key, Value, Values};
@@ -21,7 +22,7 @@ pub struct Answers {
 /// Sends all requests. A refusal is the result of its request. A link failure, or a refusal that would repeat, ends
 /// the loop and is the only failure of the whole. A dry run notes all requests and ends.
 pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<Answers, Failure> {
-    link.plan_all(orders)?;
+    plan_each(link, orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut outcomes = Vec::with_capacity(orders.len());
     for (done, order) in orders.iter().enumerate() {
@@ -41,6 +42,18 @@ pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Or
         }
     }
     Ok(Answers { outcomes, asked: orders.len() })
+}
+
+/// Notes read requests in a dry run, each with its object. It ends there.
+pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<(), Failure> {
+    if !link.is_dry() || orders.is_empty() {
+        return Ok(());
+    }
+    for order in orders {
+        let object = object(order);
+        link.plan(order, if object.is_empty() { order.row().name } else { &object });
+    }
+    Err(unknown())
 }
 
 /// Sends one of several requests, and returns whether the next one can succeed.

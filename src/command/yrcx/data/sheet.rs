@@ -12,6 +12,7 @@ use crate::command::frame::store::{
 use crate::command::robot::item::Plain;
 use crate::command::robot::position::Position;
 use crate::command::yrcx::link::{Link, Yrcx};
+use crate::command::yrcx::several::plan_each;
 use crate::command::yrcx::stores::{Draft as Texts, Kind as _, Numbered, Row};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -67,7 +68,7 @@ impl PointSheet {
         if link.is_dry() {
             let points = numbers.iter().filter(|_| has_points).map(|number| Numbered::<Points>::read_order(*number));
             let comments = commented.iter().map(|number| Numbered::<Comments>::read_order(*number));
-            link.plan_all(&points.chain(comments).collect::<Result<Vec<_>, Failure>>()?)?;
+            plan_each(link, &points.chain(comments).collect::<Result<Vec<_>, Failure>>()?)?;
         }
         let mut asked = numbers.len();
         let points: Vec<Result<Option<Row>, Failure>> = if has_points {
