@@ -14,7 +14,6 @@ use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 use crate::command::frame::local_names::{Target, is_plain_file_name};
-use crate::command::frame::store;
 use crate::controller::text::{hex, unhex};
 use crate::failure::{Failure, Kind};
 use crate::files;
@@ -88,12 +87,6 @@ pub struct LeftOut {
     pub key: String,
     /// Reason.
     pub why: String,
-}
-
-impl From<store::LeftOut> for LeftOut {
-    fn from(store::LeftOut { name, why }: store::LeftOut) -> Self {
-        Self { key: name, why }
-    }
 }
 
 /// Family-specific controller data of a manifest.

@@ -3,11 +3,11 @@
 use std::fmt;
 use std::path::Path;
 
-use super::manifest;
+use super::manifest::LeftOut;
 use crate::command::Family;
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::settings_report::nothing_written;
-use crate::command::frame::store::{PartResult, TablePart};
+use crate::command::frame::store::{self, PartResult, TablePart};
 use crate::command::robot::file::{FileItem, State};
 use crate::failure::{Failure, Kind};
 use crate::gate::Change;
@@ -15,6 +15,13 @@ use crate::output::Screen;
 
 /// A table, whatever the type of its rows.
 pub type Table<F> = Box<dyn TablePart<F>>;
+
+/// Rows that a table leaves out, as the manifest lists them.
+impl From<store::LeftOut> for LeftOut {
+    fn from(store::LeftOut { name, why }: store::LeftOut) -> Self {
+        Self { key: name, why }
+    }
+}
 
 /// Compares all parts with the controller. A part that cannot be read fails alone; nothing of it is written.
 pub async fn compare_all<'p, F: Family>(
@@ -65,7 +72,7 @@ pub fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bo
         Err(failure) => return result.fail(failure),
     };
     (result.more.written, result.more.unchanged) = (Some(written), Some(unchanged));
-    result.more.left_out = left_out.into_iter().map(manifest::LeftOut::from).collect();
+    result.more.left_out = left_out.into_iter().map(LeftOut::from).collect();
     if let Some(failure) = failure {
         return result.fail(failure);
     }
