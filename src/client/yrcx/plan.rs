@@ -7,7 +7,7 @@ use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::procedure::{Procedure, Step};
 use serde_json::{Value, json};
 
-use super::{Client, Error, Transport};
+use super::{Client, Transport};
 use crate::plan::{ReadableField, merge_fields, with_fields};
 use crate::{Plan, Reason};
 
@@ -20,20 +20,6 @@ impl Client {
     /// Takes the plan so far.
     pub fn take_plan(&mut self) -> Plan {
         self.plan_mut().map(std::mem::take).unwrap_or_default()
-    }
-
-    /// Dry run: plans reads whose answers are then unknown.
-    ///
-    /// # Errors
-    /// [`Error::DryRun`], in a dry run.
-    pub fn plan_all(&mut self, orders: &[Order]) -> Result<(), Error> {
-        if !self.is_dry() || orders.is_empty() {
-            return Ok(());
-        }
-        for order in orders {
-            self.plan_order(order, Reason::default());
-        }
-        Err(Error::DryRun)
     }
 
     /// Dry run: plans an order that depends on earlier answers.

@@ -7,6 +7,7 @@ mod diff;
 pub mod family_backup;
 pub mod job_date;
 pub mod manifest;
+pub mod parts;
 pub mod save;
 pub mod text_diff;
 mod tolerance;

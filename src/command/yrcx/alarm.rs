@@ -8,17 +8,19 @@ use serde::Serialize;
 use super::info::{Part, entry};
 use super::link::{Link, Yrcx};
 use super::numbers::Numbers;
-use super::several::read_numbers;
+use super::several::ask_each;
 use crate::command::face::shared_commands::CommonReport;
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::items::ItemOutcome;
 use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::robot::alarm::{AlarmEntry, AlarmState, Alarms, Kind, Nothing, Row};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
+use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::{self, Failure};
 use crate::output::view::View;
 use crate::settings::{Robot, alarms};
@@ -136,17 +138,23 @@ impl Command for History {
     const ID: &'static str = "yrcx.alarm.history";
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part>, Failure> {
-        let robot = context.robot;
-        let field = (table::Command::AlarmHistory, Key::History);
-        let of = |values: &Values| entry(values, Kind::Alarm);
-        let read = read_numbers(context, ["alarm", "alarms"], field, &self.numbers, of).await?;
+        let Context { link, screen, robot, .. } = context;
+        let numbers = Numbers::of(&self.numbers);
+        let order = |number: &i32| Ok(link.draft(table::Command::AlarmHistory)?.with(Key::History, *number).build()?);
+        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let answers = ask_each(link, screen, "reading alarms", &orders).await?;
         let mut alarms = Vec::new();
-        for (number, outcome) in read {
+        for (number, answer) in numbers.iter().zip(answers.outcomes) {
+            let answer = answer.map(|values| entry(&values, Kind::Alarm));
+            let outcome = ItemOutcome::new(format!("alarm {number}"), answer);
+            if let (1, Some(error)) = (numbers.len(), outcome.error()) {
+                return Err(error.failure());
+            }
             let Some(mut outcome) = outcome.with_defaults() else { continue };
             if let Some(entry) = outcome.data_mut() {
                 *entry = explained(entry.clone(), robot)?;
             }
-            alarms.push(Row { list: None, index: u16::try_from(number).unwrap_or(u16::MAX), outcome });
+            alarms.push(Row { list: None, index: u16::try_from(*number).unwrap_or(u16::MAX), outcome });
         }
         Ok(Alarms { asked: alarms.len(), alarms, standing: Nothing {} })
     }

@@ -4,6 +4,7 @@ use serde_json::Value as Json;
 
 use super::link::Link;
 use super::overwrite::there;
+use super::robot_settings::{SETTINGS, Setting};
 use super::single::shown;
 use super::var::held;
 use crate::command::frame::settings_report::{OLD_VALUE, Old, nothing_written};
@@ -51,14 +52,16 @@ fn reader(order: &Order) -> Option<Draft> {
         | Command::VarDiv
         | Command::VarDivVar => (Command::VarGet, &[Key::Variable]),
         Command::PortSet | Command::PortSetBit => (Command::PortGet, &[Key::PortType, Key::Port]),
-        Command::SpeedManual | Command::SpeedAuto | Command::SpeedProgram => (Command::SpeedStatus, &[Key::Robot]),
-        Command::InchAmountSet => (Command::InchAmountGet, &[Key::Robot]),
-        Command::ArmSelect => (Command::ArmDesignation, &[Key::Robot]),
         Command::ServoOn | Command::ServoOff | Command::ServoFree => (Command::ServoStatus, &[Key::Robot]),
-        _ => return None,
+        _ => (setting(order)?.read.0, &[Key::Robot]),
     };
     let given = keys.iter().filter_map(|key| Some((*key, values.int(*key)?)));
     Some(given.fold(read.order(), |draft, (key, number)| draft.with(key, number)))
+}
+
+/// The setting that a command writes.
+fn setting(order: &Order) -> Option<&'static Setting> {
+    SETTINGS.iter().find(|setting| setting.write.0 == order.command())
 }
 
 /// Old values from an answer, under the names of the command's report.
@@ -70,13 +73,12 @@ fn told(order: &Order, answer: &Values) -> Option<Json> {
             let bit = order.values().int(Key::PortBit)?;
             answer.int(Key::Value).map(|port| Json::from(port >> bit & 1))
         }
-        Command::SpeedManual => number(Key::ManualSpeed),
-        Command::SpeedAuto => number(Key::AutoSpeed),
-        Command::SpeedProgram => number(Key::ProgramSpeed),
-        Command::InchAmountSet => number(Key::InchingAmount),
-        Command::ArmSelect => shown(Command::ArmDesignation, answer, Key::Arm).map(Json::from),
         Command::ServoOn | Command::ServoOff | Command::ServoFree => servo(order.values(), answer),
-        _ => Some(held(answer.value(Key::Value))),
+        _ => match setting(order).map(|setting| setting.read) {
+            None => Some(held(answer.value(Key::Value))),
+            Some((command, Key::Arm)) => shown(command, answer, Key::Arm).map(Json::from),
+            Some((_, key)) => number(key),
+        },
     }
 }
 

@@ -6,6 +6,7 @@ use std::net::SocketAddr;
 use std::path::Path;
 use std::time::Duration;
 
+use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -15,11 +16,12 @@ use crate::command::face::layers::Layers;
 use crate::controller::yrcx::alarm::Alarm;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::Start;
-use crate::failure::Failure;
+use crate::failure::{Failure, plain};
+use crate::files;
 use crate::settings::Robot;
 use crate::settings::target::{Address, Bus, Place, Sim, Target};
 use crate::transport::image::tap::Tap;
-use crate::transport::image::{ImageLink, LinkError};
+use crate::transport::image::{Cause, ImageLink, LinkError};
 
 /// A fieldbus: connection, diagnosis and simulation.
 #[derive(Debug)]
@@ -82,6 +84,30 @@ pub struct At<'a> {
     pub tap: Tap,
 }
 
+impl<'a> At<'a> {
+    /// Options of the URL.
+    pub fn options<O: 'static>(&self) -> Result<&'a O, LinkError> {
+        options(self.bus)
+    }
+}
+
+/// Options of the URL of a fieldbus.
+pub fn options<O: 'static>(bus: &Bus) -> Result<&O, LinkError> {
+    bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{bus:?} is a URL of another fieldbus"))))
+}
+
+/// Reads the file with which a manufacturer describes a device.
+pub fn device_file<T, E: fmt::Display>(
+    path: &Path,
+    most: u64,
+    advice: &'static str,
+    parse: impl FnOnce(&[u8]) -> Result<T, E>,
+) -> Result<T, LinkError> {
+    let wrong = |why: String| Cause::new(format!("{}: {why}", path.display()));
+    let bytes = files::read(path, most).map_err(|error| LinkError::Local(wrong(plain(&error)).advice(advice)))?;
+    parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
+}
+
 /// Purpose of a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
@@ -99,6 +125,58 @@ pub trait Board: fmt::Debug + Any {
     /// Closes the connection.
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()>;
 }
+
+/// The explicit messaging client of one fieldbus.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait BusBoard: fmt::Debug + Any + Sized {
+    /// Name of the fieldbus.
+    const BUS: &'static str;
+    /// The device, in the reason why `--unit` is rejected.
+    const DEVICE: &'static str;
+
+    /// Checks the layers: [`Board::check`].
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>>;
+
+    /// Closes the connection, if there is one.
+    async fn end(self) {}
+}
+
+impl<B: BusBoard> Board for B {
+    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
+        async move {
+            match self.look(layers).await {
+                Ok(image) => image,
+                Err((layer, failure)) => {
+                    layers.fail(layer, &failure);
+                    None
+                }
+            }
+        }
+        .boxed_local()
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
+        self.end().boxed_local()
+    }
+}
+
+/// Result of a check, or the layer that failed.
+pub type Checked<T> = Result<T, (&'static str, Failure)>;
+
+/// Failures of a layer.
+pub trait InLayer<T> {
+    /// Names the layer.
+    fn in_layer(self, layer: &'static str) -> Checked<T>;
+}
+
+impl<T> InLayer<T> for Result<T, Failure> {
+    fn in_layer(self, layer: &'static str) -> Checked<T> {
+        self.map_err(|failure| (layer, failure))
+    }
+}
+
+/// Vendor id of the manufacturer of YRCX at the ODVA: EtherNet/IP and DeviceNet.
+pub const MAKER: u16 = 636;
 
 /// Converts a client to a trait object.
 pub fn boxed(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, LinkError> {
@@ -174,15 +252,21 @@ pub trait Serve {
         false
     }
 
-    /// Starts the server in its own threads or tasks. `simulator` selects one of several simulators of the fieldbus.
-    /// `link` is the name of the pseudo-terminal, `faults` the text of `--fault`.
-    fn serve(
-        &self,
-        simulator: Option<&str>,
-        start: Start,
-        link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure>;
+    /// Starts the server in its own threads or tasks.
+    fn serve(&self, work: ToServe<'_>) -> Result<Served, Failure>;
+}
+
+/// A controller to serve.
+#[derive(Debug)]
+pub struct ToServe<'a> {
+    /// One of several simulators of the fieldbus.
+    pub simulator: Option<&'a str>,
+    /// Its start state.
+    pub start: Start,
+    /// Name of the pseudo-terminal.
+    pub link: Option<&'a Path>,
+    /// Text of `--fault`.
+    pub faults: Option<&'a str>,
 }
 
 /// Operations of the console of a simulator on its fieldbus.

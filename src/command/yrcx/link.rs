@@ -331,11 +331,6 @@ impl Link {
         self.client.wait_for_input(matters).await.map_err(|error| self.failure(error))
     }
 
-    /// Notes all requests in a dry run, in which the answers are unknown.
-    pub fn plan_all(&mut self, orders: &[Order]) -> Result<(), Failure> {
-        self.client.plan_all(orders).map_err(|error| self.failure(error))
-    }
-
     /// Final check before a frame is sent.
     pub fn authorize(&self, name: &str, risk: Risk) -> Result<(), Failure> {
         self.client.authorize(name, risk).map_err(|error| self.failure(error))

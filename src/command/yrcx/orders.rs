@@ -46,18 +46,10 @@ one_row! {
         /// Percent, 1 to 100
         percent: String,
     }
-    gives match self.setting {
-        SpeedSetting::Manual => Command::SpeedManual,
-        SpeedSetting::Auto => Command::SpeedAuto,
-        SpeedSetting::Program => Command::SpeedProgram,
-    },
+    gives self.setting.row().0,
     with draft => draft.with(Key::SpeedPercent, self.percent.trim_end_matches('%')),
     done as answer => {
-        let (name, setting) = match self.setting {
-            SpeedSetting::Manual => ("manual", "manual"),
-            SpeedSetting::Auto => ("auto", "automatic"),
-            SpeedSetting::Program => ("program", "program"),
-        };
+        let (_, name, setting) = self.setting.row();
         let percent = self.percent.trim_end_matches('%');
         let words = format!("set the {setting} speed to {percent} %");
         NewValue::of(name, number(percent), words).into_item("override", &answer.old)
@@ -202,6 +194,17 @@ enum SpeedSetting {
     Auto,
     /// Of programs, and of motions without a speed argument
     Program,
+}
+
+impl SpeedSetting {
+    /// Command, name in reports, and name in texts.
+    const fn row(self) -> (Command, &'static str, &'static str) {
+        match self {
+            Self::Manual => (Command::SpeedManual, "manual_percent", "manual"),
+            Self::Auto => (Command::SpeedAuto, "auto_percent", "automatic"),
+            Self::Program => (Command::SpeedProgram, "program_percent", "program"),
+        }
+    }
 }
 
 /// Servo states.

@@ -149,15 +149,15 @@ trait Overwritten: Writable<Family = Yrcx> {
 
 impl<K: Kind> Overwritten for Numbered<K> {
     fn target(order: &Order) -> Result<(Self, i32), Failure> {
-        Ok((Self::default(), order.values().int(K::RECORDS.columns[0].1).unwrap_or_default()))
+        Ok((Self::default(), order.values().int(K::READ.1).unwrap_or_default()))
     }
 
     fn read_order(&self, number: i32) -> Result<Order, Failure> {
-        K::RECORDS.read(number)
+        Self::read_order(number)
     }
 
-    fn row(&self, number: i32, values: Values) -> Row {
-        Row::new::<K>(number, values)
+    fn row(&self, _number: i32, values: Values) -> Row {
+        Row::new::<K>(values)
     }
 
     async fn replacement(
@@ -191,7 +191,7 @@ impl<K: Kind> Overwritten for Numbered<K> {
             Command::PointElementPulse | Command::PointElementMm | Command::ShiftElement => {
                 element(command, values, old)
             }
-            _ => Ok(K::RECORDS.stored(values)),
+            _ => Ok(Self::stored(values)),
         })
     }
 }
@@ -224,7 +224,7 @@ impl Overwritten for Parameters {
 }
 
 /// Reads current data; none if the controller refuses, for example because it is not defined.
-pub(super) async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
+pub async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
     if link.is_dry() {
         link.plan(order, about);
         return Ok(None);

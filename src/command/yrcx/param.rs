@@ -208,11 +208,9 @@ impl Writable for Parameters {
             let least = key.0.span.0;
             let [one, other] = draft.map_or([least, least + 1], |value| [value; 2]);
             let [one, other] = [one, other].map(|value| self.write_order(*key, &value.to_string()));
-            link.plan_depending(
-                &one?,
-                &other?,
-                Reason::default().depending_on("the current value: written if different"),
-            );
+            let about = Self::asked(*key);
+            let reason = Reason::about(&about).depending_on("the current value: written if different");
+            link.plan_depending(&one?, &other?, reason);
         }
         Ok(())
     }
@@ -262,7 +260,7 @@ fn listing() -> String {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{example, objection, read_example, words, written};
+    use crate::command::yrcx::testing::{example, objects, read_example, rejects, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
@@ -295,25 +293,19 @@ mod tests {
 
     #[test]
     fn axis_and_range_are_checked() {
-        for (line, part) in [
+        rejects([
             ("param set TOLE.3 16385", "16385 is out of range for TOLE; allowed: 1 to 16384 pulses"),
             ("param set PSHFRC.3 -1001", "allowed: -1000 to 1000"),
             ("param set TOLE.1 1.5", "value"),
-        ] {
-            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
-            assert!(failure.message.contains(part), "{line}: {failure}");
-        }
-        for (line, part) in [
+        ]);
+        objects([
             ("param set TOLE 1", "'TOLE' names several parameters"),
             ("param set WEIGHT.1 1", "WEIGHT belongs to the robot, not to an axis"),
             ("param set TOLE.1-2 1", "names several"),
             ("param get TOLL.1", "259 = TOLE"),
             ("param get 261", "261"),
             ("param get TOLE.5", "the axes are 1 to 4"),
-        ] {
-            let objection = objection(&line.split(' ').collect::<Vec<_>>());
-            assert!(objection.contains(part), "{line}: {objection}");
-        }
+        ]);
         assert_eq!(words(&["param", "get", "TOLE"]).unwrap().len(), 4);
         assert_eq!(words(&["param", "list"]).unwrap().len(), 1 + 12 * 4);
     }

@@ -312,7 +312,7 @@ mod tests {
     use serde_json::json;
 
     use super::ProgramLine;
-    use crate::command::yrcx::testing::{example, intent, objection, read_example, read_in_turn, risk, words};
+    use crate::command::yrcx::testing::{example, intent, objects, read_example, read_in_turn, rejects, risk, words};
     use crate::controller::Risk;
 
     #[test]
@@ -349,26 +349,20 @@ mod tests {
         assert_eq!(head("program next --program 100"), "0x0405 0x0001 0x0064 0x0000");
         assert_eq!(head("program reset --all-programs"), "0x0406 0x0000 0x0000 0x0000");
         assert_eq!(head("program select --name A --priority 1"), "0x0401 0x0004 0x0000 0x0000");
-        for (line, part) in [
+        objects([
             ("program run", "--all-programs"),
             ("program step --all-programs", "--all-programs"),
             ("program run --program 1 --task 1", "cannot be used with"),
             ("program select --program 1", "--priority"),
             ("program select --task 1 --priority 1", "--program"),
             ("program select --program 1 --task 17 --priority 1", "1..=16"),
-        ] {
-            let objection = objection(&line.split(' ').collect::<Vec<_>>());
-            assert!(objection.contains(part), "{line}: {objection}");
-        }
-        for (line, part) in [
+        ]);
+        rejects([
             ("program run --program 101", "allowed: 1 to 100"),
             ("program run --task 0", "allowed: 1 to 16"),
             ("program run --name abc", "A-Z, 0-9 and _"),
             ("program select --program 1 --priority 65", "allowed: 1 to 64"),
-        ] {
-            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
-            assert!(failure.message.contains(part), "{line}: {failure}");
-        }
+        ]);
     }
 
     #[test]

@@ -34,20 +34,24 @@ impl From<Refusal> for Failure {
 
 fn refused_order(order: &Order, alarm: Alarm) -> Failure {
     let failure = refused(order.row(), alarm);
-    let id = order.row().id;
-    let about = order.row().request().filter(|field| INSTANCES.contains(&field.key));
-    let about = about.filter_map(|field| {
+    let (id, object) = (order.row().id, object(order));
+    if object.is_empty() {
+        return failure;
+    }
+    let named = format!("{id} ({object}): alarm");
+    Failure { message: failure.message.replacen(&format!("{id}: alarm"), &named, 1), ..failure }
+}
+
+/// Object of a command: `pallet 3`; empty if it has none.
+pub fn object(order: &Order) -> String {
+    let instances = order.row().request().filter(|field| INSTANCES.contains(&field.key));
+    let named = instances.filter_map(|field| {
         let value = order.values().value(field.key)?;
         // Robot 0 means the first robot and is then not named.
         let is_named = field.key != Key::Robot || *value != Value::Int(0);
         is_named.then(|| format!("{} {}", field.key.name().replace('_', " "), field.show(value)))
     });
-    let about: Vec<String> = about.collect();
-    if about.is_empty() {
-        return failure;
-    }
-    let named = format!("{id} ({}): alarm", about.join(", "));
-    Failure { message: failure.message.replacen(&format!("{id}: alarm"), &named, 1), ..failure }
+    named.collect::<Vec<_>>().join(", ")
 }
 
 /// Fields that select the object of a command.

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::buses::Servers;
-use super::fieldbus::{Fieldbus, Served};
-use super::given::Given;
+use super::fieldbus::{Fieldbus, Served, ToServe};
 use super::simulated::start;
+use super::typed_arguments::TypedArguments;
 use crate::command::serve::{self, Serving, Started};
 use crate::controller::simulator::console::help_line;
 use crate::failure::Failure;
@@ -25,7 +25,7 @@ pub struct ServeArgs {
     #[arg(long, value_name = "BUS", value_parser = simulators().map(|(name, _)| name).collect::<Vec<_>>())]
     bus: Option<String>,
     #[command(flatten)]
-    servers: Given<Servers>,
+    servers: TypedArguments<Servers>,
     /// Faults, such as drop=5%,delay=0..50ms,seed=7 or stall; `armctl help simulator` lists them
     #[arg(long, value_name = "FAULTS")]
     fault: Option<String>,
@@ -79,7 +79,8 @@ impl serve::Serve for ServeArgs {
         if self.link.is_some() && !serve.has_terminal() {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
         }
-        let server = serve.serve(wanted, start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref())?;
+        let (start, link, faults) = (start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref());
+        let server = serve.serve(ToServe { simulator: wanted, start, link, faults })?;
         Ok(Started {
             reach: serve::connect_hint("yrcx", &server.target),
             report: Serving { family: "yrcx", target: server.target.clone() },

@@ -2,14 +2,10 @@
 //! its own result.
 
 use super::link::Link;
-use super::link::Yrcx;
-use super::numbers::Numbers;
-use super::refusal::refused;
-use crate::command::Context;
-use crate::command::frame::items::ItemOutcome;
+use super::refusal::{object, refused};
+use crate::command::frame::dry_run::unknown;
 use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use crate::controller::yrcx::order::Order;
-use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -26,7 +22,7 @@ pub struct Answers {
 /// Sends all requests. A refusal is the result of its request. A link failure, or a refusal that would repeat, ends
 /// the loop and is the only failure of the whole. A dry run notes all requests and ends.
 pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<Answers, Failure> {
-    link.plan_all(orders)?;
+    plan_each(link, orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut outcomes = Vec::with_capacity(orders.len());
     for (done, order) in orders.iter().enumerate() {
@@ -48,6 +44,18 @@ pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Or
     Ok(Answers { outcomes, asked: orders.len() })
 }
 
+/// Notes read requests in a dry run, each with its object. It ends there.
+pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<(), Failure> {
+    if !link.is_dry() || orders.is_empty() {
+        return Ok(());
+    }
+    for order in orders {
+        let object = object(order);
+        link.plan(order, if object.is_empty() { order.row().name } else { &object });
+    }
+    Err(unknown())
+}
+
 /// Sends one of several requests, and returns whether the next one can succeed.
 async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) {
     match link.try_ask(order).await {
@@ -55,35 +63,6 @@ async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) 
         Ok(Ok(done)) => (check_echo(order, &done.values).map(|()| done.values), true),
         Err(failure) => (Err(failure), false),
     }
-}
-
-/// Reads items by number; `key` is the field of the number, `nouns` the singular and plural name of the items.
-///
-/// # Errors
-/// What ends the whole, or the failure of the only item.
-pub async fn read_numbers<V>(
-    context: Context<'_, Yrcx>,
-    [noun, nouns]: [&str; 2],
-    (command, key): (Command, Key),
-    numbers: &[Numbers],
-    of: impl Fn(&Values) -> V,
-) -> Result<Vec<(i32, ItemOutcome<V>)>, Failure> {
-    let Context { link, screen, .. } = context;
-    let numbers = Numbers::of(numbers);
-    let orders = numbers.iter().map(|number| Ok(link.draft(command)?.with(key, *number).build()?));
-    let orders = orders.collect::<Result<Vec<Order>, Failure>>()?;
-    let answers = ask_each(link, screen, &format!("reading {nouns}"), &orders).await?;
-    let outcomes = numbers.into_iter().zip(answers.outcomes);
-    let outcomes = outcomes.map(|(number, outcome)| {
-        (number, ItemOutcome::new(format!("{noun} {number}"), outcome.map(|values| of(&values))))
-    });
-    let outcomes: Vec<_> = outcomes.collect();
-    if let [(_, only)] = &outcomes[..]
-        && let Some(error) = only.error()
-    {
-        return Err(error.failure());
-    }
-    Ok(outcomes)
 }
 
 /// Whether a refusal concerns remote commands in general, so that the next command would be refused as well.

@@ -9,7 +9,7 @@ use super::link::Link;
 use super::link::Yrcx;
 use super::overview::{alarm, latest, not_asked, state};
 use super::position::{Unit, mm, position};
-use super::several::ask_each;
+use super::several::{ask_each, plan_each};
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items::{ItemError, verdict};
 use crate::command::robot::position::{Joint, joint_table};
@@ -52,7 +52,7 @@ impl Command for Status {
         let mut orders = vec![servo, place];
         let latest = latest(link)?;
         if link.is_dry() && (self.full || link.commands()) {
-            let noted = link.plan_all(&orders);
+            let noted = plan_each(link, &orders);
             let reason = Reason::about("which alarm").depending_on("the signals: it is read if there is an alarm");
             link.plan_depending(&latest, &latest, reason);
             noted?;
@@ -141,10 +141,7 @@ impl StatusReport {
             sequence_running: output::SEQUENCE_RUNNING.is_on(image),
             program_reset: output::PROGRAM_RESET.is_on(image),
             warning: output::WARNING.is_on(image),
-            servos: None,
-            not_asked: None,
-            joints: None,
-            errors: Vec::new(),
+            ..Self::default()
         }
     }
 }

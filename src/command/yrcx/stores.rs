@@ -7,7 +7,6 @@ use std::marker::PhantomData;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::backup::Records;
 use super::link::{Link, Yrcx};
 use super::numbers::{Numbers, named, runs};
 use super::several::{ask_each, is_undefined};
@@ -18,6 +17,7 @@ use crate::command::robot::item::Plain;
 use crate::controller::Risk;
 use crate::controller::names::Kind as Label;
 use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::table::{self, Command};
 use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -30,10 +30,14 @@ pub trait Kind: Debug + Send + Sync + 'static {
     const WORDS: TableWords;
     /// Names of the reports.
     const IDS: Ids;
-    /// Commands and fields of a row, shared with backups.
-    const RECORDS: &'static Records;
-    /// Headings of the fields.
-    const HEADINGS: &'static [&'static str];
+    /// Command that reads a row, and the field of its number.
+    const READ: (Command, Key);
+    /// Command that stores a row.
+    const WRITE: Command;
+    /// Ranges of valid numbers.
+    const NUMBERS: &'static [&'static str];
+    /// Fields of a row: column of a file, field of the commands, and heading.
+    const FIELDS: &'static [(&'static str, Key, &'static str)];
     /// Risk of an overwrite: whether the old data is the work of a person.
     const RISK: Risk = Risk::Destroy;
     /// Whether the table is small enough to read completely by default.
@@ -93,15 +97,47 @@ impl Row {
     }
 
     /// Row with these values.
-    pub fn new<K: Kind>(number: i32, values: Values) -> Self {
-        let mut texts = K::RECORDS.row(number, &values);
-        texts.remove(0);
+    pub fn new<K: Kind>(values: Values) -> Self {
+        // A layout can have several fields of a key.
+        let counts = |field: &&'static table::Field| {
+            field.when.is_none_or(|when| (when.least..=when.most).contains(&int(&values, when.key)))
+        };
+        let text = |key: Key| {
+            let mut fields = K::READ.0.row().answer().filter(|field| field.key == key);
+            Some(fields.find(counts)?.show(values.value(key)?))
+        };
+        let texts = K::FIELDS.iter().map(|(_, key, _)| text(*key).unwrap_or_default()).collect();
         Self { values, texts, order: None }
     }
 }
 
-fn key<K: Kind>() -> Key {
-    K::RECORDS.columns[0].1
+impl<K: Kind> Numbered<K> {
+    /// Request that reads a row.
+    pub fn read_order(number: i32) -> Result<Order, Failure> {
+        Ok(K::READ.0.order().with(K::READ.1, number).build()?)
+    }
+
+    /// Request that stores a row with these texts.
+    fn write_order(number: i32, texts: &[String]) -> Result<Order, Failure> {
+        let fields = K::FIELDS.iter().zip(texts);
+        // A hand is written to a robot, and its answer names that robot. No hand system is an empty text.
+        let draft = fields.fold(K::WRITE.order().with(K::READ.1, number), |draft, ((_, key, _), text)| match key {
+            Key::Owner => draft.with(Key::Robot, text.as_str()),
+            Key::HandSystem if text.is_empty() => draft,
+            key => draft.with(*key, text.as_str()),
+        });
+        Ok(draft.build()?)
+    }
+
+    /// Values that are read after a request with `values` stored them.
+    pub fn stored(values: &Values) -> Values {
+        let stored = |(_, key, _): &(_, Key, _)| match *key {
+            // Robot 0 is the first.
+            Key::Owner => (Key::Owner, Value::Int(values.int(Key::Robot).unwrap_or_default().max(1))),
+            key => (key, values.value(key).cloned().unwrap_or(Value::Int(0))),
+        };
+        K::FIELDS.iter().map(stored).collect()
+    }
 }
 
 impl<K: Kind> Store for Numbered<K> {
@@ -120,19 +156,20 @@ impl<K: Kind> Store for Numbered<K> {
     const UNDEFINED_IS_NULL: bool = true;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
-        Ok(Numbers::of(&[K::RECORDS.parse(text)?]))
+        Ok(Numbers::of(&[Numbers::parse(K::READ.0, K::READ.1, text)?]))
     }
 
     fn all() -> Vec<i32> {
-        if K::IS_SMALL { K::RECORDS.all().expect("the numbers of every table are numbers") } else { Vec::new() }
+        let numbers = K::NUMBERS.iter().filter(|_| K::IS_SMALL);
+        numbers.flat_map(|range| Self::keys(range).expect("the numbers of every table are numbers")).collect()
     }
 
     fn any() -> String {
-        named(K::RECORDS.read, key::<K>(), 0)
+        Self::name(0)
     }
 
     fn name(number: i32) -> String {
-        named(K::RECORDS.read, key::<K>(), number)
+        named(K::READ.0, K::READ.1, number)
     }
 
     fn names(numbers: &[i32]) -> String {
@@ -144,11 +181,10 @@ impl<K: Kind> Store for Numbered<K> {
     }
 
     fn fields(&self) -> Vec<Field> {
-        let fields = K::RECORDS.columns[1..].iter().zip(K::HEADINGS);
-        let field = |((name, key), heading): (&(&'static str, Key), &&'static str)| {
+        let field = |(name, key, heading): &(&'static str, Key, &'static str)| {
             if is_number(*key) { Field::number(name, heading) } else { Field::text(name, heading) }
         };
-        fields.map(field).collect()
+        K::FIELDS.iter().map(field).collect()
     }
 
     fn texts(&self, row: &Row) -> Vec<String> {
@@ -179,11 +215,10 @@ impl<K: Kind> Store for Numbered<K> {
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Row>, Failure> {
-        let order = |number: &i32| Ok(link.draft(K::RECORDS.read)?.with(key::<K>(), *number).build()?);
+        let order = |number: &i32| Ok(link.draft(K::READ.0)?.with(K::READ.1, *number).build()?);
         let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, &format!("reading {}", K::WORDS.nouns[1]), &orders).await?;
-        let rows = numbers.iter().zip(answers.outcomes);
-        let rows = rows.map(|(number, outcome)| outcome.map(|values| Some(Row::new::<K>(*number, values))));
+        let rows = answers.outcomes.into_iter().map(|outcome| outcome.map(|values| Some(Row::new::<K>(values))));
         Ok(Answers { rows: rows.collect(), asked: answers.asked })
     }
 }
@@ -204,22 +239,22 @@ impl<K: Kind> Writable for Numbered<K> {
     fn draft(&self, number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
         let draft: Draft = texts.iter().map(|text| text.map(ToOwned::to_owned)).collect();
         if let Some(texts) = draft.iter().cloned().collect::<Option<Vec<String>>>() {
-            stored::<K>(number, texts).map_err(|failure| failure.message)?;
+            Self::write_order(number, &texts).map_err(|failure| failure.message)?;
         }
         Ok(draft)
     }
 
     fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
         // Axes in another unit are not kept.
-        let unit = K::RECORDS.columns[1..].iter().position(|(_, key)| *key == Key::Unit);
+        let unit = K::FIELDS.iter().position(|(_, key, _)| *key == Key::Unit);
         let has_unit = |old: &&Row| unit.is_none_or(|at| draft[at].as_ref().is_none_or(|unit| *unit == old.texts[at]));
         let old = old.filter(has_unit);
         let kept = |(at, text): (usize, &Option<String>)| match (text, old) {
             (Some(text), _) => Ok(text.clone()),
             (None, Some(old)) => Ok(old.texts[at].clone()),
-            (None, None) if K::RECORDS.columns[at + 1].1 == Key::HandSystem => Ok(String::new()),
+            (None, None) if K::FIELDS[at].1 == Key::HandSystem => Ok(String::new()),
             (None, None) => {
-                let (one, field) = (Self::WORDS.nouns[0], K::RECORDS.columns[at + 1].0);
+                let (one, field) = (Self::WORDS.nouns[0], K::FIELDS[at].0);
                 let unit =
                     unit.and_then(|at| draft[at].as_ref()).map_or_else(String::new, |unit| format!(" in {unit}"));
                 let message = format!("{one} {number} is not defined{unit}, so it has no {field} to keep");
@@ -227,13 +262,14 @@ impl<K: Kind> Writable for Numbered<K> {
             }
         };
         let texts = draft.iter().enumerate().map(kept).collect::<Result<Vec<String>, Failure>>()?;
-        let (order, values) = stored::<K>(number, texts)?;
-        Ok(Row { order: Some(order), ..Row::new::<K>(number, values) })
+        let order = Self::write_order(number, &texts)?;
+        Ok(Row { order: Some(order.clone()), ..Row::new::<K>(Self::stored(order.values())) })
     }
 
     async fn plan(&self, link: &mut Link, rows: &[store::Row<Self>]) -> Result<(), Failure> {
         for (number, draft) in rows {
-            let reason = Reason::default().depending_on("the current data: written if different");
+            let about = Self::asked(*number);
+            let reason = Reason::about(&about).depending_on("the current data: written if different");
             let is_pulse = draft.iter().flatten().any(|text| text == "pulse");
             let sample = |key: Key, which: usize| match key {
                 Key::HandSystem if is_pulse => "",
@@ -241,11 +277,14 @@ impl<K: Kind> Writable for Numbered<K> {
             };
             // Two rows that agree only in the given fields.
             let filled = |which: usize| {
-                let columns = draft.iter().zip(&K::RECORDS.columns[1..]);
-                columns.map(|(text, (_, key))| text.clone().unwrap_or_else(|| sample(*key, which).into())).collect()
+                let fields = draft.iter().zip(K::FIELDS);
+                let text = |(text, (_, key, _)): (&Option<String>, &(_, Key, _))| {
+                    text.clone().unwrap_or_else(|| sample(*key, which).into())
+                };
+                Self::write_order(*number, &fields.map(text).collect::<Vec<_>>())
             };
-            match (stored::<K>(*number, filled(0)), stored::<K>(*number, filled(1))) {
-                (Ok((one, _)), Ok((other, _))) => link.plan_depending(&one, &other, reason),
+            match (filled(0), filled(1)) {
+                (Ok(one), Ok(other)) => link.plan_depending(&one, &other, reason),
                 _ => link.then(&format!("{} {number} is written", Self::WORDS.nouns[0])),
             }
         }
@@ -275,13 +314,6 @@ fn samples(key: Key, number: i32) -> [&'static str; 2] {
         Key::Value if number >= 256 => ["0", "-1.1"],
         _ => ["0", "-1"],
     }
-}
-
-/// Command that stores a row, and the answer expected when it is read.
-fn stored<K: Kind>(number: i32, texts: Vec<String>) -> Result<(Order, Values), Failure> {
-    let name = named(K::RECORDS.read, key::<K>(), number);
-    let store = K::RECORDS.store(&std::iter::once(name).chain(texts).collect())?;
-    Ok((store.write, store.wanted))
 }
 
 /// Whole number in an answer.

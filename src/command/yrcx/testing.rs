@@ -18,7 +18,7 @@ use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table::Row;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::gate::Grant;
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::target::Family as Name;
@@ -97,6 +97,25 @@ pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     let sent = examples.iter().map(|example| numbers(corrected(example, "wi")));
     assert_eq!(peer.taken[count..], sent.collect::<Vec<_>>());
     outcome.unwrap()
+}
+
+/// Each line is a usage error with this part in its message.
+#[track_caller]
+pub(super) fn rejects<'l>(cases: impl IntoIterator<Item = (&'l str, &'l str)>) {
+    for (line, part) in cases {
+        let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+        assert_eq!(failure.kind, Kind::Usage, "{line}");
+        assert!(failure.message.contains(part), "{line}: {failure}");
+    }
+}
+
+/// Each line is refused by the parser, with this part in its message.
+#[track_caller]
+pub(super) fn objects<'l>(cases: impl IntoIterator<Item = (&'l str, &'l str)>) {
+    for (line, part) in cases {
+        let objection = objection(&line.split(' ').collect::<Vec<_>>());
+        assert!(objection.contains(part), "{line}: {objection}");
+    }
 }
 
 /// Error of the command-line parser.

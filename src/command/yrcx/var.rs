@@ -5,7 +5,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Number, Value as Json};
 
-use super::backup::{Records, VARIABLES};
 use super::link;
 use super::numbers::{named, single};
 use super::single::Single;
@@ -66,8 +65,10 @@ impl Kind for Variables {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.var");
-    const RECORDS: &'static Records = &VARIABLES;
-    const HEADINGS: &'static [&'static str] = &["value"];
+    const READ: (table::Command, Key) = (table::Command::VarGet, Key::Variable);
+    const WRITE: table::Command = table::Command::VarSet;
+    const NUMBERS: &'static [&'static str] = &["SGI0..SGI31", "SGR0..SGR31"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[("value", Key::Value, "value")];
     const RISK: Risk = Risk::Write;
     const LABELS: Option<names::Kind> = Some(names::Kind::Variable);
     const COMPLETE: ValueKind = complete::VARIABLE;

@@ -20,7 +20,7 @@ pub use self::change::{ComparedRow, Row, TableWrite, describe_change, overwritin
 pub use self::copy::Copy;
 pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
 pub use self::get::{Get, List};
-pub use self::part::{Part, PartResult, TablePart, Text};
+pub use self::part::{Part, PartResult, TablePart, Text, part_text};
 pub use self::set::Set;
 use super::connection::Family;
 use super::kind::ValueKind;

@@ -7,7 +7,7 @@ use futures_util::future::LocalBoxFuture;
 use super::change::{ComparedRow, Row, compare, differing, replaced, write_each};
 use super::file::{Answer, Kept, LeftOut, leave_out_unused, parse};
 use super::get::defined;
-use super::{Writable, read, sheet};
+use super::{Store, Writable, read, sheet};
 use crate::command::frame::connection::Family;
 use crate::controller::findings::{Finding, Findings};
 use crate::controller::sheet::{self, Dialect};
@@ -21,6 +21,8 @@ pub struct Text {
     pub text: String,
     /// Rows that are not in it.
     pub left_out: Vec<LeftOut>,
+    /// Rows that the controller refused because they are not defined, grouped by the reason.
+    pub undefined: Vec<LeftOut>,
 }
 
 /// Result of the writes of a part.
@@ -30,7 +32,7 @@ pub struct PartResult {
     pub written: usize,
     /// Number of rows that were already equal.
     pub unchanged: usize,
-    /// Rows that this controller does not have.
+    /// Rows that this controller does not have, or that it refused.
     pub left_out: Vec<LeftOut>,
     /// First failure, with the account of all rows.
     pub failure: Option<Failure>,
@@ -138,6 +140,59 @@ impl<S: Writable> Part<S> {
     }
 }
 
+/// Text of rows that were read. A row is in it only if `restore` can read it there.
+///
+/// # Errors
+/// The connection was lost: the part is not complete.
+pub fn part_text<S: Writable>(
+    table: &S,
+    keys: &[S::Key],
+    rows: Vec<Result<Option<S::Wire>, Failure>>,
+) -> Result<Text, Failure> {
+    let (mut kept, mut refused) = (Kept::default(), Vec::new());
+    let fields = table.fields();
+    for (key, outcome) in keys.iter().zip(rows) {
+        if let Some(failure) = outcome.as_ref().err().filter(|failure| S::is_undefined(failure)) {
+            refused.push((*key, failure.message.clone()));
+        }
+        match defined::<S>(outcome) {
+            Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
+            Err(failure) => kept.left_out.push(LeftOut { name: S::name(*key), why: failure.message }),
+            Ok(wire) => {
+                let Answer::Row(wire) = kept.add(table, *key, Ok(wire)) else { continue };
+                let texts = table.texts(&wire);
+                let cells = fields.iter().zip(&texts);
+                let cells =
+                    cells.map(|(field, text)| Some(&**text).filter(|text| !field.is_optional || !text.is_empty()));
+                match table.draft(*key, &cells.collect::<Vec<_>>()) {
+                    Ok(_) => kept.save(table, *key, Some(&wire)),
+                    Err(why) => {
+                        let why = format!("{} cannot be written back: {why}", texts.join(" "));
+                        kept.left_out.push(LeftOut { name: S::name(*key), why });
+                    }
+                }
+            }
+        }
+    }
+    let Kept { mut rows, left_out, .. } = kept;
+    let mut columns = sheet(table);
+    leave_out_unused(table, &mut columns, &mut rows);
+    let text = sheet::write(Dialect::COMMAS, &columns, &rows);
+    Ok(Text { text, left_out, undefined: by_reason::<S>(refused) })
+}
+
+/// Rows with the same reason, in an entry each.
+fn by_reason<S: Store>(rows: Vec<(S::Key, String)>) -> Vec<LeftOut> {
+    let mut groups: Vec<(String, Vec<S::Key>)> = Vec::new();
+    for (key, why) in rows {
+        match groups.iter_mut().find(|(reason, _)| *reason == why) {
+            Some((_, keys)) => keys.push(key),
+            None => groups.push((why, vec![key])),
+        }
+    }
+    groups.into_iter().map(|(why, keys)| LeftOut { name: S::names(&keys), why }).collect()
+}
+
 /// A few names, or the first and the last.
 fn span(names: &[String]) -> String {
     match names {
@@ -164,23 +219,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
             let keys = S::saved();
             self.table.prepare(link, &keys).await?;
             let answers = read(&mut self.table, link, screen, &keys).await?;
-            let mut kept = Kept::default();
-            for (key, outcome) in keys.into_iter().zip(answers.rows) {
-                match defined::<S>(outcome) {
-                    // The connection is lost: the part is not complete.
-                    Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
-                    Err(failure) => kept.left_out.push(LeftOut { name: S::name(key), why: failure.message }),
-                    Ok(wire) => {
-                        if let Answer::Row(wire) = kept.add(&self.table, key, Ok(wire)) {
-                            kept.save(&self.table, key, Some(&wire));
-                        }
-                    }
-                }
-            }
-            let Kept { mut rows, left_out, .. } = kept;
-            let mut columns = sheet(&self.table);
-            leave_out_unused(&self.table, &mut columns, &mut rows);
-            Ok(Text { text: sheet::write(Dialect::COMMAS, &columns, &rows), left_out })
+            part_text(&self.table, &keys, answers.rows)
         })
     }
 
@@ -233,7 +272,12 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
             self.table.select(link).await?;
             write_each(&self.table, link, screen, &mut self.compared).await;
             let (written, unchanged) = self.counts();
-            Ok(PartResult { written, unchanged, left_out: self.absent.clone(), failure: self.failure() })
+            let refused = self.compared.iter().filter_map(|row| {
+                let failure = row.outcome.as_ref().err().filter(|failure| failure.kind == Kind::Refused)?;
+                Some(LeftOut { name: S::name(row.key), why: failure.message.clone() })
+            });
+            let left_out = self.absent.iter().cloned().chain(refused).collect();
+            Ok(PartResult { written, unchanged, left_out, failure: self.failure() })
         })
     }
 }

@@ -6,7 +6,8 @@ use super::manifest::Controller;
 use super::parts::Part;
 use crate::client::toyo::{Letters, letters_request};
 use crate::command::backup::manifest::LeftOut;
-use crate::command::frame::store::{self, TablePart};
+use crate::command::backup::parts;
+use crate::command::frame::store;
 use crate::command::toyo::easy::Numbered;
 use crate::command::toyo::link::{Link, Toyo};
 use crate::command::toyo::palletizing::Records;
@@ -95,7 +96,7 @@ impl Controller {
 }
 
 /// A table of rows.
-pub type Table = Box<dyn TablePart<Toyo>>;
+pub type Table = parts::Table<Toyo>;
 
 /// How a part is read.
 enum Source {
@@ -121,8 +122,8 @@ fn source(part: Part, letters: Letters) -> Source {
 pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text, Failure> {
     let task = match source(part, controller.letters()) {
         Source::Table(mut table) => {
-            let store::Text { text, left_out } = table.read(link, screen).await?;
-            return Ok(Text { text, left_out: left_out.into_iter().map(left_out_row).collect() });
+            let store::Text { text, left_out, .. } = table.read(link, screen).await?;
+            return Ok(Text { text, left_out: left_out.into_iter().map(LeftOut::from).collect() });
         }
         Source::Program(task) => task,
     };
@@ -139,11 +140,6 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
         ),
     });
     Ok(Text { text, left_out: left_out.collect() })
-}
-
-/// A row that is not in a file, for the manifest.
-pub fn left_out_row(store::LeftOut { name, why }: store::LeftOut) -> LeftOut {
-    LeftOut { key: name, why }
 }
 
 /// The content of the file of a part.

@@ -2,12 +2,13 @@
 
 use clap::Args;
 
-use super::content::{self, Content, Table, left_out_row};
+use super::content::{self, Content, Table};
 use super::manifest::{Controller, Manifest};
 use super::parts::Part;
 use crate::command::backup::arguments::RestoreOptions;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{MANIFEST, Saved};
+use crate::command::backup::parts::{Replaced, compare_all, overwriting, settle, write_all};
 use crate::command::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreSelection, Restored, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
@@ -29,7 +30,7 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{self, Group, Parameter};
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation};
+use crate::gate::Confirmation;
 use crate::output::Screen;
 
 /// Write a backup back to the controller.
@@ -73,9 +74,6 @@ struct Jobs {
     /// Speed override, and the present one.
     speed: Option<(Cell, Option<u8>)>,
 }
-
-/// Number of values that a question shows one by one; more are counted by parts.
-const SHOWN: usize = 10;
 
 impl Command for Restore {
     type Family = Toyo;
@@ -207,15 +205,17 @@ impl Asked {
             speed = None;
         } else {
             check_room(&parts, &found)?;
-            compare_all(link, screen, &mut parts, &mut results).await?;
+            compare_all(link, screen, tables(&mut parts).zip(&mut results)).await?;
             if let Some((cell, present)) = &mut speed {
                 *present =
                     link.read_if_there(&cell.read).await.map_err(nothing_written)?.map(|record| percent(&record));
             }
         }
         let compared = || parts.iter().zip(&results).filter(|(_, result)| !needs_power_cycle && result.error.is_none());
-        authority.confirm(&replacing(machine.as_ref(), compared(), speed.as_ref())).await?;
-        let is_ready: Vec<bool> = parts.iter().zip(&results).map(|(_, result)| result.error.is_none()).collect();
+        let machine_values = machine.iter().map(|table| Replaced::of(&"machine", table));
+        let values = compared().map(|(job, _)| Replaced::of(&job.part, &job.table));
+        let replaced: Vec<_> = machine_values.chain(values).chain(speed.as_ref().and_then(replaced_speed)).collect();
+        authority.confirm(&overwriting(folder, &replaced)).await?;
         steps::open(link).await?;
         if let Some(machine) = &mut machine {
             let written = interruptible(machine.write(link, screen)).await.and_then(|written| written);
@@ -233,11 +233,7 @@ impl Asked {
                 return Ok(restored);
             }
         }
-        for ((job, result), _) in parts.iter_mut().zip(&mut results).zip(is_ready).filter(|(_, is_ready)| *is_ready) {
-            if !settle(result, job.table.write(link, screen).await) {
-                break;
-            }
-        }
+        write_all(link, screen, tables(&mut parts).zip(&mut results)).await;
         if let Some((cell, present)) = speed {
             let mut result = FileItem::values("override");
             if results.iter().all(|result| result.more.state != State::NotTried) {
@@ -308,66 +304,17 @@ fn changes_machine(table: &Table) -> bool {
     table.differing().iter().any(parameter)
 }
 
-/// Compares all parts with the controller. A part that cannot be read fails alone; nothing of it is written.
-async fn compare_all(
-    link: &mut Link,
-    screen: &Screen,
-    jobs: &mut [Job],
-    results: &mut [FileItem],
-) -> Result<(), Failure> {
-    let mut read = screen.parts_progress("parts read", jobs.len());
-    let mut lost = None;
-    for (job, result) in jobs.iter_mut().zip(results) {
-        if let Some(failure) = &lost {
-            result.fail(Failure::clone(failure));
-            continue;
-        }
-        match interruptible(job.table.compare(link, screen)).await.and_then(|compared| compared) {
-            Ok(()) => {}
-            Err(failure) if failure.kind == Kind::Interrupted => return Err(nothing_written(failure)),
-            Err(failure) => {
-                if !result.fail(failure.clone()) {
-                    lost = Some(failure);
-                }
-            }
-        }
-        read.advance(1);
-    }
-    Ok(())
+/// The tables of the parts.
+fn tables(parts: &mut [Job]) -> impl ExactSizeIterator<Item = &mut Table> {
+    parts.iter_mut().map(|job| &mut job.table)
 }
 
-/// Change to confirm: a few values one by one, many by parts.
-fn replacing<'j>(
-    machine: Option<&Table>,
-    parts: impl Iterator<Item = (&'j Job, &'j FileItem)>,
-    speed: Option<&(Cell, Option<u8>)>,
-) -> Change {
-    let lost_of = |part: String, table: &Table| (part, table.nouns(), table.replaced());
-    let mut lost: Vec<_> = machine.map(|table| lost_of("machine".to_owned(), table)).into_iter().collect();
-    lost.extend(parts.map(|(job, _)| lost_of(job.part.to_string(), &job.table)));
-    if let Some((cell, Some(present))) = speed {
-        let new = percent(&cell.wanted);
-        if new != *present {
-            let row = ["override".to_owned(), format!("{present} %"), format!("{new} %")];
-            lost.push(("override".to_owned(), ["override", "overrides"], vec![row]));
-        }
-    }
-    lost.retain(|(_, _, replaced)| !replaced.is_empty());
-    let total: usize = lost.iter().map(|(_, _, replaced)| replaced.len()).sum();
-    let values = if total == 1 { "a value" } else { &format!("{total} values") };
-    let change = match total {
-        0 => return Change::none(),
-        _ => Change::new(format!("overwrite {values} by the backup")),
-    };
-    let notes = machine.map(|table| table.consequences()).unwrap_or_default();
-    let change = notes.into_iter().fold(change, Change::note);
-    lost.iter().fold(change, |change, (part, [one, many], replaced)| {
-        if total > SHOWN {
-            let count = replaced.len();
-            return change.item(format!("{part}: {count} {}", if count == 1 { one } else { many }));
-        }
-        replaced.iter().fold(change, |change, [what, old, new]| change.replaces(&format!("{part}, {what}"), old, new))
-    })
+/// The override, if it will be replaced.
+fn replaced_speed((cell, present): &(Cell, Option<u8>)) -> Option<Replaced> {
+    let (present, new) = ((*present)?, percent(&cell.wanted));
+    let row = ["override".to_owned(), format!("{present} %"), format!("{new} %")];
+    let values = if new == present { Vec::new() } else { vec![row] };
+    Some(Replaced { part: "override".to_owned(), nouns: ["override", "overrides"], values, notes: Vec::new() })
 }
 
 /// Override in an answer or a request.
@@ -438,19 +385,4 @@ fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Records the result of a part. Returns whether the next one can be tried.
-fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bool {
-    let PartResult { written, unchanged, left_out, failure } = match outcome {
-        Ok(outcome) => outcome,
-        Err(failure) => return result.fail(failure),
-    };
-    (result.more.written, result.more.unchanged) = (Some(written), Some(unchanged));
-    result.more.left_out = left_out.into_iter().map(left_out_row).collect();
-    if let Some(failure) = failure {
-        return result.fail(failure);
-    }
-    result.succeed(State::Done);
-    true
 }

@@ -9,6 +9,5 @@ mod save;
 #[cfg(test)]
 mod tests;
 
-pub use parts::{COMMENTS, HANDS, PALLETS, POINTS, Records, SHIFTS, VARIABLES};
 pub use restore::restore;
 pub use save::{Backup, back_up, points};

@@ -1,8 +1,8 @@
 //! `yrcx comment` (4.3.2).
 
 use crate::command::frame::store::{Ids, TableWords, ids, table_commands};
-use crate::command::yrcx::backup::{COMMENTS, Records};
 use crate::command::yrcx::stores::{Kind, Numbered};
+use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 
 table_commands! {
@@ -24,8 +24,10 @@ impl Kind for Comments {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.comment");
-    const RECORDS: &'static Records = &COMMENTS;
-    const HEADINGS: &'static [&'static str] = &["comment"];
+    const READ: (Command, Key) = (Command::CommentGet, Key::Point);
+    const WRITE: Command = Command::CommentSet;
+    const NUMBERS: &'static [&'static str] = &["0..29999"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[("comment", Key::Comment, "comment")];
     const IS_SMALL: bool = false;
     const IS_TEXT: bool = true;
 

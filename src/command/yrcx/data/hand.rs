@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::frame::store::{Ids, TableWords, ids, table_commands};
-use crate::command::yrcx::backup::{HANDS, Records};
 use crate::command::yrcx::stores::{Kind, Numbered, int, mm};
+use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 
 table_commands! {
@@ -31,8 +31,16 @@ impl Kind for Hands {
         writing: Some(DATA_1),
     };
     const IDS: Ids = ids!("yrcx.hand-data");
-    const RECORDS: &'static Records = &HANDS;
-    const HEADINGS: &'static [&'static str] = &["robot", "data 1", "data 2 (mm)", "data 3 (mm)", "data 4"];
+    const READ: (Command, Key) = (Command::HandGet, Key::Hand);
+    const WRITE: Command = Command::HandSet;
+    const NUMBERS: &'static [&'static str] = &["0..31"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("robot", Key::Owner, "robot"),
+        ("data_1", Key::Data1, "data 1"),
+        ("data_2_mm", Key::Data2, "data 2 (mm)"),
+        ("data_3_mm", Key::Data3, "data 3 (mm)"),
+        ("data_4", Key::Data4, "data 4"),
+    ];
 
     fn value(values: &Values) -> Option<Data> {
         Some(Data {

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::frame::store::{Ids, TableWords, ids, table_commands};
-use crate::command::yrcx::backup::{PALLETS, Records};
 use crate::command::yrcx::stores::{Kind, Numbered, all_zero, int};
+use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 
 table_commands! {
@@ -30,8 +30,15 @@ impl Kind for Pallets {
         ),
     };
     const IDS: Ids = ids!("yrcx.pallet-data");
-    const RECORDS: &'static Records = &PALLETS;
-    const HEADINGS: &'static [&'static str] = &["nx", "ny", "nz", "first point"];
+    const READ: (Command, Key) = (Command::PalletGet, Key::Pallet);
+    const WRITE: Command = Command::PalletSet;
+    const NUMBERS: &'static [&'static str] = &["0..39"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("nx", Key::CountX, "nx"),
+        ("ny", Key::CountY, "ny"),
+        ("nz", Key::CountZ, "nz"),
+        ("first_point", Key::FirstPoint, "first point"),
+    ];
 
     fn value(values: &Values) -> Option<Places> {
         let [nx, ny, nz, first_point] =

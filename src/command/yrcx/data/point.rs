@@ -8,7 +8,6 @@ use crate::command::frame::store::{
 };
 use crate::command::frame::teach::parse_printed_position;
 use crate::command::robot::position::FourAxes;
-use crate::command::yrcx::backup::{POINTS, Records};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::position::{Unit, mm, position, unit_of};
@@ -56,8 +55,17 @@ impl Kind for Points {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.point");
-    const RECORDS: &'static Records = &POINTS;
-    const HEADINGS: &'static [&'static str] = &["unit", "axis 1", "axis 2", "axis 3", "axis 4", "hand"];
+    const READ: (table::Command, Key) = (table::Command::PointGet, Key::Point);
+    const WRITE: table::Command = table::Command::PointSet;
+    const NUMBERS: &'static [&'static str] = &["0..29999"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("unit", Key::Unit, "unit"),
+        ("axis_1", Key::Axis1, "axis 1"),
+        ("axis_2", Key::Axis2, "axis 2"),
+        ("axis_3", Key::Axis3, "axis 3"),
+        ("axis_4", Key::Axis4, "axis 4"),
+        ("hand_system", Key::HandSystem, "hand"),
+    ];
     const IS_SMALL: bool = false;
 
     fn line(values: &Values) -> Option<String> {
@@ -171,7 +179,7 @@ mod tests {
     use serde_json::json;
 
     use crate::command::yrcx::testing::{
-        Reply, Scripted, example, objection, read_example, report_on, run_on, words, written,
+        Reply, Scripted, example, objects, read_example, report_on, run_on, words, written,
     };
     use crate::failure::Kind;
 
@@ -195,17 +203,14 @@ mod tests {
     fn coordinates_have_a_unit_and_a_hand() {
         let sent = written(&["point", "set", "0", "--mm", "1,-2.5,0,0", "--hand", "left"]).unwrap();
         assert_eq!(sent[0][..8], ["0x0100", "0x0005", "0x0000", "0x0000", "0x03E8", "0x0000", "0xF63C", "0xFFFF"]);
-        for (line, part) in [
+        objects([
             ("point set 1", "--mm"),
             ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, as in 10,-20,5,-18; 3 given"),
             ("point set 1 --mm 1,2,3,4 --pulse 1,2,3,4", "cannot be used with"),
             ("point set 1 --pulse 1,2,3,4 --hand left", "cannot be used with"),
             ("point set 30000 --mm 1,2,3,4", "allowed: 0 to 29999"),
             ("point get 0..30000", "allowed: 0 to 29999"),
-        ] {
-            let objection = objection(&line.split(' ').collect::<Vec<_>>());
-            assert!(objection.contains(part), "{line}: {objection}");
-        }
+        ]);
         let failure = words(&["point", "set", "1", "--mm", "1.0005,2,3,4"]).unwrap_err();
         assert!(failure.message.contains("axis_1"), "{failure}");
         assert_eq!(words(&["point", "get", "1", "--unit", "2"]).unwrap_err().kind, Kind::Usage);

@@ -1,5 +1,7 @@
 //! Points with their comments, as a spreadsheet has them: `yrcx point dump` and `restore`.
 
+use std::collections::{HashMap, HashSet};
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -9,8 +11,8 @@ use crate::command::frame::store::{
 };
 use crate::command::robot::item::Plain;
 use crate::command::robot::position::FourAxes;
-use crate::command::yrcx::backup::{COMMENTS, POINTS};
 use crate::command::yrcx::link::{Link, Yrcx};
+use crate::command::yrcx::several::plan_each;
 use crate::command::yrcx::stores::{Draft as Texts, Kind as _, Numbered, Row};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -55,19 +57,18 @@ impl Content {
 }
 
 impl PointSheet {
-    /// Reads points or comments or both; comments only of points that are defined.
+    /// Reads points, if they are wanted, and the comments of some of them, if they are defined.
     async fn read_parts(
         &self,
         link: &mut Link,
         screen: &Screen,
-        numbers: &[i32],
-        [has_points, has_comments]: [bool; 2],
+        (numbers, has_points): (&[i32], bool),
+        commented: &[i32],
     ) -> Result<Answers<Content>, Failure> {
         if link.is_dry() {
-            let parts = [(&POINTS, has_points), (&COMMENTS, has_comments)];
-            let parts = parts.into_iter().filter(|(_, is_read)| *is_read);
-            let orders = parts.flat_map(|(records, _)| numbers.iter().map(|number| records.read(*number)));
-            link.plan_all(&orders.collect::<Result<Vec<_>, Failure>>()?)?;
+            let points = numbers.iter().filter(|_| has_points).map(|number| Numbered::<Points>::read_order(*number));
+            let comments = commented.iter().map(|number| Numbered::<Comments>::read_order(*number));
+            plan_each(link, &points.chain(comments).collect::<Result<Vec<_>, Failure>>()?)?;
         }
         let mut asked = numbers.len();
         let points: Vec<Result<Option<Row>, Failure>> = if has_points {
@@ -77,20 +78,21 @@ impl PointSheet {
         } else {
             numbers.iter().map(|_| Ok(None)).collect()
         };
-        let defined = numbers.iter().zip(&points).filter(|(_, point)| has_comments && point.is_ok());
-        let defined: Vec<i32> = defined.map(|(number, _)| *number).collect();
+        let undefined = numbers.iter().zip(&points).filter(|(_, point)| point.is_err());
+        let undefined: HashSet<i32> = undefined.map(|(number, _)| *number).collect();
+        let commented: Vec<i32> = commented.iter().copied().filter(|number| !undefined.contains(number)).collect();
         let comments =
-            if defined.is_empty() { Vec::new() } else { self.comments.read(link, screen, &defined).await?.rows };
-        let mut comments = comments.into_iter();
-        let content = |point: Result<Option<Row>, Failure>| {
+            if commented.is_empty() { Vec::new() } else { self.comments.read(link, screen, &commented).await?.rows };
+        let mut comments: HashMap<i32, _> = commented.into_iter().zip(comments).collect();
+        let content = |(number, point): (&i32, Result<Option<Row>, Failure>)| {
             let point = point?;
-            let comment = match comments.next().transpose() {
+            let comment = match comments.remove(number).transpose() {
                 Err(failure) if !Self::is_undefined(&failure) => return Err(failure),
                 comment => comment.ok().flatten().flatten(),
             };
             Ok(Some(Content { point, comment }))
         };
-        Ok(Answers { rows: points.into_iter().map(content).collect(), asked })
+        Ok(Answers { rows: numbers.iter().zip(points).map(content).collect(), asked })
     }
 }
 
@@ -127,7 +129,7 @@ impl Store for PointSheet {
     }
 
     fn texts(&self, Content { point, comment }: &Content) -> Vec<String> {
-        let blank = || vec![String::new(); Points::HEADINGS.len()];
+        let blank = || vec![String::new(); Points::FIELDS.len()];
         let point = point.as_ref().map_or_else(blank, |row| self.points.texts(row));
         let comment = comment.as_ref().map_or_else(|| vec![String::new()], |row| self.comments.texts(row));
         [point, comment].concat()
@@ -156,7 +158,7 @@ impl Store for PointSheet {
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Content>, Failure> {
-        self.read_parts(link, screen, numbers, [true, true]).await
+        self.read_parts(link, screen, (numbers, true), numbers).await
     }
 }
 
@@ -166,7 +168,7 @@ impl Writable for PointSheet {
     const RISK: Risk = Risk::Destroy;
 
     fn draft(&self, number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
-        let (point, comment) = texts.split_at(Points::HEADINGS.len());
+        let (point, comment) = texts.split_at(Points::FIELDS.len());
         if point[0].is_none() && point[1..5].iter().any(Option::is_some) {
             return Err("column unit is missing: the axes are in mm or in pulses".to_owned());
         }
@@ -197,8 +199,9 @@ impl Writable for PointSheet {
     ) -> Result<Answers<Content>, Failure> {
         let numbers: Vec<i32> = rows.iter().map(|(number, _)| *number).collect();
         let has_points = rows.iter().any(|(_, draft)| draft.point.is_some());
-        let has_comments = rows.iter().any(|(_, draft)| draft.comment.is_some());
-        self.read_parts(link, screen, &numbers, [has_points, has_comments]).await
+        let commented = rows.iter().filter(|(_, draft)| draft.comment.is_some());
+        let commented: Vec<i32> = commented.map(|(number, _)| *number).collect();
+        self.read_parts(link, screen, (&numbers, has_points), &commented).await
     }
 
     async fn plan(&self, link: &mut Link, rows: &[TableRow<Self>]) -> Result<(), Failure> {
@@ -242,7 +245,7 @@ mod tests {
     fn held(texts: [&str; 6]) -> Content {
         let texts: Vec<Option<String>> = texts.into_iter().map(|text| Some(text.to_owned())).collect();
         let point = Numbered::<Points>::default().complete_draft(7, &texts, None).unwrap();
-        Content { point: Some(point), comment: Some(Row::new::<Comments>(7, Values::default())) }
+        Content { point: Some(point), comment: Some(Row::new::<Comments>(Values::default())) }
     }
 
     #[test]

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::frame::store::{Ids, TableWords, ids, table_commands};
-use crate::command::yrcx::backup::{Records, SHIFTS};
 use crate::command::yrcx::stores::{Kind, Numbered, all_zero, mm as mm_of};
+use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
 
 table_commands! {
@@ -27,8 +27,15 @@ impl Kind for Shifts {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.shift-data");
-    const RECORDS: &'static Records = &SHIFTS;
-    const HEADINGS: &'static [&'static str] = &["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"];
+    const READ: (Command, Key) = (Command::ShiftGet, Key::Shift);
+    const WRITE: Command = Command::ShiftSet;
+    const NUMBERS: &'static [&'static str] = &["0..39"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("axis_1_mm", Key::Axis1, "axis 1 (mm)"),
+        ("axis_2_mm", Key::Axis2, "axis 2 (mm)"),
+        ("axis_3_mm", Key::Axis3, "axis 3 (mm)"),
+        ("axis_4_mm", Key::Axis4, "axis 4 (mm)"),
+    ];
 
     fn value(values: &Values) -> Option<Shift> {
         Some(Shift { shift_mm: Key::AXES.map(|key| mm_of(values, key)) })

@@ -2,21 +2,19 @@
 
 use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::check;
-use super::connect::{adapter, options, request_timeout};
+use super::connect::{adapter, request_timeout};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus::{self, At};
+use crate::command::yrcx::fieldbus::{At, BusBoard, Checked};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
 use crate::output::view::Cell;
 use crate::settings::target::bus::Scheme;
-use crate::settings::target::devicenet::DeviceNet;
+use crate::settings::target::devicenet::{BUS, DeviceNet};
 use crate::transport::devicenet::error::Error;
 use crate::transport::devicenet::link::{produced, read};
 use crate::transport::devicenet::network::{Connection, Network, Tap};
@@ -25,8 +23,6 @@ use crate::transport::devicenet::settings::{Purpose, Settings};
 use crate::transport::devicenet::wire::{Request, class, connection};
 use crate::transport::image::LinkError;
 
-/// Vendor id of the manufacturer of YRCX.
-pub const MAKER: u16 = 636;
 /// Time to listen for the polls of another master.
 const LISTEN: Duration = Duration::from_secs(1);
 
@@ -46,7 +42,7 @@ impl Board {
     /// Node of a URL.
     pub(super) fn new(at: &At<'_>) -> Result<Self, LinkError> {
         Ok(Self {
-            node: options(at)?.clone(),
+            node: at.options::<DeviceNet>()?.clone(),
             scheme: at.bus.scheme,
             label: at.robot.label(),
             timeout: request_timeout(at),
@@ -174,13 +170,16 @@ impl Board {
     }
 }
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
+impl BusBoard for Board {
+    const BUS: &'static str = BUS;
+    const DEVICE: &'static str = "node";
+
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::look(self, layers).await
     }
 
-    fn close(mut self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        async move { self.release().await }.boxed_local()
+    async fn end(mut self) {
+        self.release().await;
     }
 }
 

@@ -1,7 +1,8 @@
 //! Layers of `armctl robots check` for a DeviceNet node: from the adapter to the image of the controller.
 
-use super::board::{Board, MAKER};
+use super::board::Board;
 use crate::command::face::layers::Layers;
+use crate::command::yrcx::fieldbus::{Checked, InLayer as _, MAKER};
 use crate::controller::yrcx::image::Image;
 use crate::failure::Kind;
 use crate::transport::devicenet::can::BusState;
@@ -10,24 +11,12 @@ use crate::transport::devicenet::can::BusState;
 pub(super) const LAYERS: &[&str] = &["name", "adapter", "bus", "MAC ID", "owner", "identity", "sizes", "inputs"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let node = board.node().clone();
     layers.ok("name", format!("MAC {} behind {}", node.mac, node.place));
-    let network = match board.network().await {
-        Err(failure) => {
-            layers.fail("adapter", &failure);
-            return None;
-        }
-        Ok(network) => network,
-    };
+    let network = board.network().await.in_layer("adapter")?;
     layers.ok("adapter", format!("{} at {}", node.place, node.bitrate));
-    let nodes = match board.nodes().await {
-        Err(failure) => {
-            layers.fail("bus", &failure);
-            return None;
-        }
-        Ok(nodes) => nodes,
-    };
+    let nodes = board.nodes().await.in_layer("bus")?;
     let (health, frames) = network.health();
     let advice = "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm)";
     match health.state {
@@ -39,8 +28,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         _ => layers.ok("bus", count(nodes.len())),
     }
     if !nodes.iter().any(|found| found.mac == node.mac.number()) {
-        layers.fail("MAC ID", &board.absent(&nodes));
-        return None;
+        return Err(("MAC ID", board.absent(&nodes)));
     }
     layers.ok("MAC ID", format!("MAC {} is on line", node.mac));
     let identity = match board.identity().await {
@@ -48,11 +36,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
             layers.warn("owner", "another master, such as a PLC or a session, has its connections", OWNED);
             return overheard(board, layers).await;
         }
-        Err(failure) => {
-            layers.fail("owner", &failure);
-            return None;
-        }
-        Ok(identity) => identity,
+        identity => identity.in_layer("owner")?,
     };
     layers.ok("owner", "no master");
     let name = identity.name.as_deref().unwrap_or("without a name");
@@ -70,30 +54,24 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     }
     let image = board.image().await;
     board.release().await;
+    let image = image.in_layer("inputs")?;
     match image {
-        Err(failure) => layers.fail("inputs", &failure),
-        Ok(None) => layers.warn("inputs", "sent only in polls", "`armctl session open` polls it"),
-        Ok(Some(image)) => {
-            layers.ok("inputs", "readable");
-            return Some(image);
-        }
+        None => layers.warn("inputs", "sent only in polls", "`armctl session open` polls it"),
+        Some(_) => layers.ok("inputs", "readable"),
     }
-    None
+    Ok(image)
 }
 
 const OWNED: &str = "to send commands, stop the scan of that master; read-only commands work in parallel";
 
 /// With another master on the bus, only listening is possible.
-async fn overheard(board: &mut Board, layers: &mut Layers) -> Option<Image> {
-    match board.overheard().await {
-        Err(failure) => layers.fail("inputs", &failure),
-        Ok(None) => layers.warn("inputs", "the master does not poll the controller", "check the PLC"),
-        Ok(Some(image)) => {
-            layers.ok("inputs", "received from its answers to the master");
-            return Some(image);
-        }
+async fn overheard(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
+    let image = board.overheard().await.in_layer("inputs")?;
+    match image {
+        None => layers.warn("inputs", "the master does not poll the controller", "check the PLC"),
+        Some(_) => layers.ok("inputs", "received from its answers to the master"),
     }
-    None
+    Ok(image)
 }
 
 /// Name of an image size.

@@ -10,7 +10,7 @@ use crate::transport::devicenet::link::{Listened, Polled, Reading};
 use crate::transport::devicenet::network::{Adapter, Network};
 use crate::transport::devicenet::scanner::Identity;
 use crate::transport::devicenet::settings::{Images, Profile, Purpose as For, Settings};
-use crate::transport::image::{Cause, ImageLink, LinkError};
+use crate::transport::image::{ImageLink, LinkError};
 
 /// Time to wait for images of another master, whose polls can be slow.
 const LISTEN: Duration = Duration::from_secs(1);
@@ -29,7 +29,7 @@ pub(super) fn profiles() -> Vec<Profile> {
 }
 
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let node = options(&at)?;
+    let node: &DeviceNet = at.options()?;
     if purpose == Purpose::Look {
         return look(&at, node).await;
     }
@@ -68,10 +68,6 @@ pub(super) fn adapter(node: &DeviceNet) -> Adapter {
     let serial = 0x4152_0000 | crate::transport::session::process() & 0xFFFF;
     let identity = Identity { mac: node.master, vendor: UNREGISTERED_VENDOR, serial };
     Adapter { place: node.place.clone(), bitrate: node.bitrate, identity: Some(identity) }
-}
-
-pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a DeviceNet, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of DeviceNet", at.bus))))
 }
 
 /// Half of the robot's timeout, because a request is sent twice before it fails.

@@ -6,9 +6,9 @@ use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::board::{MAKER, Node};
+use super::board::Node;
 use super::connect::adapter;
-use crate::command::yrcx::fieldbus::{self, Device, Scope, bus_of, fields};
+use crate::command::yrcx::fieldbus::{self, Device, MAKER, Scope, bus_of, fields};
 use crate::command::yrcx::link_error::not_open;
 use crate::failure::Failure;
 use crate::settings::target::Bus;

@@ -13,27 +13,17 @@ mod scan;
 mod serve;
 pub mod simulated;
 
-use self::board::Board;
-use super::link::Link;
+use super::messages::ReadBoard;
 use crate::command::commands;
-use crate::failure::Failure;
-use crate::settings::target::devicenet::BUS;
-
-fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
-    link.board(BUS)
-}
-
-/// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the node belongs to the whole controller";
 
 commands! {
     /// Commands on the bus.
     pub enum DeviceNet {
         /// List the nodes on the bus; no node is allocated
-        Scan(scan::Scan),
+        Scan(ReadBoard<scan::Scanned>),
         /// Identity of the controller's node
-        Identity(identity::Identify),
+        Identity(ReadBoard<identity::Identified>),
         /// Image sizes and owner of the node
-        Probe(probe::Probe),
+        Probe(ReadBoard<probe::Probed>),
     }
 }

@@ -1,45 +1,17 @@
 //! `yrcx devicenet probe`.
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::board::Identity;
+use super::board::{Board, Identity};
 use super::check::profile;
-use super::{NO_UNIT, board_of};
-use crate::command::yrcx::link::Yrcx;
-use crate::command::{Command, ConnectMode, Context, Report};
+use crate::command::Report;
+use crate::command::yrcx::messages::BoardReport;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, View};
 
-/// Reads the image sizes from the node; they show how the unit is set. Its connections are allocated for the request
-/// and released; no polls are sent.
-#[derive(Debug, Args)]
-pub struct Probe {}
-
-impl Command for Probe {
-    type Family = Yrcx;
-    type Report = Probed;
-    const ID: &'static str = "yrcx.devicenet.probe";
-    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
-        context.link.no_unit(NO_UNIT)?;
-        context.link.then("messages that read the identity and the image sizes of the node");
-        let board = board_of(context.link)?;
-        let identity = match board.identity().await {
-            Ok(identity) => Some(identity),
-            Err(failure) if failure.kind == Kind::Refused => None,
-            Err(failure) => return Err(failure),
-        };
-        let owned = identity.is_none();
-        let sizes = if owned { (None, None) } else { board.sizes().await? };
-        let profile = profile(sizes);
-        Ok(Probed { identity, owned, in_size: sizes.0, out_size: sizes.1, profile })
-    }
-}
-
-/// Result of the probe.
+/// Image sizes of the node; they show how the unit is set. Its connections are allocated for the request and released;
+/// no polls are sent.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Probed {
     /// Null if another master owns the connections, because no other client can then read.
@@ -52,6 +24,24 @@ pub struct Probed {
     out_size: Option<u16>,
     /// Meaning of the sizes.
     profile: Option<&'static str>,
+}
+
+impl BoardReport for Probed {
+    type Board = Board;
+    const ID: &'static str = "yrcx.devicenet.probe";
+    const MESSAGES: &'static str = "messages that read the identity and the image sizes of the node";
+
+    async fn read(board: &mut Board) -> Result<Self, Failure> {
+        let identity = match board.identity().await {
+            Ok(identity) => Some(identity),
+            Err(failure) if failure.kind == Kind::Refused => None,
+            Err(failure) => return Err(failure),
+        };
+        let owned = identity.is_none();
+        let sizes = if owned { (None, None) } else { board.sizes().await? };
+        let profile = profile(sizes);
+        Ok(Self { identity, owned, in_size: sizes.0, out_size: sizes.1, profile })
+    }
 }
 
 impl Report for Probed {

@@ -10,9 +10,8 @@ use super::simulated::{self, Controller, FAULTS, size};
 #[cfg(unix)]
 use crate::command::serve::terminal_link::TerminalLink;
 use crate::command::serve::{address, bind_failure};
-use crate::command::yrcx::fieldbus::{Operator, Serve, Served};
+use crate::command::yrcx::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::command::yrcx::simulated::{faults, faults_of_option};
-use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::devicenet::SLCAN;
 use crate::transport::devicenet::can::Bitrate;
@@ -49,13 +48,7 @@ impl Serve for ServeArgs {
         cfg!(unix)
     }
 
-    fn serve(
-        &self,
-        simulator: Option<&str>,
-        start: Start,
-        link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure> {
+    fn serve(&self, ToServe { simulator, start, link, faults }: ToServe<'_>) -> Result<Served, Failure> {
         let setup = Setup::stand_in(self.mac, self.bitrate, size(simulator));
         #[cfg(unix)]
         let terminal = link.map(|_| Listen::Pty);

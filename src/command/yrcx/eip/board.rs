@@ -2,14 +2,12 @@
 
 use std::net::SocketAddrV4;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{check, connect};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus::{self, At};
+use crate::command::yrcx::fieldbus::{At, BusBoard, Checked};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::text;
 use crate::controller::yrcx::image::Image;
@@ -50,6 +48,11 @@ impl Board {
     /// Options of the URL.
     pub fn settings(&self) -> &eip::Eip {
         &self.eip
+    }
+
+    /// Robot in messages.
+    pub fn label(&self) -> &str {
+        &self.label
     }
 
     /// TCP address.
@@ -161,13 +164,16 @@ impl Board {
     }
 }
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
+impl BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "board";
+
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::look(self, layers).await
     }
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        self.client.close().boxed_local()
+    async fn end(self) {
+        self.client.close().await;
     }
 }
 
@@ -244,9 +250,6 @@ const CLASSES: [(u32, &str); 7] = [
     (0xF5, "TCP/IP interface"),
     (0xF6, "Ethernet link"),
 ];
-
-/// Vendor id of the manufacturer of YRCX.
-pub const MAKER: u16 = 636;
 
 /// Identity of a board. The name is untrusted.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]

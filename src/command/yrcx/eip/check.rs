@@ -1,7 +1,8 @@
 //! Layers of `armctl robots check` for a network board: from the host name to the image of the controller.
 
-use super::board::{Board, MAKER};
+use super::board::Board;
 use crate::command::face::layers::Layers;
+use crate::command::yrcx::fieldbus::{Checked, InLayer as _, MAKER};
 use crate::controller::yrcx::image::Image;
 use crate::settings::target::eip::Eip;
 use crate::transport::eip::probe::Presence;
@@ -10,32 +11,22 @@ use crate::transport::eip::probe::Presence;
 pub(super) const LAYERS: &[&str] = &["name", "board", "identity", "connection", "owner", "inputs"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     layers.ok("name", format!("{} is {}", board.settings().host, board.address()));
-    match board.services().await {
-        Err(failure) => {
-            layers.fail("board", &failure);
-            return None;
-        }
-        Ok(None) => layers.warn(
+    match board.services().await.in_layer("board")? {
+        None => layers.warn(
             "board",
             "it accepts sessions but lists no services",
             "check that the address is that of a robot's network board",
         ),
-        Ok(Some(services)) if services.len() == 2 => layers.ok("board", services.join(", ")),
-        Ok(Some(_)) => layers.warn(
+        Some(services) if services.len() == 2 => layers.ok("board", services.join(", ")),
+        Some(_) => layers.warn(
             "board",
             "it does not support cyclic images",
             "check that the address is that of a robot's network board",
         ),
     }
-    let identity = match board.identity().await {
-        Err(failure) => {
-            layers.fail("identity", &failure);
-            return None;
-        }
-        Ok(identity) => identity,
-    };
+    let identity = board.identity().await.in_layer("identity")?;
     match &identity {
         Some(identity) => {
             let told = format!("{}, vendor {}, revision {}", identity.name, identity.vendor, identity.revision);
@@ -54,16 +45,9 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         ("no master", "another master, such as a PLC or a session, commands it"),
         "to send commands, stop that connection; read-only commands work in parallel",
     );
-    match board.image().await {
-        Err(failure) => {
-            layers.fail("inputs", &failure);
-            None
-        }
-        Ok(image) => {
-            layers.ok("inputs", format!("assembly {} is readable", board.settings().input));
-            Some(image)
-        }
-    }
+    let image = board.image().await.in_layer("inputs")?;
+    layers.ok("inputs", format!("assembly {} is readable", board.settings().input));
+    Ok(Some(image))
 }
 
 /// Compares the URL with the assemblies of the board. It requests no connection, because that could take control.

@@ -14,7 +14,7 @@ use crate::transport::eip::wire::Key;
 use crate::transport::image::{Cause, ImageLink, LinkError};
 
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let eip = options(&at)?;
+    let eip: &Eip = at.options()?;
     if purpose == Purpose::Look && eip.role == EipRole::Owner {
         return look(&at, eip).await;
     }
@@ -24,13 +24,9 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
 
 /// Opens a message session with the board.
 pub(super) async fn client(at: &At<'_>) -> Result<(Client, Eip), LinkError> {
-    let eip = options(at)?;
+    let eip: &Eip = at.options()?;
     let target = resolve(&eip.host, eip.port).await?;
     Ok((Client::new(target, at.robot.timeout.value, at.tap.clone().into()), eip.clone()))
-}
-
-fn options<'a>(at: &At<'a>) -> Result<&'a Eip, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of EtherNet/IP", at.bus))))
 }
 
 /// Heartbeat instances of input-only connections on boards of several manufacturers, in the order in which they are

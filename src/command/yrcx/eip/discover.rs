@@ -8,8 +8,8 @@ use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::board::{Identity, MAKER};
-use crate::command::yrcx::fieldbus::{self, Device, Scope, fields};
+use super::board::Identity;
+use crate::command::yrcx::fieldbus::{self, Device, MAKER, Scope, fields};
 use crate::failure::{Failure, Kind, plain};
 use crate::settings::target::eip::SCHEME;
 use crate::transport::eip::PORT;

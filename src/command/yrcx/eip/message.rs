@@ -5,8 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
 
-use super::board::{Object, shown};
-use super::{NO_UNIT, board_of};
+use super::board::{Board, Object, shown};
 use crate::command::frame::dry_run::Known as _;
 use crate::command::frame::settings_report::{Done, NewValue, OLD_VALUE, Old, nothing_written};
 use crate::command::yrcx::link::Yrcx;
@@ -43,12 +42,12 @@ impl Command for Get {
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
-        context.link.no_unit(NO_UNIT)?;
+        context.link.no_unit_of::<Board>()?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
         let asked = object.get_bytes();
         context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
-        let bytes = board_of(context.link)?.get(object).await?;
+        let bytes = context.link.board::<Board>()?.get(object).await?;
         context.link.tell_message(&asked, &bytes, &about);
         Ok(Value::of(object, &bytes))
     }
@@ -96,18 +95,18 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
-        context.link.no_unit(NO_UNIT)?;
+        context.link.no_unit_of::<Board>()?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
         context.link.plan_frame(json!({ "hex": text::hex(&object.get_bytes()), "about": OLD_VALUE })).known()?;
         context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
         context.link.authorize("yrcx.eip.set", self.risk())?;
-        let old = match board_of(context.link)?.get(object).await {
+        let old = match context.link.board::<Board>()?.get(object).await {
             Ok(bytes) => Some(text::hex(&bytes)),
             Err(failure) if failure.kind == Kind::Refused => None,
             Err(failure) => return Err(nothing_written(failure)),
         };
-        board_of(context.link)?.set(object, &self.data.0).await?;
+        context.link.board::<Board>()?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
         let words = format!("set {object} to {}", shown(&self.data.0));
         let new = NewValue::of("attribute", text::hex(&self.data.0), words);

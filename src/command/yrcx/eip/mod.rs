@@ -14,24 +14,14 @@ mod probe;
 mod serve;
 pub mod simulated;
 
-use self::board::Board;
-use super::link::Link;
+use super::messages::ReadBoard;
 use crate::command::commands;
-use crate::failure::Failure;
-use crate::settings::target::eip::SCHEME;
-
-fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
-    link.board(SCHEME.bus)
-}
-
-/// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the board belongs to the whole controller";
 
 commands! {
     /// Commands for the network board.
     pub enum Eip {
         /// Identity of the network board
-        Identity(identity::Identify),
+        Identity(ReadBoard<identity::Identified>),
         /// Find the assemblies of the board, their sizes and connection parameters
         Probe(probe::Probe),
         /// Read an attribute of a board object (raw)

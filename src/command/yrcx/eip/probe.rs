@@ -4,8 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::board::{self, Probed, warned};
-use super::{NO_UNIT, board_of};
+use super::board::{Board, Identity, Probed, warned};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
@@ -41,13 +40,13 @@ impl Command for Probe {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
-        context.link.no_unit(NO_UNIT)?;
+        context.link.no_unit_of::<Board>()?;
         context.link.then("messages that read the identity and the assemblies of the board");
         if self.tries {
             context.link.then("requests for owner connections (ForwardOpen) with invalid sizes");
             context.link.authorize(Self::ID, self.risk())?;
         }
-        let board = board_of(context.link)?;
+        let board: &mut Board = context.link.board()?;
         let identity = board.identity().await?;
         let probed =
             if self.tries { board.probe(identity.as_ref()).await? } else { board.survey(identity.as_ref()).await? };
@@ -59,7 +58,7 @@ impl Command for Probe {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProbeReport {
     /// Null if the board does not report it.
-    identity: Option<board::Identity>,
+    identity: Option<Identity>,
     #[serde(flatten)]
     probed: Probed,
     #[serde(skip)]

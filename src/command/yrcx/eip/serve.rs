@@ -1,15 +1,13 @@
 //! Server for a simulated controller as an EtherNet/IP adapter.
 
 use std::net::SocketAddrV4;
-use std::path::Path;
 
 use clap::Args;
 
 use super::simulated::{self, Controller, FAULTS};
 use crate::command::serve::{address, bind_failure};
-use crate::command::yrcx::fieldbus::{Operator, Serve, Served};
+use crate::command::yrcx::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::command::yrcx::simulated::{faults, faults_of_option};
-use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::eip::SCHEME;
 use crate::transport::eip::adapter::server::{Listen, Server};
@@ -35,13 +33,7 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
 }
 
 impl Serve for ServeArgs {
-    fn serve(
-        &self,
-        _simulator: Option<&str>,
-        start: Start,
-        _link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure> {
+    fn serve(&self, ToServe { start, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let server = simulated::serve(start, listen, faults_of_option(faults, &FAULTS)?).map_err(|error| {

@@ -7,7 +7,7 @@ use serde_json::Value as Json;
 use super::Link;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::trace::lock_writer;
-use crate::command::yrcx::fieldbus::Board;
+use crate::command::yrcx::fieldbus::{Board, BusBoard};
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
 
@@ -22,13 +22,18 @@ impl Link {
     }
 
     /// Explicit messaging client of a specific fieldbus.
-    pub fn board<B: Board>(&mut self, fieldbus: &str) -> Result<&mut B, Failure> {
+    pub fn board<B: BusBoard>(&mut self) -> Result<&mut B, Failure> {
         let label = self.label.clone();
         let board: &mut dyn Any = self.any_board()?;
         board.downcast_mut().ok_or_else(|| {
-            Failure::usage(format!("{label} is not on {fieldbus}"))
+            Failure::usage(format!("{label} is not on {}", B::BUS))
                 .hint("`armctl yrcx --help` lists the commands of each fieldbus")
         })
+    }
+
+    /// Rejects `--unit`, because the device of the fieldbus belongs to the whole controller.
+    pub fn no_unit_of<B: BusBoard>(&self) -> Result<(), Failure> {
+        self.no_unit(&format!("the {} belongs to the whole controller", B::DEVICE))
     }
 
     /// Prints a request and its answer at `-vv`.

@@ -8,7 +8,7 @@ use crate::command::yrcx::position::Unit;
 
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
 /// Moves by the inching distance.
@@ -56,10 +56,6 @@ impl Motion for Inch {
 
     fn usual_unit(&self) -> Option<Unit> {
         Some(self.system.unit())
-    }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
     }
 }
 

@@ -50,7 +50,7 @@ pub use tool::Movet;
 /// A motion that ends on its own and can report the position; [`Moving`] makes it a command.
 pub trait Motion: Args {
     /// Report type.
-    type Report: Report + 'static;
+    type Report: FromMotion + 'static;
     /// `yrcx.move`: name in envelopes and schemas.
     const ID: &'static str;
     /// Verb forms: move, moving, moved.
@@ -87,9 +87,18 @@ pub trait Motion: Args {
     fn usual_unit(&self) -> Option<Unit> {
         None
     }
+}
 
+/// Report of a motion.
+pub trait FromMotion: Report {
     /// Report of the motion; `values` are those of the answer, if the motion has ended.
-    fn report(&self, moved: MotionReport, values: Option<&Values>) -> Self::Report;
+    fn from_motion(moved: MotionReport, values: Option<&Values>) -> Self;
+}
+
+impl FromMotion for MotionReport {
+    fn from_motion(moved: MotionReport, _values: Option<&Values>) -> Self {
+        moved
+    }
 }
 
 /// A motion as a command.
@@ -143,7 +152,7 @@ impl<M: Motion> Command for Moving<M> {
         let words = if done.is_some() { has_done } else { doing };
         let mut report = MotionReport::new(words, &order, done.as_ref(), self.unit());
         report.motion.targets = self.motion.targets();
-        Ok(self.motion.report(report, done.as_ref().map(|done| &done.values)))
+        Ok(M::Report::from_motion(report, done.as_ref().map(|done| &done.values)))
     }
 }
 

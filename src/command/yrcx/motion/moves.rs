@@ -7,7 +7,7 @@ use crate::command::yrcx::arguments::{Arch, Axes, Hand, Pace, Ramps};
 use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
 /// Moves to a point, or to coordinates.
@@ -112,18 +112,13 @@ impl Motion for Move {
     fn targets(&self) -> Vec<Target> {
         targets(&self.axes, &self.to, &self.to_pulse)
     }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{Reply, Scripted, frames, intent, objection, run_on, words};
-    use crate::failure::Kind;
+    use crate::command::yrcx::testing::{Reply, Scripted, frames, intent, objects, rejects, run_on, words};
 
     #[test]
     fn some_axes_and_another_robot() {
@@ -166,7 +161,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_meant_is_rejected() {
-        for (line, part) in [
+        rejects([
             ("move --to 1,2,3", "3 numbers for 4 axes"),
             ("move --to 1,2 --axes 1", "2 numbers for 1 axes"),
             ("move --to 1 --axes 5", "axes of 1 to 4"),
@@ -186,12 +181,8 @@ mod tests {
             ("move --point 1 --arch 1,2:5", "arch_axis"),
             ("move --point 1 --arch 1:5 --accel 5", "move-arch has neither --accel"),
             ("move --point 1 --accel 0", "accel_percent: 0 is out of range; allowed: 1 to 100 %"),
-        ] {
-            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
-            assert_eq!(failure.kind, Kind::Usage, "{line}");
-            assert!(failure.message.contains(part), "{line}: {failure}");
-        }
-        for (line, part) in [
+        ]);
+        objects([
             ("move", "--point"),
             ("move --point 1 --to 1,2,3,4", "cannot be used with"),
             ("move --to 1,2,3,4 --linear", "cannot be used with"),
@@ -202,10 +193,7 @@ mod tests {
             ("move --point 1 --arch 5", "as in 3:10.0"),
             ("move --point 1 --hand left", "cannot be used with"),
             ("move --point 1 --unit 5", "0..=4"),
-        ] {
-            let objection = objection(&line.split(' ').collect::<Vec<_>>());
-            assert!(objection.contains(part), "{line}: {objection}");
-        }
+        ]);
     }
 
     #[test]

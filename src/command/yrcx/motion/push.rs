@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::drive::Destination;
-use super::{Motion, MotionReport};
+use super::{FromMotion, Motion, MotionReport};
 use crate::command::Report;
 use crate::command::yrcx::arguments::Pace;
 use crate::controller::yrcx::order::Draft;
@@ -73,11 +73,6 @@ impl Motion for Push {
             self.time.map(|ms| format!(", for {}", duration::display(Duration::from_millis(ms.unsigned_abs().into()))));
         format!("{}{}{}", self.pace.describe(), force.unwrap_or_default(), time.unwrap_or_default())
     }
-
-    fn report(&self, moved: MotionReport, values: Option<&Values>) -> Pushed {
-        let push_result = values.and_then(|values| values.int(Key::PushResult));
-        Pushed { moved, push_completed: push_result.map(|result| result == 1), push_result }
-    }
 }
 
 /// Result of a push.
@@ -89,6 +84,13 @@ pub struct Pushed {
     push_completed: Option<bool>,
     /// Raw result: 1 or 0.
     push_result: Option<i32>,
+}
+
+impl FromMotion for Pushed {
+    fn from_motion(moved: MotionReport, values: Option<&Values>) -> Self {
+        let push_result = values.and_then(|values| values.int(Key::PushResult));
+        Self { moved, push_completed: push_result.map(|result| result == 1), push_result }
+    }
 }
 
 impl Report for Pushed {

@@ -6,7 +6,7 @@ use super::{Motion, MotionReport};
 use crate::command::yrcx::arguments::{Axes, Pace, Ramps};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
 /// Moves to a point in tool coordinates: the point is relative to the tool, along its axes.
@@ -47,9 +47,5 @@ impl Motion for Movet {
 
     fn manner(&self) -> String {
         format!("{}, {}", self.axes.describe(&[]), self.pace.describe())
-    }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
     }
 }

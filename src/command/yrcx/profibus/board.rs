@@ -2,14 +2,12 @@
 
 use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{check, connect};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus::{self, At};
+use crate::command::yrcx::fieldbus::{At, BusBoard, Checked};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::text::hex;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
@@ -42,7 +40,7 @@ impl Board {
     /// Line of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
         let (label, timeout) = (at.robot.label(), at.robot.timeout.value);
-        Ok(Self { profibus: connect::options(at)?.clone(), label, timeout, tap: at.tap.clone() })
+        Ok(Self { profibus: at.options::<Profibus>()?.clone(), label, timeout, tap: at.tap.clone() })
     }
 
     /// Line without a robot.
@@ -144,13 +142,12 @@ impl Board {
     }
 }
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
-    }
+impl BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "station";
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        std::future::ready(()).boxed_local()
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::look(self, layers).await
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::board::Board;
 use crate::command::face::layers::Layers;
+use crate::command::yrcx::fieldbus::{Checked, InLayer as _};
 use crate::controller::yrcx::image::Image;
 use crate::failure::Kind;
 use crate::transport::profibus::port::latency_timer;
@@ -11,19 +12,13 @@ use crate::transport::profibus::port::latency_timer;
 pub(super) const LAYERS: &[&str] = &["name", "station", "ident", "configuration", "owner", "inputs"];
 
 /// Checks the layers. Returns the image of the controller, if it exchanges data with a master that is not on this line.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let settings = board.settings().clone();
     if !settings.is_owner {
         return overheard(board, layers).await;
     }
-    let answered = match board.station().await {
-        // The adapter failed, or another master is on the line.
-        Err(failure) => {
-            layers.fail("name", &failure);
-            return None;
-        }
-        Ok(answered) => answered,
-    };
+    // The failure is that of the adapter, or another master on the line.
+    let answered = board.station().await.in_layer("name")?;
     match latency_timer(&settings.port) {
         None => layers.ok("name", format!("{} opens, and no other master is active", settings.port)),
         Some(time) => layers.warn(
@@ -39,13 +34,13 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
             "check station and baud of the URL, wires A and B, the terminators, and that the controller is on. `yrcx \
              profibus scan` lists the stations that answer",
         );
-        return None;
+        return Ok(None);
     };
     if station.kind == "slave" {
         layers.ok("station", format!("station {} answers: {}", station.station, station.diagnosis));
     } else {
         layers.fail_with("station", station.kind, "check station of the URL: `yrcx profibus scan` lists the slaves");
-        return None;
+        return Ok(None);
     }
     let wanted = settings.ident.map(|ident| format!("{ident:#06x}"));
     match &station.ident {
@@ -87,23 +82,20 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
             "start a master with `armctl session open`; then `yrcx status` shows the signals",
         ),
     }
-    image
+    Ok(image)
 }
 
 /// With role=listen, only listening is possible.
-async fn overheard(board: &Board, layers: &mut Layers) -> Option<Image> {
+async fn overheard(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let opens = format!("{} opens; nothing is sent because of role=listen", board.settings().port);
-    match board.overheard().await {
-        Err(failure) if failure.kind != Kind::NoAnswer => layers.fail("name", &failure),
-        Err(failure) => {
-            layers.ok("name", opens);
-            layers.fail("inputs", &failure);
-        }
-        Ok(image) => {
-            layers.ok("name", opens);
-            layers.ok("inputs", "received from its answers to the master");
-            return image;
-        }
+    let heard = board.overheard().await;
+    if let Err(failure) = &heard
+        && failure.kind != Kind::NoAnswer
+    {
+        return heard.in_layer("name");
     }
-    None
+    layers.ok("name", opens);
+    let image = heard.in_layer("inputs")?;
+    layers.ok("inputs", "received from its answers to the master");
+    Ok(image)
 }

@@ -3,11 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::command::yrcx::fieldbus::{At, Purpose};
+use crate::command::yrcx::fieldbus::{At, Purpose, device_file};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::resting;
-use crate::failure::plain;
-use crate::files;
 use crate::settings::target::profibus::Profibus;
 use crate::transport::image::tap::Tap;
 use crate::transport::image::{Cause, ImageLink, LinkError};
@@ -19,7 +17,7 @@ use crate::transport::profibus::rates::Rate;
 use crate::transport::profibus::settings::Settings;
 
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let profibus = options(&at)?;
+    let profibus: &Profibus = at.options()?;
     // A read must not take the outputs, and a slave sends its image only to its master.
     if purpose == Purpose::Look || !profibus.is_owner {
         return listen(profibus, at.tap, at.robot.timeout.value).await;
@@ -41,10 +39,6 @@ const fn swapped(profibus: &Profibus) -> Swapped {
 
 /// Minimum time to listen, longer than the longest cycle of a master.
 const LISTEN: Duration = Duration::from_secs(3);
-
-pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a Profibus, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of PROFIBUS", at.bus))))
-}
 
 /// Opens the adapter; can be called again after a loss.
 pub(super) fn opener(profibus: &Profibus) -> Result<Opener, LinkError> {
@@ -83,10 +77,7 @@ pub(super) fn settings(profibus: &Profibus, calm: Duration) -> Result<Settings, 
 /// Reads a GSD file and selects the named module, or the only one with the size of the image.
 fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MAX_FILE).map_err(|error| {
-        LinkError::Local(wrong(plain(&error)).advice("set gsd= in the URL to the manufacturer's GSD file"))
-    })?;
-    let gsd = Gsd::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))?;
+    let gsd = device_file(path, MAX_FILE, "set gsd= in the URL to the manufacturer's GSD file", Gsd::parse)?;
     let found = match module {
         Some(name) => gsd.modules.iter().find(|module| module.name.eq_ignore_ascii_case(name)),
         None => gsd.fitting(Image::BYTES, Image::BYTES),

@@ -1,42 +1,15 @@
 //! `yrcx profibus diag`.
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{NO_UNIT, board_of};
-use crate::command::yrcx::link::Yrcx;
-use crate::command::{Command, ConnectMode, Context, Report};
+use super::board::Board;
+use crate::command::Report;
+use crate::command::yrcx::messages::BoardReport;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
-/// Reads the diagnosis of the station (Slave_Diag): state, and the diagnostic blocks of the unit, its modules and
-/// channels. The station is not locked and nothing changes.
-#[derive(Debug, Args)]
-pub struct Diag {}
-
-impl Command for Diag {
-    type Family = Yrcx;
-    type Report = Diagnosed;
-    const ID: &'static str = "yrcx.profibus.diag";
-    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Diagnosed, Failure> {
-        context.link.no_unit(NO_UNIT)?;
-        context.link.then("telegrams that read state, diagnosis and configuration of the station");
-        let board = board_of(context.link)?;
-        let diagnosis = board.diagnosis().await?;
-        Ok(Diagnosed {
-            station: board.settings().station,
-            ident: format!("{:#06x}", diagnosis.ident),
-            master: diagnosis.master,
-            states: diagnosis.words().collect(),
-            blocks: diagnosis.blocks.iter().map(ToString::to_string).collect(),
-        })
-    }
-}
-
-/// Diagnosis of a station.
+/// Diagnosis of a station (Slave_Diag): its state, and the blocks of the unit, its modules and channels.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Diagnosed {
     /// Station address.
@@ -49,6 +22,23 @@ pub struct Diagnosed {
     states: Vec<&'static str>,
     /// Extended diagnosis, one entry per block, in the order received.
     blocks: Vec<String>,
+}
+
+impl BoardReport for Diagnosed {
+    type Board = Board;
+    const ID: &'static str = "yrcx.profibus.diag";
+    const MESSAGES: &'static str = "telegrams that read state, diagnosis and configuration of the station";
+
+    async fn read(board: &mut Board) -> Result<Self, Failure> {
+        let diagnosis = board.diagnosis().await?;
+        Ok(Self {
+            station: board.settings().station,
+            ident: format!("{:#06x}", diagnosis.ident),
+            master: diagnosis.master,
+            states: diagnosis.words().collect(),
+            blocks: diagnosis.blocks.iter().map(ToString::to_string).collect(),
+        })
+    }
 }
 
 impl Report for Diagnosed {

@@ -1,14 +1,11 @@
 //! Server for a simulated controller as a PROFIBUS slave behind a pseudo-terminal.
 
-use std::path::Path;
-
 use clap::Args;
 
 use super::simulated::{self, FAULTS, Options, Server};
 use crate::command::serve::terminal_link::TerminalLink;
-use crate::command::yrcx::fieldbus::{self, Operator, Served};
+use crate::command::yrcx::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::command::yrcx::simulated::{faults, faults_of_option};
-use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::transport::profibus::rates::{RATES, Rate};
 
@@ -36,18 +33,12 @@ fn rate(text: &str) -> Result<Rate, String> {
     Rate::from_name(text).ok_or_else(|| format!("there are {}", RATES.map(|rate| rate.name).join(", ")))
 }
 
-impl fieldbus::Serve for ServeArgs {
+impl Serve for ServeArgs {
     fn has_terminal(&self) -> bool {
         true
     }
 
-    fn serve(
-        &self,
-        _simulator: Option<&str>,
-        start: Start,
-        link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure> {
+    fn serve(&self, ToServe { start, link, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
         let options = Options {
             station: self.station,
             ident: self.ident,

@@ -3,12 +3,9 @@
 use std::net::Ipv4Addr;
 use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::{check, connect};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus::{self, At};
+use crate::command::yrcx::fieldbus::{At, BusBoard, Checked};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
@@ -33,7 +30,7 @@ pub struct Board {
 impl Board {
     /// Station of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
-        Ok(Self { profinet: connect::options(at.bus)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
+        Ok(Self { profinet: at.options::<Profinet>()?.clone(), label: at.robot.label(), tap: at.tap.clone() })
     }
 
     /// Options of the URL.
@@ -137,12 +134,11 @@ impl Board {
     }
 }
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
-    }
+impl BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "station";
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        std::future::ready(()).boxed_local()
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::look(self, layers).await
     }
 }

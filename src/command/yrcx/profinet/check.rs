@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::board::Board;
 use super::connect;
 use crate::command::face::layers::Layers;
+use crate::command::yrcx::fieldbus::{Checked, InLayer as _};
 use crate::controller::yrcx::image::Image;
 use crate::failure::Failure;
 use crate::transport::image::{Event, ImageLink};
@@ -21,28 +22,18 @@ use crate::transport::profinet::wire::record::RealModule;
 pub(super) const LAYERS: &[&str] = &["name", "interface", "privilege", "station", "IP", "RPC", "modules", "data"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
-    match asked(board, layers).await {
-        Ok(image) => image,
-        Err((layer, failure)) => {
-            layers.fail(layer, &failure);
-            None
-        }
-    }
-}
-
-async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'static str, Failure)> {
+pub(super) async fn look(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let profinet = board.settings().clone();
     layers.ok("name", format!("{} through {}", profinet.station, profinet.interface));
-    let interface = board.interface().map_err(|failure| ("interface", failure))?;
+    let interface = board.interface().in_layer("interface")?;
     let usable = interface.check().and_then(|()| interface.address());
-    let here = usable.map_err(|error| ("interface", board.failure(error)))?;
+    let here = usable.map_err(|error| board.failure(error)).in_layer("interface")?;
     layers.ok("interface", format!("{} is up with a carrier, {} at {}", interface.name, here.address, interface.mac));
     if interface.network().is_none() {
-        interface.raw_socket(ETHER_TYPE).map_err(|error| ("privilege", board.failure(error)))?;
+        interface.raw_socket(ETHER_TYPE).map_err(|error| board.failure(error)).in_layer("privilege")?;
     }
     layers.ok("privilege", "raw Ethernet is allowed");
-    let found = board.station().await.map_err(|failure| ("station", failure))?;
+    let found = board.station().await.in_layer("station")?;
     let kind = &found.station.kind;
     layers.ok("station", format!("'{}' at {}, {kind}, found once", found.station.name, found.mac));
     let address = match (found.station.address(), profinet.ip) {
@@ -66,7 +57,7 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
     layers.ok("IP", format!("{address}, in the network of {}", here.address));
     records(board, &found, layers).await?;
     if let Some(network) = Network::find(&profinet.interface) {
-        return data(board, &network, layers).await.map_err(|failure| ("data", failure));
+        return data(board, &network, layers).await.in_layer("data");
     }
     layers.warn(
         "data",
@@ -77,8 +68,8 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
 }
 
 /// Checks the records of the device.
-async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<(), (&'static str, Failure)> {
-    let identity = board.identity(found.clone()).await.map_err(|failure| ("RPC", failure))?;
+async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Checked<()> {
+    let identity = board.identity(found.clone()).await.in_layer("RPC")?;
     match identity.im0 {
         Ok(im0) => layers.ok("RPC", format!("answers: order id '{}', vendor {:#06x}", im0.order_id, im0.vendor)),
         Err(ProfinetError::Refused { status, .. }) => {

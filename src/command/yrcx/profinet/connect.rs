@@ -3,11 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::command::yrcx::fieldbus::{At, Purpose};
+use crate::command::yrcx::fieldbus::{At, Purpose, device_file, options};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::resting;
-use crate::failure::plain;
-use crate::files;
 use crate::settings::target::profinet::{Profinet, address};
 use crate::settings::target::{Address, Bus};
 use crate::transport::image::tap::Tap;
@@ -24,7 +22,7 @@ use crate::transport::profinet::simulated::Network;
 use crate::transport::profinet::wire::record::Parameter;
 
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let profinet = options(at.bus)?;
+    let profinet: &Profinet = at.options()?;
     if purpose == Purpose::Look {
         // A read would need a connection, and its end would stop the controller.
         let cause = Cause::new("a PROFINET device sends its signals only to the controller that owns the connection");
@@ -51,15 +49,11 @@ pub(super) async fn attempt(profinet: &Profinet, settings: Settings, tap: Tap) -
 
 /// Addresses of a station from DCP: name and MAC address.
 pub(super) fn addresses(bus: &Bus) -> Result<Vec<Address>, LinkError> {
-    let profinet = options(bus)?;
+    let profinet: &Profinet = options(bus)?;
     let interface = Interface::find(&profinet.interface)?;
     let found = commission::find(&interface, &profinet.station)?;
     let names = [Station::Name(found.station.name), Station::Mac(found.mac)];
     Ok(names.iter().map(|name| address(&profinet.interface, name)).collect())
-}
-
-pub(super) fn options(bus: &Bus) -> Result<&Profinet, LinkError> {
-    bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{bus:?} is not a URL of PROFINET"))))
 }
 
 /// Link settings. `calm` is the minimum interval for a caller that reads rarely.
@@ -159,11 +153,7 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
 }
 
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
-    let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MOST_BYTES).map_err(|error| {
-        LinkError::Local(wrong(plain(&error)).advice("give the manufacturer's GSDML file: gsdml= in the URL, or FILE"))
-    })?;
-    Gsdml::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
+    device_file(path, MOST_BYTES, "give the manufacturer's GSDML file: gsdml= in the URL, or FILE", Gsdml::parse)
 }
 
 #[cfg(test)]

@@ -4,8 +4,9 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::board::Board;
+use super::plan_search;
 use super::station::Station;
-use super::{NO_UNIT, board_of, plan_search};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::Failure;
@@ -24,9 +25,9 @@ impl Command for Identify {
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
-        context.link.no_unit(NO_UNIT)?;
+        context.link.no_unit_of::<Board>()?;
         plan_search(context.link, context.robot)?;
-        let found = board_of(context.link)?.station().await?;
+        let found = context.link.board::<Board>()?.station().await?;
         Ok(Identified { station: Station::from(&found) })
     }
 }

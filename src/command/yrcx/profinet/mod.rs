@@ -17,7 +17,6 @@ mod station;
 
 use serde_json::json;
 
-use self::board::Board;
 use super::connect::{Endpoint, endpoint};
 use super::link::Link;
 use crate::command::{Offline, commands};
@@ -29,13 +28,6 @@ use crate::transport::profinet::commission;
 use crate::transport::profinet::settings::Station;
 use crate::transport::profinet::wire::Mac;
 use crate::transport::profinet::wire::dcp::Block;
-
-fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
-    link.board(SCHEME.bus)
-}
-
-/// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the station belongs to the whole controller";
 
 /// Station of a robot's URL.
 fn station_of(robot: &Robot) -> Result<Station, Failure> {

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::board::Board;
 use super::station::Station;
-use super::{NO_UNIT, board_of, connect, plan_search};
+use super::{connect, plan_search};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
@@ -51,7 +51,7 @@ impl Command for Probe {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
         let Context { robot, link, .. } = context;
-        link.no_unit(NO_UNIT)?;
+        link.no_unit_of::<Board>()?;
         link.then("calls that read I&M0 and the modules (ReadImplicit of 0xAFF0 and 0xF000)");
         if self.tries {
             link.then("a connection with each possible layout, until data flows");
@@ -60,7 +60,7 @@ impl Command for Probe {
         if self.tries {
             link.authorize(Self::ID, self.risk())?;
         }
-        let board: &Board = board_of(link)?;
+        let board: &Board = link.board()?;
         let found = board.station().await?;
         let station = Station::from(&found);
         let identity = board.identity(found).await?;

@@ -1,14 +1,11 @@
 //! Server for a simulated controller as an IO device on a network interface.
 
-use std::path::Path;
-
 use clap::Args;
 
 use super::simulated::{Controller, NAME, controller, layout, setup};
-use crate::command::yrcx::fieldbus::{Operator, Serve, Served};
+use crate::command::yrcx::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::command::yrcx::link_error::not_open;
 use crate::command::yrcx::simulated::{faults, faults_of_option};
-use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::profinet::{self, SCHEME};
 use crate::transport::fault::{FaultNames, FaultSpec, SimulatorFaults};
@@ -37,13 +34,7 @@ pub struct ServeArgs {
 const DEVICE_FAULTS: FaultNames<Fault> = FaultNames { link: &[], device: &Fault::ALL };
 
 impl Serve for ServeArgs {
-    fn serve(
-        &self,
-        _simulator: Option<&str>,
-        start: Start,
-        _link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure> {
+    fn serve(&self, ToServe { start, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
         let Some(interface) = &self.interface else {
             return Err(Failure::usage("a PROFINET device needs an Ethernet interface")
                 .hint("add --interface IFACE; `ip link` lists the interfaces"));

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::board::Board;
-use super::{NO_UNIT, board_of, frame_for, plan_search, station_of};
+use super::{frame_for, plan_search, station_of};
 use crate::command::frame::dry_run::Known as _;
 use crate::command::frame::settings_report::{Done, NewValue, Old};
 use crate::command::yrcx::link::Yrcx;
@@ -92,19 +92,19 @@ async fn set<C: Fn(&Found) -> Change>(
     check: impl AsyncFnOnce(&Board, &Found) -> Result<(), Failure>,
 ) -> Result<Found, Failure> {
     let Context { robot, link, authority, .. } = context;
-    link.no_unit(NO_UNIT)?;
+    link.no_unit_of::<Board>()?;
     plan_search(link, robot).known()?;
     let hex = frame_for(&station_of(robot)?, &task.block);
     link.plan_frame(json!({ "hex": hex, "about": task.what }))?;
     let found = {
-        let board: &Board = board_of(link)?;
+        let board: &Board = link.board()?;
         let found = board.station().await?;
         check(board, &found).await?;
         found
     };
     authority.confirm(&(task.change)(&found)).await?;
     link.authorize(task.id, task.risk)?;
-    board_of(link)?.set(&found, task.what, task.block, task.is_so).await
+    link.board::<Board>()?.set(&found, task.what, task.block, task.is_so).await
 }
 
 /// A permanent value overwrites the old one.
