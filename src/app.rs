@@ -144,7 +144,7 @@ fn check_descriptors() -> Result<(), Failure> {
         (0..NEEDED_DESCRIPTORS / 2).map(|_| std::os::unix::net::UnixStream::pair()).collect();
     pairs.map(|_| ()).map_err(|error| {
         Failure::io("start", &error)
-            .hint(format!("too few open files are allowed: {NEEDED_DESCRIPTORS} more are needed. See `ulimit -n`"))
+            .hint(format!("raise the limit of open files (`ulimit -n`): armctl needs {NEEDED_DESCRIPTORS} more"))
     })
 }
 

@@ -120,7 +120,7 @@ impl FromArgMatches for FamilyWord {
 
 /// Flags that every command takes, at any place of the line.
 #[derive(Debug, Clone, Args)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent flag")]
 pub struct Globals {
     /// Use the built-in simulator, in this process
     #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]

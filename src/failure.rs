@@ -42,13 +42,17 @@ pub enum Kind {
 impl Kind {
     /// Every kind with its exit code and what the code means, in the order of `armctl help exit-codes`.
     pub const TABLE: [(Self, u8, &'static str); 11] = [
-        (Self::PipeClosed, 0, "done (also when the reader of stdout went away)"),
+        (Self::PipeClosed, 0, "done (also when the reader of stdout closed the pipe)"),
         (Self::Local, 1, "internal error, or a local file or disk"),
         (Self::Usage, 2, "usage or configuration"),
         (Self::Refused, 3, "the controller refused"),
         (Self::NoAnswer, 4, "no answer, or port absent or busy"),
         (Self::Malformed, 5, "malformed or unexpected answer"),
-        (Self::OutcomeUnknown, 6, "outcome unknown: a state-changing request was sent, the answer was lost"),
+        (
+            Self::OutcomeUnknown,
+            6,
+            "outcome unknown: a request that changes the state was sent, and the answer was lost",
+        ),
         (Self::Rejected, 7, "rejected by armctl: not confirmed, or a read-only robot"),
         (Self::ConditionNotMet, 8, "condition not met (--until, --check, diff)"),
         (Self::Mixed, 9, "some robots or items failed, some did not"),
@@ -110,7 +114,7 @@ impl Failure {
         use std::io::ErrorKind;
 
         if error.kind() == ErrorKind::BrokenPipe {
-            return Self::new(Kind::PipeClosed, "the reader of stdout went away");
+            return Self::new(Kind::PipeClosed, "the reader of stdout closed the pipe");
         }
         let failure = Self::local(format!("{what}: {}", plain(error)));
         match error.kind() {
@@ -118,11 +122,11 @@ impl Failure {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                 failure.hint("free some space, and repeat the command")
             }
-            ErrorKind::InvalidData => failure.hint("this file has another format"),
+            ErrorKind::InvalidData => failure.hint("check the file: it has another format"),
             ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
-            ErrorKind::FileTooLarge => failure.hint("check that it is the file that was meant"),
+            ErrorKind::FileTooLarge => failure.hint("check that this is the correct file"),
             ErrorKind::NotADirectory => failure.hint("check the path: a part of it is a file, not a folder"),
-            ErrorKind::NotFound => failure.hint("check the path; missing folders are not made"),
+            ErrorKind::NotFound => failure.hint("check the path; armctl does not create missing folders"),
             _ => failure,
         }
     }

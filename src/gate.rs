@@ -60,7 +60,7 @@ impl Intent {
 impl From<NotAuthorized> for Failure {
     fn from(NotAuthorized { what, risk }: NotAuthorized) -> Self {
         Self::local(format!("internal error: {what} ({}) is not authorized; nothing was sent", risk.name()))
-            .hint("this is a fault of armctl; please report it")
+            .hint("report this error: it is a bug in armctl")
     }
 }
 
@@ -99,13 +99,13 @@ impl Gate {
             return Ok(());
         }
         let hint = |name: &str| {
-            format!("the inventory protects this robot; to allow changes: `armctl robots set {name} read_only=off`")
+            format!("allow changes with `armctl robots set {name} read_only=off`: the inventory protects this robot")
         };
         Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(
             match &robot.read_only_entry {
-                Some(entry) => format!("its address is that of '{entry}' in robots.toml; {}", hint(entry)),
+                Some(entry) => format!("'{entry}' in robots.toml has the same address; {}", hint(entry)),
                 None if robot.read_only.origin == Origin::Defaults => {
-                    "[defaults] in robots.toml make it so, on purpose; `armctl robots edit` changes them".to_owned()
+                    "use `armctl robots edit` to allow changes: [defaults] in robots.toml sets read_only".to_owned()
                 }
                 None => hint(&robot.name),
             },
@@ -127,7 +127,7 @@ impl Gate {
         let count_text = format!("{} of {} robots", unnamed.len(), robots.len());
         let message = format!("not confirmed: on {count_text} ({}) this would {}", names.join(", "), intent.text);
         Err(Failure::new(Kind::Rejected, message).hint(
-            "name each of them with -r; patterns, --tag and --all are not enough for what moves, deletes or overwrites",
+            "name each robot with -r: patterns, --tag and --all do not confirm a motion, a deletion or an overwrite",
         ))
     }
 }
@@ -205,12 +205,13 @@ impl Change {
 
 /// Failure because the data changed while the question was open.
 pub fn data_changed(message: impl Into<String>) -> Failure {
-    Failure::new(Kind::Rejected, message).hint("another client changed it: check the state, then repeat the command")
+    Failure::new(Kind::Rejected, message)
+        .hint("check the state, then repeat the command: another client changed the data")
 }
 
 /// Failure because a question is needed but not possible.
 pub fn not_confirmed(robot: &Robot, risk: Risk, text: &str) -> Failure {
-    let when = if risk == Risk::Motion { " when nobody is in the cell" } else { "" };
+    let when = if risk == Risk::Motion { " when no person is in the cell" } else { "" };
     Failure::new(Kind::Rejected, format!("not confirmed: on {} this would {text}", robot.label()))
         .hint(format!("pass --yes to confirm{when}, or --dry-run to see what would be sent"))
 }

@@ -89,7 +89,7 @@ fn run_until_stopped(stop: &mut Command) -> Result<(), String> {
 }
 
 fn stop_failure(why: &str) -> String {
-    format!("the robot may still move, use the pendant or the emergency stop: {why}")
+    format!("the robot may still move: use the pendant or the emergency stop. Cause: {why}")
 }
 
 /// Starts a guardian. Returns the pipe to it.
@@ -115,7 +115,8 @@ impl Guardian {
     /// Starts a guardian. `stops`: it stops the robot itself, because no session or adapter does so.
     pub fn start(robot: &Robot, words: &[&str], stops: bool) -> Result<Self, Failure> {
         let spawned = spawn(robot, words, if stops { STOP_ARGUMENT } else { KILL_ARGUMENT });
-        let (pipe, child) = spawned.context("the guardian of the motion could not be started; nothing was sent")?;
+        let (pipe, child) =
+            spawned.context("the process that guards the motion could not be started; nothing was sent")?;
         Ok(Self { pipe, child: Some(child) })
     }
 
@@ -184,7 +185,10 @@ impl SessionGuardian {
         if started.is_none() && is_moving {
             let spawned = spawn(&self.robot, self.words, STOP_ARGUMENT);
             *started = Some(spawned.map_err(|error| {
-                format!("the robot is not stopped when this process dies: its guardian could not be started: {error}")
+                format!(
+                    "if armctl dies, the robot does not stop: the process that guards the motion could not be \
+                     started: {error}"
+                )
             })?);
         }
         if let Some((pipe, _)) = &*started {
@@ -258,7 +262,8 @@ fn was_moving_at_end() -> bool {
             Err(RecvTimeoutError::Timeout) => {
                 is_killed = kill(guarded);
                 print(&format!(
-                    "armctl (process {}) did not respond for {} s while the robot moved: it was ended, to stop the robot",
+                    "armctl (process {}) did not respond for {} s while the robot moved: the process was ended to \
+                     stop the robot",
                     guarded.map_or_else(|| "unknown".to_owned(), |guarded| guarded.to_string()),
                     DEAD_AFTER.as_secs()
                 ));

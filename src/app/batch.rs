@@ -55,7 +55,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
 pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
         return Err(Failure::usage("--watch, --count and --until cannot apply to a batch")
-            .hint("add them to the line of the command"));
+            .hint("write them after a command in the file"));
     }
     Ok(())
 }
@@ -144,11 +144,11 @@ impl Plan<'_> {
             results: self.results.clone(),
         };
         let Invocation::Task(task) = command.into() else {
-            return Err(Failure::usage("this command is not possible in a file").hint("see `armctl help batch`"));
+            return Err(Failure::usage("this command cannot run from a file").hint("see `armctl help batch`"));
         };
         let ready = PreparedCommand::new(globals, Some(self.globals), task, Some(line))?;
         if let Some(why) = ready.why_not_in_batch() {
-            return Err(Failure::usage(format!("this command is not possible in a file: {why}"))
+            return Err(Failure::usage(format!("this command cannot run from a file: {why}"))
                 .hint("run it in another terminal"));
         }
         ready.check_gate()?;
@@ -182,7 +182,7 @@ impl Plan<'_> {
         let Some((origin, first)) = failed.first() else { return Ok(()) };
         let message = if self.batch.keep_going && started == all {
             let line_numbers: Vec<String> = failed.iter().map(|(origin, _)| origin.line.to_string()).collect();
-            format!("{} of {all} commands failed, in line {}", failed.len(), line_numbers.join(", "))
+            format!("{} of {all} commands failed; lines: {}", failed.len(), line_numbers.join(", "))
         } else {
             format!("stopped at {}; {} done before it, {} not started", origin, started - failed.len(), all - started)
         };

@@ -108,7 +108,7 @@ fn global_flags(globals: &Globals) -> [Flag; 17] {
 fn unused_flag(flag: &str, task: &Task) -> Failure {
     let hint = match (flag, task) {
         ("--tag", Task::Common(Common::Robots(Robots::Add(_)))) => {
-            "use --with-tag to give the new robot a tag; --tag selects robots".to_owned()
+            "use --with-tag to give the new robot a tag; --tag only selects robots".to_owned()
         }
         _ => format!("remove {flag}"),
     };

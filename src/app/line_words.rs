@@ -23,7 +23,7 @@ pub fn expand_variables<'a>(word: &str, value: impl Fn(&str) -> Option<&'a str>)
             continue;
         }
         expanded.push_str(before);
-        let (name, after) = after.split_once('}').ok_or_else(|| format!("'{rest}' has no }}"))?;
+        let (name, after) = after.split_once('}').ok_or_else(|| format!("'{rest}' has no closing }}"))?;
         if !is_name(name) {
             return Err(format!("'{name}' is not a variable name"));
         }

@@ -81,7 +81,7 @@ fn ask_value(args: &[OsString], what: &str, found: &[Candidate], has_first: bool
             None => value.clone(),
         })
         .collect();
-    let question = format!("{what} (type to search, Enter selects, Esc cancels)");
+    let question = format!("{what} (type to search, Enter to select, Esc to cancel)");
     let asked = move || screen.ask_one_of(&question, &options, has_first);
     let mut selected = None;
     on_this_thread(async {
@@ -94,7 +94,7 @@ fn ask_value(args: &[OsString], what: &str, found: &[Candidate], has_first: bool
     let line: Vec<OsString> = [args, &[value.into()]].concat();
     let words: Vec<&str> = line.iter().skip(1).filter_map(|word| word.to_str()).collect();
     if let Ok(words) = shlex::try_join(words) {
-        screen.note_command("the same command without the question:", &format!("armctl {words}"));
+        screen.note_command("the same command without this list:", &format!("armctl {words}"));
     }
     Ok(line)
 }

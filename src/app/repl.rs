@@ -120,7 +120,7 @@ impl Repl {
         {
             line_of(manager, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }
-        self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D ends the prompt.");
+        self.screen.note("Tab completes a word, `help` lists the commands, `exit` or Ctrl-D ends the prompt.");
         // Ctrl-C clears a line. On an empty line, only a second one leaves.
         let mut is_second = false;
         let mut is_new = true;
@@ -150,7 +150,7 @@ impl Repl {
                 Input::Line(text) => text,
                 Input::Interrupted if is_second => return Err(interrupted("Ctrl-C again")),
                 Input::Interrupted => {
-                    self.screen.note("Ctrl-C again, `exit` or Ctrl-D ends the prompt.");
+                    self.screen.note("Press Ctrl-C again, or type `exit`, to end the prompt.");
                     is_second = true;
                     continue;
                 }
@@ -240,7 +240,9 @@ impl Repl {
             Invocation::Teach(_) => Err(Failure::usage("the teach panel needs its own terminal")
                 .hint("end the prompt, then run `armctl teach`")
                 .into()),
-            Invocation::Prompt(_) => Err(Failure::usage("the prompt already runs").hint("end it with `exit`").into()),
+            Invocation::Prompt(_) => {
+                Err(Failure::usage("the interactive prompt is already open").hint("end it with `exit`").into())
+            }
             Invocation::Bare(prefix) => Err(usage(&screen, &prefix)),
         };
         done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)
@@ -257,7 +259,7 @@ async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option
     let length = read.context("stdin")?;
     if u64::try_from(length).unwrap_or(u64::MAX) >= LONGEST {
         return Err(Failure::usage(format!("line {number} of stdin is longer than 1 MiB"))
-            .hint("write one command per line: `armctl help repl`"));
+            .hint("write one command per line; see `armctl help repl`"));
     }
     if length == 0 {
         return Ok(None);

@@ -136,9 +136,9 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
             commands_by_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
-    let dangerous = commands_by_risk
-        .into_iter()
-        .map(|(risk, helps)| format!("one that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", ")));
+    let dangerous = commands_by_risk.into_iter().map(|(risk, helps)| {
+        format!("a command that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", "))
+    });
     let mut lines: Vec<String> = safe.into_iter().map(|line| line.format_line()).collect();
     lines.extend(dangerous);
     if lines.is_empty() || lines.len() > MAX_SUGGESTIONS {
@@ -247,7 +247,7 @@ fn suggest_value(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) ->
     let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
     let argument = command.get_arguments().find(is_missing);
     if missing.iter().any(|argument| argument.starts_with("--until")) {
-        return Some("add a condition such as --until idle; --for limits its time".to_owned());
+        return Some("add a condition, for example --until idle; --for sets the longest wait".to_owned());
     }
     let values = argument?.get_possible_values();
     let names: Vec<&str> = values.iter().map(clap::builder::PossibleValue::get_name).collect();

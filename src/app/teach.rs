@@ -68,7 +68,7 @@ fn check_globals(globals: &Globals, screen: &crate::output::Screen) -> Result<()
     if globals.dry_run {
         return wrong(
             "has no dry run: keys move the robot",
-            "use --dry-run with its commands, such as `yerc move relative`",
+            "use --dry-run with a single command, for example `yerc move relative`",
         );
     }
     if screen.format != Format::Table || globals.jq.is_some() {

@@ -112,17 +112,21 @@ impl Common {
     /// Why it is nothing for a line of a file: it would never end, or writes something else than results.
     pub fn why_not_in_batch(&self) -> Option<&'static str> {
         match self {
-            Self::Session(session) if session.stays() => Some("it holds a link until it is ended; add --background"),
+            Self::Session(session) if session.stays() => {
+                Some("it keeps a connection open until you end it; add --background")
+            }
             Self::Sim(sim) if sim.is_list() => None,
-            Self::Sim(_) => Some("it serves until it is ended"),
+            Self::Sim(_) => Some("it serves until you end it"),
             #[cfg(feature = "plant")]
-            Self::Serve(_) => Some("it serves until it is ended"),
-            Self::Top(_) => Some("it is a view for a terminal"),
+            Self::Serve(_) => Some("it serves until you end it"),
+            Self::Top(_) => Some("it is a full-screen display"),
             #[cfg(feature = "plant")]
-            Self::Publish(_) => Some("it goes on until it is ended"),
-            Self::Setup(_) => Some("it asks at the terminal; `robots add` needs no answers"),
-            Self::Robots(robots::Robots::Edit) => Some("it opens an editor; `robots set` needs none"),
-            Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
+            Self::Publish(_) => Some("it publishes until you end it"),
+            Self::Setup(_) => Some("it asks questions at the terminal; use `robots add` instead"),
+            Self::Robots(robots::Robots::Edit) => Some("it opens an editor; use `robots set` instead"),
+            Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => {
+                Some("it prints a text, not a result")
+            }
             Self::Status(_)
             | Self::Alarm(_)
             | Self::Io(_)

@@ -85,7 +85,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     let Started { report, reach, mut server, address, with_console } = arguments.start().await?;
     run.local(S::ID, &report)?;
     if address.is_some_and(|address| !address.ip().is_loopback()) {
-        run.screen.note("warning: others on the network can reach this simulator");
+        run.screen.note("warning: other computers on the network can reach this simulator");
     }
     // Programs read the report and know how to end the process.
     if !run.screen.is_json() {
@@ -112,7 +112,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
             Some(Some(line)) if line.trim() == "quit" => return Ok(()),
             Some(Some(line)) => match console_line(&mut server, &line) {
                 Ok(text) => run.screen.note(&text),
-                Err(why) => run.screen.failure(&Failure::usage(why).hint("`help` lists the console commands")),
+                Err(why) => run.screen.failure(&Failure::usage(why).hint("use `help` to list the console commands")),
             },
         }
     }
@@ -153,9 +153,8 @@ impl<R: AsyncRead + Unpin> Console<R> {
         let room = u64::try_from(Self::LONGEST.saturating_sub(self.buffered.len())).unwrap_or_default();
         (&mut self.input).take(room).read_until(b'\n', &mut self.buffered).await.context("stdin")?;
         if self.buffered.len() >= Self::LONGEST {
-            return Err(
-                Failure::usage("the console line is longer than 64 KiB").hint("`help` lists the console commands")
-            );
+            return Err(Failure::usage("the console line is longer than 64 KiB")
+                .hint("use `help` to list the console commands"));
         }
         let line = std::mem::take(&mut self.buffered);
         Ok((!line.is_empty()).then(|| String::from_utf8_lossy(&line).trim_end_matches(['\n', '\r']).to_owned()))
@@ -185,7 +184,7 @@ pub fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
 pub fn bind_failure(on: &str, error: &io::Error) -> Failure {
     let hint = match error.kind() {
         io::ErrorKind::AddrInUse => "stop the other simulator, or choose a free port with --bind 127.0.0.1:0",
-        io::ErrorKind::PermissionDenied => "ports below 1024 need privileges; use a higher port",
+        io::ErrorKind::PermissionDenied => "use a higher port: ports below 1024 need privileges",
         _ => "use an address of this computer with --bind",
     };
     Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)

@@ -113,7 +113,7 @@ pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
     } else if text.starts_with('-') {
         Some("it begins with a dash, like a flag")
     } else if grammar.is_shaped(text) {
-        Some("it looks like an address")
+        Some("it has the form of an address")
     } else {
         None
     }

@@ -161,7 +161,8 @@ impl Sheet {
             if row.cells.len() == head.cells.len() {
                 rows.push(row);
             } else {
-                let message = format!("{} cells for {} columns", row.cells.len(), head.cells.len());
+                let message =
+                    format!("the row has {} cells, but the table has {} columns", row.cells.len(), head.cells.len());
                 findings.error(SourceLocation { line: number, column: 1 }, message, None);
             }
         }

@@ -129,7 +129,7 @@ pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> St
 /// # Errors
 /// The message names both parts and shows the example.
 pub fn setting<'t>(text: &'t str, name: &str, value: &str, example: &str) -> Result<(&'t str, &'t str), String> {
-    text.split_once('=').ok_or_else(|| format!("write {name}, '=' and {value}, as in {example}"))
+    text.split_once('=').ok_or_else(|| format!("write {name}, '=' and {value}, for example {example}"))
 }
 
 /// Parses the state of a signal: `on` or `1`, `off` or `0`.

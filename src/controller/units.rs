@@ -53,7 +53,7 @@ pub enum UnitError {
         symbol: &'static str,
     },
     /// The value does not fit 32 bits.
-    #[error("'{text}' {symbol} is out of range; {lowest} to {highest} fit")]
+    #[error("'{text}' {symbol} is out of range; the range is {lowest} to {highest}")]
     Range {
         /// The text.
         text: String,

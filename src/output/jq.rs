@@ -50,7 +50,7 @@ impl Filter {
             FilterError::Mistake(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
                 .hint("a filter gets the whole envelope: try '.data', or remove --jq to see the envelope"),
             FilterError::Failed(why) => Failure::new(Kind::Malformed, format!("jq filter '{}': {why}", self.text))
-                .hint("--json shows the input of the filter"),
+                .hint("use --json to see the input of the filter"),
             FilterError::Halted { exit, text } => Failure::new(Kind::Halted(exit), text),
         })
     }

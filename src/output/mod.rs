@@ -197,7 +197,7 @@ impl Screen {
         let _busy = busy_work::register();
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
         let mut text = if pretty { escape::json_pretty(value) } else { escape::json_line(value) }
-            .map_err(|error| Failure::local(format!("report as JSON: {error}")))?;
+            .map_err(|error| Failure::local(format!("cannot write the report as JSON: {error}")))?;
         text.push('\n');
         self.data(&text)
     }

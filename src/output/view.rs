@@ -100,7 +100,7 @@ impl Table {
 
     /// Adds a row.
     pub fn row<const N: usize>(&mut self, cells: [Cell; N]) {
-        debug_assert_eq!(N, self.columns.len(), "a row has a cell a column");
+        debug_assert_eq!(N, self.columns.len(), "a row has one cell per column");
         self.rows.push(cells.into());
     }
 }

@@ -184,7 +184,9 @@ impl Inventory {
             };
             target.check(family).map_err(|why| at(span, &why).hint("correct `target` or `family`"))?;
             if let Some(model) = raw.model.as_ref().filter(|_| !family.has_model()) {
-                return Err(at(model.span(), &format!("a {family} robot has no model")).hint("remove `model`"));
+                return Err(
+                    at(model.span(), &format!("a {family} robot has no `model` setting")).hint("remove `model`")
+                );
             }
             for value in &raw.pulses_per_degree {
                 let is_number = value.as_ref().is_finite() && *value.as_ref() > 0.0;
@@ -303,8 +305,10 @@ pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure>
     }
     match (grammar(family).address)(address) {
         Some((kind, address)) => Ok(Name { kind, address, name: name.to_owned(), source: Source::Inventory }),
-        None => Err(Failure::usage(format!("'{address}' is not an address that can have a name on a {family} robot"))
-            .hint(examples)),
+        None => {
+            Err(Failure::usage(format!("'{address}' is not a valid address for a name on a {family} robot"))
+                .hint(examples))
+        }
     }
 }
 

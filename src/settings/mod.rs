@@ -292,7 +292,7 @@ impl Sources {
     /// A flag also selects robots.
     pub fn choose_all(&mut self, names: &[String]) -> Result<(), Failure> {
         if self.selection.has_flags() {
-            return Err(Failure::usage(format!("{} and a flag both select robots", names.join(" and ")))
+            return Err(Failure::usage(format!("{} and a flag each select robots", names.join(" and ")))
                 .hint("remove one of the two"));
         }
         (self.selection.robots, self.selection.from_environment) = (names.to_vec(), false);
@@ -303,7 +303,7 @@ impl Sources {
     pub fn choose(&mut self, robot: &str) -> Result<(), Failure> {
         if self.selection.has_flags() {
             return Err(
-                Failure::usage(format!("'{robot}' and a flag both select a robot")).hint("remove one of the two")
+                Failure::usage(format!("'{robot}' and a flag each select a robot")).hint("remove one of the two")
             );
         }
         let Selection { target, robots, from_environment, .. } = &mut self.selection;
@@ -324,7 +324,7 @@ impl Sources {
             && family != entry.family
         {
             return Err(Failure::usage(format!("robot '{}' is a {} robot, not {family}", entry.name, entry.family))
-                .hint(format!("use `armctl {} …` for it", entry.family)));
+                .hint(format!("use `armctl {} …` for this robot", entry.family)));
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
         let robot = self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone());
@@ -375,7 +375,7 @@ impl Sources {
                         failure.hint(format!("`armctl robots list` lists the robots in {}", path.display()))
                     }
                     (None, None) => {
-                        failure.hint("armctl finds no home folder for robots.toml; set the file with --config")
+                        failure.hint("set the file with --config: armctl finds no home folder for robots.toml")
                     }
                 });
             }

@@ -206,11 +206,11 @@ impl CachedNames {
         match self.software.as_deref().filter(|then| *then != software) {
             None => Ok(()),
             Some(then) => Err(Failure::local(format!(
-                "the stored names for this address belong to a controller with software {then}; this controller has \
-                 {software}"
+                "the stored names for this address are from a controller with software {then}; this controller has \
+                 software {software}"
             ))
             .hint(
-                "read the names of this controller with `armctl yerc names get`, or delete the stored ones with \
+                "read the names of this controller with `armctl yerc names get`, or delete the stored names with \
                  `armctl yerc names forget`",
             )),
         }
@@ -259,7 +259,8 @@ impl CacheFile {
     /// Replaces the cache.
     pub fn write(&self, kept: &CachedNames) -> Result<(), Failure> {
         let failed = |error: &std::io::Error| Failure::io(self.path.display(), error);
-        let text = serde_json::to_vec(kept).map_err(|error| Failure::local(format!("names as JSON: {error}")))?;
+        let text = serde_json::to_vec(kept)
+            .map_err(|error| Failure::local(format!("cannot write the names as JSON: {error}")))?;
         std::fs::create_dir_all(files::folder_of(&self.path)).map_err(|error| failed(&error))?;
         files::replace(&self.path, &text).map_err(|error| failed(&error))
     }

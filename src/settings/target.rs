@@ -257,7 +257,7 @@ impl Target {
     /// Checks that the URL and all its options are valid for a family.
     pub fn check(&self, family: Family) -> Result<(), String> {
         if !family.is_reached_over(self.scheme()) {
-            return Err(format!("a {family} robot has no {}: URL", self.scheme()));
+            return Err(format!("a {family} robot cannot have a {}: URL", self.scheme()));
         }
         match &self.place {
             Place::Sim(sim) => sim.check(family),
@@ -285,7 +285,7 @@ impl FromStr for Target {
             return Err(wrong(format!("port {rest} is not from 1 to 65535")));
         }
         if scheme.is_empty() {
-            return Err(wrong("the scheme is missing, such as udp://".into()));
+            return Err(wrong("the scheme is missing, for example udp://".into()));
         }
         let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
         let mut query = Query::parse(query).map_err(wrong)?;

@@ -105,7 +105,7 @@ impl Threaded {
     async fn settle(&mut self) -> io::Result<()> {
         match &mut self.state {
             State::Idle(_) => Ok(()),
-            State::Lost => Err(vanished("its thread has ended")),
+            State::Lost => Err(vanished("the thread of the port has ended")),
             State::Busy { job, is_stale } => {
                 let done = job.await;
                 let is_stale = *is_stale;
@@ -131,7 +131,7 @@ impl Threaded {
 fn read(port: &mut Port) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; PIECE];
     match port.read(&mut bytes) {
-        Ok(0) => Err(vanished("it has ended")),
+        Ok(0) => Err(vanished("the port was closed")),
         Ok(len) => {
             bytes.truncate(len);
             Ok(bytes)

@@ -140,7 +140,7 @@ fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenEr
     let unsupported = |what: String| Err(OpenError::Unsupported(what));
     let baud = port.baud_rate().map_err(io::Error::from)?;
     if u64::from(baud.abs_diff(line.baud)) * 1000 > u64::from(line.baud) * u64::from(most_off) {
-        return unsupported(format!("{} baud (it has set {baud})", line.baud));
+        return unsupported(format!("{} baud (the driver set {baud})", line.baud));
     }
     if port.data_bits().map_err(io::Error::from)? != line.data_bits {
         return unsupported(format!("{} data bits", u8::from(line.data_bits)));
@@ -297,7 +297,7 @@ mod tests {
         let settings = |line: Line| check(&slave, &line, MOST_OFF).err().map(|error| error.to_string());
         assert_eq!(settings(Line { baud: 38_400, ..usual.clone() }), None);
         for (line, what) in [
-            (Line { baud: 40_000, ..usual.clone() }, "40000 baud (it has set 38400)"),
+            (Line { baud: 40_000, ..usual.clone() }, "40000 baud (the driver set 38400)"),
             (Line { parity: Parity::Even, baud: 38_400, ..usual.clone() }, "parity even"),
             (Line { data_bits: DataBits::Seven, baud: 38_400, ..usual.clone() }, "7 data bits"),
             (Line { stop_bits: StopBits::Two, baud: 38_400, ..usual }, "2 stop bits"),

@@ -61,8 +61,8 @@ pub const LINES: &[(&str, &[&str])] = &[
 #[rustfmt::skip]
 pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc", &["homing", "origin"],
-        "the protocol has no return to origin: start a job that moves there (see `armctl yerc job -h`). Set the \
-         mechanical origin at the pendant"),
+        "the protocol has no command for a return to origin. Start a job that moves there (see `armctl yerc job -h`). \
+         Set the mechanical origin at the pendant"),
     ("yrcx", &["jobs"], "a YRCX has programs, not jobs: see `armctl yrcx program -h`"),
     ("toyo", &["jobs"], "a Toyo controller has programs, not jobs: see `armctl toyo program list`"),
     ("yrcx run", &["point"], "move to a point with `armctl yrcx move`; see `armctl yrcx move -h`"),

@@ -71,8 +71,8 @@ impl Client {
         }
         let system = Request::bare(Command::Sysp);
         if self.is_dry() {
-            self.plan(&system, "the letters of the axes; later lines assume X, Y, Z and R");
-            self.plan_if(&letters_request(), "whether the controller refuses that");
+            self.plan(&system, "the letters of the axes; the following lines assume X, Y, Z and R");
+            self.plan_if(&letters_request(), "whether the controller refuses the previous request");
             self.letters = Some(Letters::USUAL);
             return Ok(Letters::USUAL);
         }

@@ -57,7 +57,7 @@ pub enum Error {
     #[error("{0}")]
     InvalidRequest(#[from] BlockError),
     /// A temporary change was not undone.
-    #[error("a temporary change was not undone by {block}: {}", why(.cause.as_deref()))]
+    #[error("a temporary change could not be undone with {block}: {}", why(.cause.as_deref()))]
     NotUndone {
         /// The block that undoes it.
         block: String,
@@ -65,7 +65,7 @@ pub enum Error {
         cause: Option<Box<Self>>,
     },
     /// The host is still ON; this client had switched it ON.
-    #[error("armctl switched host control ON and could not switch it OFF again: {}", why(.0.as_deref()))]
+    #[error("armctl switched host control ON, but could not switch it OFF again: {}", why(.0.as_deref()))]
     HostNotReleased(Option<Box<Self>>),
     /// The robot still moves after a stop.
     #[error("the controller {}", stop_answer(*.is_refused))]

@@ -55,7 +55,7 @@ impl Client {
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Error> {
         if self.is_dry() {
             self.plan(&moving.stop(), "repeated until the robot stands still");
-            self.plan(&status_page(0), "repeated until the robot stands still: does something run?");
+            self.plan(&status_page(0), "repeated until the robot stands still: whether a program runs");
             if moving == Moving::Program {
                 self.plan_if(&Moving::Jog.stop(), "whether something still runs: an axis may be jogging");
                 self.plan_if(&status_page(0), "whether something still runs");

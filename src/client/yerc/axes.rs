@@ -59,7 +59,7 @@ impl Client {
         let Ok(query) = ReadAxes::new(self.model_for_display(), group, coordinates) else { return };
         if !is_planned {
             let reason = Reason::about("which axes exist, if the answer has all eight");
-            self.plan_if(&query.request(), reason.depending_on("the number of axes in the answer before"));
+            self.plan_if(&query.request(), reason.depending_on("the number of axes in the previous answer"));
             self.axis_sets.push((group, coordinates, AxisSet::ALL));
         }
     }

@@ -54,7 +54,7 @@ pub enum Error {
         counters: Counters,
     },
     /// No answer to the stop, which was sent repeatedly.
-    #[error("the stop was sent repeatedly, no answer within {waited:?}: armctl cannot confirm that the robot is held")]
+    #[error("no answer to the repeated stop within {waited:?}: armctl cannot confirm that the robot is held")]
     Unconfirmed {
         /// Total wait.
         waited: Duration,
@@ -95,7 +95,7 @@ pub enum Error {
     #[error("the controller did not report its model: it refused {}: {}", .0.to, status::explain(.0.status).name)]
     ModelRefused(Refusal),
     /// The software version belongs to no known model, and the request depends on the model. Nothing else was sent.
-    #[error("armctl supports no model with system software '{version}'")]
+    #[error("armctl does not support the system software '{version}' of this controller")]
     UnknownSoftware {
         /// Software version, with unusual characters escaped.
         version: String,

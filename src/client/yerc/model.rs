@@ -135,7 +135,7 @@ impl Client {
         let request = query.request();
         if self.is_dry() {
             let purpose = self.purpose.take();
-            self.plan_if(&request, Reason::about("which model the controller is"));
+            self.plan_if(&request, Reason::about("the model of the controller"));
             self.purpose = purpose;
             (self.model_source, self.plan_model) = (ModelSource::Assumed, Some(DEFAULT_MODEL));
             return Ok(DEFAULT_MODEL);

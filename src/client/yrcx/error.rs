@@ -70,7 +70,7 @@ pub enum Error {
         ended: Result<Values, Box<Self>>,
     },
     /// The end of a jog was not observed, and the link is lost: the axis may still move.
-    #[error("the axis may still move: armctl cannot reach the controller any more")]
+    #[error("the axis may still move: armctl cannot reach the controller any longer")]
     StillMoving {
         /// The cause, if the jog ended before its time.
         cut: Option<Box<Error>>,
@@ -107,13 +107,13 @@ pub enum Error {
     },
     /// The connection ends with the client, and the robot stops with it
     /// ([`Options::is_held`](super::Options::is_held)).
-    #[error("the connection would end now, and the controller would stop the robot")]
+    #[error("the connection ends with this command, and the controller would then stop the robot")]
     NotHeld,
     /// The link is up, but the controller sends no data.
     #[error("the controller sends no data")]
     Silent,
     /// The data of the controller is too short for an image.
-    #[error("the controller sends {bytes} bytes, fewer than an image")]
+    #[error("the controller sends {bytes} bytes, too few for an image")]
     NoImage {
         /// Bytes received.
         bytes: usize,

@@ -236,8 +236,8 @@ fn compare_files(
         }
         _ => {
             let other = if entry.is_some() { new } else { old };
-            let why = if other.manifest.complete { "it was not selected" } else { "the backup is incomplete" };
-            let why = format!("{} does not contain it: {why}", Of::new(other));
+            let why = if other.manifest.complete { "the file was not selected" } else { "the backup is incomplete" };
+            let why = format!("{} does not contain this file: {why}", Of::new(other));
             let failure = Failure::new(Kind::ConditionNotMet, why);
             let failure = failure.hint("complete the backup with `armctl backup --resume`");
             return described(FileItem::new(name, Compared::new(State::Unknown), Err(failure)));
@@ -295,7 +295,7 @@ fn pair_files(
 fn copy<'e>(side: &BackupSide, entry: &'e Entry) -> Result<&'e Saved, Failure> {
     let copy = entry.copy.as_ref().ok_or_else(|| {
         let why = entry.error.as_ref().map_or("no reason recorded", |reason| &reason.message);
-        Failure::new(Kind::ConditionNotMet, format!("{} does not contain it: {why}", Of::new(side)))
+        Failure::new(Kind::ConditionNotMet, format!("{} does not contain this file: {why}", Of::new(side)))
             .hint("see manifest.json: the backup does not contain data that the controller refused")
     })?;
     copy.check(&side.folder)?;

@@ -40,7 +40,7 @@ impl DiffOptions {
     pub fn folder(&self) -> Result<&Path, Failure> {
         self.old.as_deref().ok_or_else(|| {
             Failure::usage("no backup to compare")
-                .hint("give the folder of a backup, or two robots: `armctl diff ROBOT ROBOT`")
+                .hint("type the folder of a backup, or two robots: `armctl diff ROBOT ROBOT`")
         })
     }
 

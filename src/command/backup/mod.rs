@@ -123,7 +123,7 @@ pub fn would_leave(item: impl fmt::Display, why: &str) -> Value {
 /// Reason for an item that is not selected.
 pub const NOT_CHOSEN: &str = "not selected";
 /// Reason for an item that changes the machine itself.
-pub const NOT_MACHINE: &str = "changes the machine itself; written only with --machine";
+pub const NOT_MACHINE: &str = "changes the machine itself; armctl writes it only with --machine";
 
 /// Adds the way to continue to the hint of a failure.
 pub fn add_hint(failure: Failure, again: &str) -> Failure {
@@ -222,7 +222,7 @@ impl Report for Restored {
 }
 
 /// Way to continue a restore.
-pub const RETRY_HINT: &str = "run the same command again to continue; equal values are not written again";
+pub const RETRY_HINT: &str = "run the same command again to continue; armctl does not write equal values again";
 
 #[cfg(test)]
 mod tests {

@@ -47,7 +47,7 @@ pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
     }
     if arguments.needs_capture() {
         let failure = Failure::usage("--frame and the other options for capture files need a capture file");
-        return Err(failure.hint("give a file whose name ends in .pcap, .pcapng or .cap").into());
+        return Err(failure.hint("use a file whose name ends in .pcap, .pcapng or .cap").into());
     }
     run.local(D::ID, &arguments.decode()?)
 }
@@ -108,6 +108,6 @@ pub fn damage<'a>(what: &str, problems: impl ExactSizeIterator<Item = Option<&'a
         1 => format!("the {what} is damaged: {first}"),
         _ => format!("{} of {all} {what}s are damaged; the first: {first}", problems.len()),
     };
-    let hint = "the fields before the damage are shown";
+    let hint = "read the fields before the damage, which the command shows";
     Some(Failure::new(Kind::Malformed, message).hint(hint))
 }

@@ -159,7 +159,7 @@ impl Told {
             table.row([place.as_str().into(), text, data, time]);
         }
         let found = if self.alarms.is_empty() && self.errors.is_empty() {
-            format!("{} does not have this alarm, neither present nor in its recent history.", self.robot)
+            format!("This alarm is not present on {}, and is not in its recent history.", self.robot)
         } else if self.alarms.is_empty() {
             String::new()
         } else {
@@ -216,8 +216,8 @@ async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<O
 /// Connects, unless the connection would affect the robot.
 async fn connect<F: Declaration>(run: &Run, robot: &Robot) -> Result<F::Link, String> {
     if matches!(F::entry(robot, ConnectMode::Control), Entry::Stops(_)) {
-        return Err("not read: this needs a command connection, and its end stops the robot. `armctl session open` \
-                    keeps a connection open"
+        return Err("not read: the read needs a command connection, and the end of that connection stops the robot. \
+                    Use `armctl session open` to keep a connection open"
             .to_owned());
     }
     let access = Access::reading(ConnectMode::Control);

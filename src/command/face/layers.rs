@@ -140,7 +140,7 @@ pub fn drafts() -> Option<Layer> {
         layer: "partial files",
         state: if left > 0 { State::Warning } else { State::Ok },
         found: format!("partial files of killed commands (.armctl-*.part): {removed} removed, {left} not removed"),
-        advice: (left > 0).then(|| "remove them as a user with permission".to_owned()),
+        advice: (left > 0).then(|| "remove the files as a user with permission".to_owned()),
     })
 }
 

@@ -218,7 +218,11 @@ impl ServiceState {
             return;
         };
         if self.inventory_error[which].as_ref() != Some(&failure.message) {
-            let effect = if which == 0 { "armctl keeps the earlier robots" } else { "armctl does not use its texts" };
+            let effect = if which == 0 {
+                "armctl keeps the earlier robots"
+            } else {
+                "armctl does not use the texts of this file"
+            };
             log.say(Level::Warning, &format!("{}; {effect}", failure.message), &[("kind", &kind(failure))]);
             self.inventory_error[which] = Some(failure.message.clone());
         }

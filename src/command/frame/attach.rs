@@ -73,7 +73,7 @@ pub fn in_use(robot: &Robot, location: &SessionPath) -> Failure {
         Kind::NoAnswer,
         format!("{}: the controller accepts one client, and {process} is connected", robot.label()),
     )
-    .hint("wait until it ends, or use `armctl session open` first so that commands share the connection")
+    .hint("wait until that process ends, or use `armctl session open` first, so that commands share the connection")
 }
 
 async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
@@ -93,22 +93,23 @@ async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result
         Ok(AttachResult::Session(attached)) => attached,
         Ok(AttachResult::Nothing) => return Ok(None),
         Ok(AttachResult::Dead) => {
-            let open = "`armctl session open` opens a new session, `armctl session close` removes the old one";
+            let open = "use `armctl session open` to open a new session, or `armctl session close` to remove the old \
+                        session";
             screen.note(&format!(
-                "{}: the session process has ended, so the command runs without it; {open}",
+                "{}: the session process has ended, so the command runs without a session; {open}",
                 robot.label()
             ));
             return Ok(None);
         }
         // A folder of another user is not used: there is no session, but the user may expect one.
         Err(AttachError::Location(error @ LocationError::Unsafe { .. })) => {
-            screen.note(&format!("warning: sessions are not used: {error}"));
+            screen.note(&format!("warning: armctl does not use sessions: {error}"));
             return Ok(None);
         }
         // A controller on UDP accepts a stop from any client.
         Err(AttachError::Silent) if bypasses_session => {
             screen.note(&format!(
-                "{}: {} does not respond, so the stop is sent directly",
+                "{}: {} does not respond, so armctl sends the stop directly",
                 robot.label(),
                 holder(robot)
             ));
@@ -129,7 +130,10 @@ async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result
         screen.note(&format!("{}: a client ended and left a command running: {peer}", robot.label()));
     }
     if let Some(why) = &welcome.down {
-        screen.note(&format!("{}: the session has lost its connection: {why}; reconnecting", robot.label()));
+        screen.note(&format!(
+            "{}: the session has lost its connection: {why}; the session connects again",
+            robot.label()
+        ));
     }
     if access.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
         let missing = "the session itself records packets and addresses (yrcx: `armctl session open --trace FILE`)";
@@ -147,7 +151,7 @@ fn owner(robot: &Robot) -> Option<Info> {
 }
 
 fn holder(robot: &Robot) -> String {
-    owner(robot).map_or_else(|| "its session".to_owned(), |owner| format!("its session (process {})", owner.pid))
+    owner(robot).map_or_else(|| "its session".to_owned(), |owner| format!("the session (process {})", owner.pid))
 }
 
 /// Failure for a session that holds the only link and does not respond.
@@ -155,8 +159,8 @@ fn unresponsive_session(robot: &Robot) -> Failure {
     let failure = Failure::new(Kind::NoAnswer, format!("{}: {} does not respond", robot.label(), holder(robot)));
     let Some(Info { pid, .. }) = owner(robot) else { return failure };
     failure.hint(format!(
-        "the process may be suspended: `kill -CONT {pid}` continues it, `kill -KILL {pid}` ends it and frees the \
-         connection"
+        "use `kill -CONT {pid}` to continue the process if it is suspended, or `kill -KILL {pid}` to end the process \
+         and free the connection"
     ))
 }
 
@@ -265,22 +269,26 @@ pub fn attach_failure(label: &str, error: &AttachError) -> Failure {
 pub fn session_busy(label: &str, busy: &SessionBusy) -> Failure {
     match busy {
         SessionBusy::Ended(why) => Failure::new(Kind::NoAnswer, format!("{label}: {why}"))
-            .hint("check the robot; `armctl session open` opens a new session"),
+            .hint("check the robot, then use `armctl session open` to open a new session"),
         SessionBusy::Busy(holder) => {
             let who = holder.as_ref().map_or_else(|| "another client".to_owned(), peer);
-            Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}"))
-                .hint("wait until it ends; you can always stop: `yrcx stop`, `toyo stop`, `yerc hold on`")
+            Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}")).hint(
+                "wait until that client ends; you can always stop the robot with `yrcx stop`, `toyo stop` or `yerc \
+                 hold on`",
+            )
         }
         SessionBusy::ReadOnly => {
             Failure::new(Kind::Rejected, format!("{label} is read-only: the session sent nothing")).hint(
-                "to allow changes, use `armctl robots set NAME read_only=off`, then close the session and open it \
+                "use `armctl robots set NAME read_only=off` to allow changes, then close the session and open it \
                  again",
             )
         }
         SessionBusy::Moved(holder) => {
             let message = format!("{label}: another client is moving the robot: {}; nothing was sent", peer(holder));
-            Failure::new(Kind::Rejected, message)
-                .hint("wait until it ends; you can always stop: `yrcx stop`, `toyo stop`, `yerc hold on`")
+            Failure::new(Kind::Rejected, message).hint(
+                "wait until that client ends; you can always stop the robot with `yrcx stop`, `toyo stop` or `yerc \
+                 hold on`",
+            )
         }
     }
 }

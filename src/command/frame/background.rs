@@ -72,7 +72,7 @@ pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Scre
     words.extend(["-r", &robot.name, "session", "open", "--detached"].map(OsString::from));
     let opened = start(robot, words.into_iter()).await?;
     screen.note(&format!(
-        "{}: session opened (process {}); `armctl session close {}` closes it",
+        "{}: session opened (process {}); use `armctl session close {}` to close it",
         robot.label(),
         opened.pid,
         robot.name
@@ -84,10 +84,10 @@ pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Scre
 pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
     let folder = SessionFolder::create().map_err(|error| folder_failure(&error))?;
     let log = folder.location(&session_key(robot)).log();
-    let mut child = detach(words, &log).context("this program, in the background")?;
+    let mut child = detach(words, &log).context("armctl in the background")?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {
-        Ok(line) => line.map_err(|error| Failure::local(format!("the background: {error}")))?,
+        Ok(line) => line.map_err(|error| Failure::local(format!("armctl in the background: {error}")))?,
         Err(interrupt) => {
             terminate(pid);
             return Err(interrupt);

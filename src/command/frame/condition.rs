@@ -69,8 +69,8 @@ impl Condition {
     fn with_filter(text: &str, filter: &str, keys: Vec<Vec<String>>, name: Option<String>) -> Result<Self, Failure> {
         let filter = Filter::new(filter).map_err(|failure| {
             failure.hint(
-                "a condition is one of idle, running, held, faulted, homed, servo-on; NAME=VALUE; or a jq filter such \
-                 as .data.held",
+                "use idle, running, held, faulted, homed or servo-on; or NAME=VALUE; or a jq filter such as \
+                 .data.held",
             )
         })?;
         Ok(Self { text: text.to_owned(), filter, keys, name })
@@ -97,8 +97,8 @@ impl Condition {
             let is_known = data.contains_key(name) || has_item(&first["data"], name);
             return (!is_known).then(|| {
                 format!(
-                    "'{}': this report has no key and no item {name}, so this may never be true; `armctl wait '{}'` \
-                     reads it",
+                    "'{}': this report has no key and no item {name}, so this condition may never be true; use \
+                     `armctl wait '{}'` to read the item",
                     self.text, self.text
                 )
             });
@@ -106,7 +106,10 @@ impl Condition {
         let missing = self.keys.iter().find(|path| !has(first, path))?;
         let found = path_of(first, missing).map(|keys| keys.join(", ")).unwrap_or_default();
         let place = missing.join(".");
-        Some(format!("'{}': the key .{place} does not exist, so this may never be true; available: {found}", self.text))
+        Some(format!(
+            "'{}': the key .{place} does not exist, so this condition may never be true; available keys: {found}",
+            self.text
+        ))
     }
 }
 

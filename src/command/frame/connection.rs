@@ -233,7 +233,7 @@ impl<F: Family> Driver for Driving<F> {
 /// Link of a family from a connection; a wrong family is an internal error.
 pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, Failure> {
     let link = connection.as_any().downcast_mut();
-    link.ok_or_else(|| Failure::local("internal error: this connection is one of another family"))
+    link.ok_or_else(|| Failure::local("internal error: this connection belongs to another family"))
 }
 
 /// Borrowed link of a family as a [`Connection`], for a command that runs on it.

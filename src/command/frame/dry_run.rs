@@ -70,7 +70,8 @@ pub struct DryRun {
                        "items": {"type": "object", "required": ["name", "value"],
                                  "properties": {"name": {"type": "string"}, "value": {"type": "string"}}}},
             "about": {"description": "Purpose of the frame.", "type": "string"},
-            "depends_on": {"description": "Earlier answer that decides its content, or whether it is sent.",
+            "depends_on": {"description": "Earlier answer that decides the content of the frame, or whether the frame \
+                                           is sent.",
                            "type": "string"}
         },
         "oneOf": [{"required": ["hex"]}, {"required": ["wi"]}, {"required": ["bits"]}, {"required": ["text"]}]
@@ -86,8 +87,8 @@ pub struct DryRun {
             "action": {"enum": ["write", "leave"]},
             "bytes": {"description": "Of a file.", "type": "integer"},
             "values": {"description": "Of a part.", "type": "integer"},
-            "depends_on": {"description": "Answer that decides whether it is written.", "type": "string"},
-            "why": {"description": "Reason why it is not written.", "type": "string"}
+            "depends_on": {"description": "Answer that decides whether the item is written.", "type": "string"},
+            "why": {"description": "Reason why the item is not written.", "type": "string"}
         }
     }))]
     pub items: Vec<Value>,

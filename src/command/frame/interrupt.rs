@@ -104,7 +104,7 @@ fn start() -> std::io::Result<TerminationRequest> {
             Err(error) => _ = ready.send(Err(error)),
         },
     )?;
-    is_ready.recv().unwrap_or_else(|_| Err(std::io::Error::other("the thread for them has ended")))?;
+    is_ready.recv().unwrap_or_else(|_| Err(std::io::Error::other("the thread for signals has ended")))?;
     Ok(requests)
 }
 
@@ -142,7 +142,7 @@ async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
             continue;
         }
         if presses.press(how, requests.borrow().is_some(), Instant::now()) {
-            immediate_exit::exit_now(&format!("{how} again: ended at once; a motion or command may continue"));
+            immediate_exit::exit_now(&format!("{how} again: armctl ended at once; a motion or command may continue"));
         }
         seen = busy_work::current();
         // The first request stays set, unless it was cleared for the next line.

@@ -89,7 +89,7 @@ impl LocalNames {
         for local in [local_name(self.encoding, name), caseless_name(self.encoding, name)] {
             if local.is_empty() || local.len() > MAX_LOCAL_NAME {
                 return Err(Failure::local(format!("the name '{}' cannot be a local file name", name.escape_ascii()))
-                    .hint("`yerc file get NAME --dir -` writes the file to stdout"));
+                    .hint("use `yerc file get NAME --dir -` to write the file to stdout"));
             }
             let owner = self.taken.entry(local.to_lowercase()).or_insert_with(|| name.to_vec());
             if owner == name {
@@ -176,7 +176,7 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 
 fn exists(path: &Path) -> Failure {
     Failure::local(format!("{} already exists and was not changed", path.display()))
-        .hint("add --force to replace it, or use another path")
+        .hint("add --force to replace the file, or use another path")
 }
 
 /// A character of a name, or an invalid byte.

@@ -242,10 +242,10 @@ fn not_typed(grammar: Grammar, names: &Names, name: &Name) -> Option<String> {
     }
     match names.find(&[name.kind], &name.name) {
         Found::One(found) if found.address == name.address => None,
-        Found::One(found) => Some(format!("it is the name of {} in {}", found.address, found.source)),
+        Found::One(found) => Some(format!("the name belongs to {} in {}", found.address, found.source)),
         Found::Several(several) => {
             let other = several.iter().find(|other| other.address != name.address);
-            Some(format!("it is also the name of {}", other.map_or("another address", |other| &other.address)))
+            Some(format!("the name also belongs to {}", other.map_or("another address", |other| &other.address)))
         }
         Found::None => None,
     }

@@ -177,7 +177,7 @@ impl Run {
                 "at most {MAX_PARALLEL} robots can be watched at a time, not {}",
                 robots.len()
             ))
-            .hint("select fewer with -r or --tag"));
+            .hint("select fewer robots with -r or --tag"));
         }
         let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
         Gate::check_named_robots(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
@@ -485,7 +485,7 @@ impl Run {
                 message: format!("{}; the command may have been executed completely or in part", interrupt.message),
                 ..interrupt
             }
-            .hint("before you repeat it, read the values that this command writes")),
+            .hint("read the values that this command writes before you repeat the command")),
             Err(interrupt) => Err(interrupt),
         }
     }

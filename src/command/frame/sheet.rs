@@ -53,7 +53,8 @@ impl SheetManner {
         let exists = file.symlink_metadata().is_ok();
         let old = if self.update && exists { Some(text_files::read(&file)?) } else { None };
         let target = Target::new(file, self.force || self.update);
-        let advice = "add --update to update its values and keep its comments, or --force to replace it";
+        let advice = "add --update to update the values of the file and keep its comments, or --force to replace the \
+                      file";
         let target = target.map_err(|failure| if exists { failure.hint(advice) } else { failure })?;
         let dialect = if self.decimal_comma { Dialect::DECIMAL_COMMA } else { Dialect::COMMAS };
         Ok(SheetTarget { target, dialect, old })

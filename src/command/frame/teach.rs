@@ -67,14 +67,14 @@ impl Report for Taught {
 
 /// Failure: the point read back differs from the position.
 pub fn mismatch(name: &str, taught: &str, held: &str) -> Failure {
-    let message = format!("{name} was written but contains {held}; the robot is at {taught}");
+    let message = format!("{name} was written, but contains {held}; the robot is at {taught}");
     Failure::new(Kind::Malformed, message)
-        .hint("the robot moved, or another client wrote the point: check the point, then teach it again")
+        .hint("check the point, then teach it again: the robot moved, or another client wrote the point")
 }
 
 /// Failure: the point was written but could not be read back.
 pub fn unverified(name: &str, failure: Failure, command: &str) -> Failure {
-    let message = format!("{name} was written, but not read back: {}", failure.message);
+    let message = format!("{name} was written, but could not be read back: {}", failure.message);
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(format!("read the point with `{command}`"))
 }
 

@@ -16,7 +16,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     files::input(path, SIZE_LIMIT).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
             Failure::usage(format!("{} is larger than the memory of a controller", display_path(path)))
-                .hint("check that it is the right file")
+                .hint("check whether this is the right file")
         }
         _ => Failure::io(display_path(path), &error),
     })
@@ -38,8 +38,8 @@ pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<
 
 /// Failure for a file that is not possible with several robots.
 pub fn of_one_robot(file: &Path) -> Failure {
-    Failure::usage(format!("{} is for one robot", file.display()))
-        .hint("run the command once per robot, each with its own file")
+    Failure::usage(format!("{} is a file for one robot", file.display()))
+        .hint("run the command once for each robot, each time with the file of that robot")
 }
 
 /// Writes a file atomically and returns its path.
@@ -59,5 +59,5 @@ pub fn file_failure(name: &str, errors: &[Finding]) -> Failure {
             format!("{name}:{line}:{column}: {message}{hint}")
         })
         .collect();
-    Failure::usage(lines.join("\n")).hint("nothing was written; correct the file")
+    Failure::usage(lines.join("\n")).hint("correct the file; nothing was written")
 }

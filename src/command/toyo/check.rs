@@ -38,7 +38,7 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     layers.ok("answer", "all pages of the status were received");
     match info::version(link).await {
         Ok(version) => layers.ok("version", version),
-        Err(failure) => layers.warn("version", failure.message, "`toyo info` shows details"),
+        Err(failure) => layers.warn("version", failure.message, "use `toyo info` to see details"),
     }
     layers.judge(
         "teach pendant",
@@ -56,7 +56,7 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     if status.needs_power_cycle() {
         layers.fail_with(
             "power cycle",
-            "parameter 2 was changed, and the controller executes nothing before a restart",
+            "parameter 2 was changed, and the controller executes no command until a restart",
             "switch the controller's power off and on",
         );
     } else {
@@ -71,7 +71,11 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     layers.leftover_drafts(&left_over(status));
     // Servo power without use is only a remark, not a failure.
     let is_idle = !status.executing() && !status.homing() && !is_held(robot);
-    let on = if is_idle { "on; no program runs and no session is open: `toyo servo off`" } else { "on" };
-    layers.judge("servo", status.servo_on(), (on, "off"), "motion needs servo power: `toyo servo on`");
-    layers.judge("origin", status.homed(), ("done", "not done"), "motion needs the origin: `toyo home`");
+    let on = if is_idle {
+        "on, but no program runs and no session is open; use `toyo servo off` to switch servo power off"
+    } else {
+        "on"
+    };
+    layers.judge("servo", status.servo_on(), (on, "off"), "use `toyo servo on`: a motion needs servo power");
+    layers.judge("origin", status.homed(), ("done", "not done"), "use `toyo home`: a motion needs the origin");
 }

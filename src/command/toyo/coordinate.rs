@@ -94,8 +94,8 @@ impl Command for Set {
         let letters = link.letters().await?;
         let changes = Changes::read_by("coordinates", &point_table().body(), &letters, values)?;
         let coordinates = changes.whole().ok_or_else(|| {
-            Failure::usage("coordinates: a value is missing; each axis needs one")
-                .hint("`toyo coordinate set -h` has examples")
+            Failure::usage("coordinates: a value is missing; each axis needs a value")
+                .hint("see `toyo coordinate set -h` for examples")
         })?;
         let values = std::iter::once(task.clone()).chain(coordinates).chain([speed.clone()]).collect();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
@@ -103,7 +103,8 @@ impl Command for Set {
         let target = format!("{} (mm)", coordinates.in_a_line());
         authority.confirm(&Change::new(self.in_words(&target))).await?;
         link.ask(&request).await?;
-        let words = format!("task {} has {target} at {}", field("task").meaning(task), self.pace());
+        let words =
+            format!("task {} has received {target}, for a move at {}", field("task").meaning(task), self.pace());
         let new =
             NewValue::of("coordinates", serde_json::json!(coordinates), words).with("task", json(field("task"), task));
         let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", json(field("speed"), speed)) };

@@ -68,13 +68,17 @@ impl Copy {
         authority.confirm(&replacing(what, (from, to), letters, &target, (&wanted, &found))).await?;
         link.ask(&order).await?;
         let found = ask_all(link, screen, "reading the target again", &target).await.map_err(|failure| {
-            let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
+            let message = format!(
+                "the controller accepted {}, but the value could not be read back: {}",
+                order.text(),
+                failure.message
+            );
             Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command()))
         })?;
         if differences(&wanted, &found) > 0 {
             return Err(Failure::new(
                 Kind::Malformed,
-                format!("the controller accepted {} and holds something else", order.text()),
+                format!("the controller accepted {}, but the stored value differs", order.text()),
             )
             .hint("check for a second client that writes the same program, and for a worn EEPROM"));
         }
@@ -83,7 +87,7 @@ impl Copy {
 }
 
 /// Condition of the copy.
-const DIFFER: &str = "whether they differ";
+const DIFFER: &str = "whether source and target differ";
 
 /// Change to confirm.
 fn replacing(
@@ -113,7 +117,7 @@ fn replacing(
     if lost.is_empty() {
         return Change::none();
     }
-    let change = Change::new(format!("overwrite {what} {to} by {what} {from}"));
+    let change = Change::new(format!("overwrite {what} {to} with {what} {from}"));
     lost.iter().fold(change, |change, (record, [old, new])| {
         let what = record.checked_sub(1).and_then(|index| RECORDS.get(index)).map_or(what, |record| record.name);
         change.replaces(what, old, new)

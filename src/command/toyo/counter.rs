@@ -66,7 +66,7 @@ impl Store for Counters {
         placeholder: "N",
         range: "Counters, 1 to 99: 5, CN05 or 1-10, or a name",
         reading: None,
-        writing: Some("Counters take 0 to 9999, also while a program runs."),
+        writing: Some("A counter accepts values from 0 to 9999, also while a program runs."),
     };
     const IDS: Ids = ids!("toyo.counter");
     const LABELS: Option<Kind> = Some(Kind::Counter);
@@ -162,7 +162,7 @@ impl Writable for Counters {
             match count(&read_back(link, &order, &read(*counter)).await?) {
                 Some(stored) if stored != new_count => {
                     return Err(stored_otherwise(&order, &format!("the counter is {stored}"))
-                        .hint("a running program can change the counter at the same time"));
+                        .hint("repeat the command; a running program can change the counter at the same time"));
                 }
                 _ => {}
             }

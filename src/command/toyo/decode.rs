@@ -18,11 +18,11 @@ use crate::output::view::{Cell, Section, View};
 /// Lines of the Toyo host communication, either direction
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The form of a line shows its sender, and so does -> or <- before it: `armctl decode toyo -` reads the output of \
-                        `--trace -`. The request before an answer explains it. A damaged line is \
-                        explained up to the damage, and the exit code is 5.\n\nOf a capture file, the lines are \
-                        listed as by --trace; NUMBER and TIME are those of Wireshark. A file without lines is no \
-                        failure. A damaged file is listed up to the damage, and the exit code is 1."
+    after_help = "The form of a line shows the sender. A prefix -> or <- also shows the sender, so `armctl decode \
+                  toyo -` reads the output of `--trace -`. A request before an answer explains the answer. A damaged \
+                  line is explained up to the damage, and the exit code is 5.\n\nFor a capture file, the command \
+                  lists the lines as --trace does. NUMBER and TIME are the same as in Wireshark. A file without lines \
+                  is not an error. A damaged file is listed up to the damage, and the exit code is 1."
 )]
 pub struct Decode {
     /// Lines such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', - for stdin, or FILE.pcap or FILE.pcapng

@@ -38,7 +38,7 @@ pub struct Cells {
 /// Purpose of the read before a write.
 pub const THERE: &str = "the stored value";
 /// Condition of the write.
-const DIFFERS: &str = "whether it differs from the stored value";
+const DIFFERS: &str = "whether the new value differs from the stored value";
 
 impl Cells {
     /// Sentence for a report: `2 cells written, 1 unchanged`.
@@ -91,13 +91,17 @@ impl Link {
             screen.note(&format!("warning: {warning}"));
         }
         let is_stored = self.holds(cell).await.map_err(|failure| {
-            let message = format!("{} was accepted, but not read back: {}", cell.write.text(), failure.message);
+            let message = format!(
+                "the controller accepted {}, but the value could not be read back: {}",
+                cell.write.text(),
+                failure.message
+            );
             Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(cell.write.command()))
         })?;
         if !is_stored {
             return Err(Failure::new(
                 Kind::Malformed,
-                format!("the controller accepted {} and holds something else", cell.write.text()),
+                format!("the controller accepted {}, but the stored value differs", cell.write.text()),
             )
             .hint("check for a second client that writes the same cell, and for a worn EEPROM"));
         }

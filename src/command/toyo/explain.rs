@@ -41,7 +41,8 @@ fn subject(text: &str) -> Result<Subject, String> {
         let near = nearest(text, INSTRUCTIONS.iter().map(|row| row.word));
         let near = near.map(|near| format!("; did you mean {near}?")).unwrap_or_default();
         format!(
-            "type two hexadecimal digits, as in 28 (`toyo status` shows the code), or an instruction such as MOVP{near}"
+            "type two hexadecimal digits such as 28 (`toyo status` shows the code), or an instruction such as \
+             MOVP{near}"
         )
     })
 }

@@ -48,7 +48,7 @@ impl Command for Host {
         {
             return Ok(NewValue::of("host_on", is_on, done).replaces(old));
         }
-        Err(no_effect("the host").hint("`toyo status` shows whether the host is ON"))
+        Err(no_effect("the host").hint("use `toyo status` to see whether the host is ON"))
     }
 }
 

@@ -17,7 +17,8 @@ use crate::output::view::{Cell, Section, View};
 
 /// Show robot type, versions, axes, task and override.
 #[derive(Debug, Args)]
-#[command(after_help = "A missing station refuses to report its version. The report lists refused requests.")]
+#[command(after_help = "The controller refuses to report the version of a missing station. The report lists the \
+                        refused requests.")]
 pub struct Info {}
 
 /// Stations of the controller; 0 is the controller itself.

@@ -25,9 +25,9 @@ use crate::output::view::View;
 /// Clear memory. Only a backup can restore it.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The command clears sequential programs and coordinate tables of the current task only (`toyo task get`). On a \
-                        real controller, you confirm by typing the word again, or with --yes. Save the memory first with \
-                        `toyo backup`."
+    after_help = "The command clears sequential programs and coordinate tables of the current task only (`toyo task \
+                  get`). On a real controller, type the word again to confirm, or add --yes. Save the memory first \
+                  with `toyo backup`."
 )]
 pub struct Init {
     /// Memory to clear

@@ -165,7 +165,7 @@ async fn read(
 pub fn plan_twice(link: &mut Link, request: &Request) {
     link.plan(request, THERE);
     if request.parameter().is_some_and(|parameter| !parameter.only_on.is_empty()) {
-        link.plan_if(request, "if it is refused, because a busy controller also refuses");
+        link.plan_if(request, "whether the controller refuses the request, because a busy controller also refuses");
     }
 }
 
@@ -191,7 +191,7 @@ fn of_one(failure: Failure) -> Result<Result<Record, Failure>, Failure> {
 }
 
 fn not_asked(request: &Request, silence: &Failure) -> Failure {
-    let message = format!("{} was not sent after a lost answer: {}", request.text(), silence.message);
+    let message = format!("{} was not sent, because an earlier answer was lost: {}", request.text(), silence.message);
     Failure { message, ..silence.clone() }
 }
 

@@ -147,7 +147,7 @@ fn parse_duration(text: &str) -> Result<Duration, String> {
     if (SHORTEST..=LONGEST).contains(&time) {
         return Ok(time);
     }
-    Err(format!("a jog takes {} to {}", duration::display(SHORTEST), duration::display(LONGEST)))
+    Err(format!("the duration of a jog is from {} to {}", duration::display(SHORTEST), duration::display(LONGEST)))
 }
 
 /// Time limit for the begin of a step.
@@ -199,13 +199,13 @@ impl Jog {
         let steps = self.steps.unwrap_or(1);
         let about = match self.within {
             Some(time) => format!("then {} pass", duration::display(time)),
-            None if steps > 1 => format!("{steps} times, each after the axis stands still"),
+            None if steps > 1 => format!("{steps} times, each time after the axis has stopped"),
             None => "once".to_owned(),
         };
         match &self.axis {
             Axis::Index(index) => link.plan(&jog(self.word(), Some(*index)), &about),
             Axis::Letter(letter) => {
-                let about = format!("{} for axis {letter}, SP for the others; {about}", self.word());
+                let about = format!("{} for axis {letter}, SP for the other axes; {about}", self.word());
                 let reason = Reason::about(&about).depending_on("letters of the axes");
                 link.plan_depending("@JGST X=? Y=? Z=? R=?", reason);
             }
@@ -317,10 +317,11 @@ impl Jog {
                 return Ok(current);
             }
             if is_at_rest && began.elapsed() >= START_TIMEOUT {
-                let message = "the step was accepted, but the axis did not move";
+                let message = "the controller accepted the step, but the axis did not move";
                 return Err(JogError::Failed(
-                    Failure::new(Kind::ConditionNotMet, message)
-                        .hint("`toyo param get P12` shows the size of a step, `toyo status` shows the reason"),
+                    Failure::new(Kind::ConditionNotMet, message).hint(
+                        "use `toyo param get P12` to see the size of a step, and `toyo status` to see the reason",
+                    ),
                 ));
             }
             sleep(STEP_POLL_INTERVAL).await;

@@ -67,7 +67,7 @@ impl Family for Toyo {
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
-        let Some(moving) = link.moving() else { return Ok("nothing was sent that moves the robot".to_owned()) };
+        let Some(moving) = link.moving() else { return Ok("no motion command was sent".to_owned()) };
         // Stop first and print then, because a blocked terminal must not delay the stop.
         link.send_urgent(moving).await;
         let stop = moving.stop().text();

@@ -243,8 +243,9 @@ impl Writable for Groups {
                 (None, Some(old)) if changes.values().iter().all(Option::is_none) => return Ok(old[index].clone()),
                 (None, Some(old)) => changes.over(&old[index])?,
                 (None, None) => {
-                    let message = format!("group {group} was not read, so missing values are unknown");
-                    return Err(Failure::usage(message).hint("nothing was written; type all values"));
+                    let message =
+                        format!("group {group} could not be read, so the values that are not typed are unknown");
+                    return Err(Failure::usage(message).hint("type all values; nothing was written"));
                 }
             };
             let values = std::iter::once(Value::Number(group)).chain(values).collect();

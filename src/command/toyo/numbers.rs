@@ -80,7 +80,11 @@ pub async fn ask_all(
 /// Reads a value back after a command. A dry run records the request.
 pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record, Failure> {
     link.ask(read).await.map_err(|failure| {
-        let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
+        let message = format!(
+            "the controller accepted {}, but the value could not be read back: {}",
+            order.text(),
+            failure.message
+        );
         Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command()))
     })
 }

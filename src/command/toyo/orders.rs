@@ -58,7 +58,7 @@ impl Command for Servo {
         if done {
             return Ok(new.replaces(old));
         }
-        Err(no_effect("servo power").hint("`toyo alarm list` and `toyo status` show the reason"))
+        Err(no_effect("servo power").hint("use `toyo alarm list` and `toyo status` to see the reason"))
     }
 }
 
@@ -131,8 +131,8 @@ impl ModeName {
 
 /// Select the run mode or the program type (TO 2-2).
 #[derive(Debug, Args)]
-#[command(after_help = "A parameter selects easy and external point mode: \
-    `toyo param set M10 …`. `toyo status` shows the modes.")]
+#[command(after_help = "Parameter M10 selects easy mode and external point mode: `toyo param set M10 …`. `toyo \
+                        status` shows the modes.")]
 pub struct Mode {
     /// Run mode program, step or auto; program type sequential or palletizing
     mode: ModeName,
@@ -159,7 +159,10 @@ impl Command for Mode {
 
 /// Failure for a command that was accepted without effect.
 pub(super) fn no_effect(what: &str) -> Failure {
-    Failure::new(Kind::ConditionNotMet, format!("the command was accepted, but {what} did not change within 1s"))
+    Failure::new(
+        Kind::ConditionNotMet,
+        format!("the controller accepted the command, but {what} did not change within 1s"),
+    )
 }
 
 /// Reset programs to the first step (TO 2-7).

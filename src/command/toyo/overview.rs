@@ -49,9 +49,9 @@ pub(super) fn state(status: Status) -> State {
 pub(super) fn left_over(status: Status) -> Vec<LeftOver> {
     let is_program = status.run_mode() == Some(RunMode::Program);
     [
-        LeftOver::new(status.host_on(), "the host is ON", "`toyo host off` releases the host"),
-        LeftOver::new(is_program, "the controller is in program mode", "use use `toyo mode auto` or `toyo mode step`"),
-        LeftOver::new(status.paused(), "a program is paused", "`toyo reset` resets programs to the first step"),
+        LeftOver::new(status.host_on(), "the host is ON", "use `toyo host off` to release the host"),
+        LeftOver::new(is_program, "the controller is in program mode", "use `toyo mode auto` or `toyo mode step`"),
+        LeftOver::new(status.paused(), "a program is paused", "use `toyo reset` to reset programs to the first step"),
     ]
     .into_iter()
     .flatten()

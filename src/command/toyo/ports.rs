@@ -18,10 +18,10 @@ pub fn in_use(label: &str, path: &str) -> Failure {
         Some(PortUser { pid, name }) if ["armctl", "toyo"].contains(&&name[..]) => failure(&format!(
             "another armctl, process {pid},"
         ))
-        .hint(format!("use `kill {pid}`: it stops its motion and ends; or share the line with `armctl session open`")),
+        .hint(format!("use `kill {pid}` to stop its motion and end it, or share the line with `armctl session open`")),
         Some(PortUser { pid, name }) => failure(&format!("{}, process {pid},", name.escape_debug()))
-            .hint("close the other program: a line can have one host at a time"),
-        None => failure("another program").hint("close the other program: a line can have one host at a time"),
+            .hint("close the other program: a line can have only one host at a time"),
+        None => failure("another program").hint("close the other program: a line can have only one host at a time"),
     }
 }
 

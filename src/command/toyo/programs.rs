@@ -90,9 +90,9 @@ impl<K: Kind> Command for Select<K> {
         let selected = read_back(link, &order, &selection_read).await?.number("program");
         if let Some(selected) = selected.filter(|selected| *selected != self.program) {
             return Err(stored_otherwise(&order, &format!("program {selected} is selected"))
-                .hint("a running program stays selected"));
+                .hint("wait until the program has ended; a running program stays selected"));
         }
-        let words = format!("{} {} is selected; `{}` starts it", K::WHAT, self.program, K::RUN);
+        let words = format!("{} {} is selected; use `{}` to start it", K::WHAT, self.program, K::RUN);
         Ok(NewValue::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
     }
 }

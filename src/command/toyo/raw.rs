@@ -18,10 +18,12 @@ use crate::output::view::View;
 
 /// Send a block unchanged, without host ON, comparison or wait.
 #[derive(Debug, Args)]
-#[command(after_help = "A block that is not in the manual is also sent. It counts as a motion, because its effect \
-                        is unknown. Before a block that can change something, armctl reads a page of the status, \
-                        so that a late answer is recognized. If the controller refuses (@NG), the exit code is 3. `armctl decode toyo` \
-                        explains a block without sending it.")]
+#[command(
+    after_help = "armctl also sends a block that is not in the manual. Such a block counts as a motion, because its \
+                  effect is unknown. Before a block that can change something, armctl reads a page of the status, so \
+                  that it recognizes a late answer. If the controller refuses the block (@NG), the exit code is 3. \
+                  `armctl decode toyo` explains a block without sending it."
+)]
 pub struct Raw {
     /// Block without its line end, such as '@STAS SNO=0'
     #[arg(value_name = "BLOCK", value_parser = block)]
@@ -142,7 +144,7 @@ impl Report for Exchange {
         let refused = || {
             Failure::new(Kind::Refused, format!("the controller refused {} (@NG)", self.request))
                 .code("NG")
-                .hint("`toyo status` can show the reason; most commands need the host ON (`toyo host on`)")
+                .hint("use `toyo status` to see a possible reason; most commands need the host ON (`toyo host on`)")
         };
         self.refused.then(refused)
     }

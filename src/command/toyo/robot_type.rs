@@ -19,8 +19,8 @@ use crate::output::view::View;
 /// Set the robot type of an axis, which determines its parameters.
 #[derive(Debug, Args)]
 #[command(after_help = "A wrong type can cause wrong motion: use the type on the name plate. An unknown number \
-                        changes nothing (exit code 3). On a real controller, you confirm by typing the word 'type', \
-                        or with --yes. `toyo info` shows the type of the robot.")]
+                        changes nothing (exit code 3). On a real controller, type the word 'type' to confirm, or add \
+                        --yes. `toyo info` shows the type of the robot.")]
 pub struct RobotType {
     /// 1 to 4
     #[arg(value_name = "AXIS", value_parser = |text: &str| number(&fields()[0], text))]
@@ -60,7 +60,8 @@ impl Command for RobotType {
         let type_text = |number: i32| fields()[1].written(&Value::Number(number));
         let in_force = type_text(answer.number("in_force").unwrap_or(0));
         let status = context.link.status_of(&[0]).await.map_err(|failure| {
-            let message = format!("robot type {in_force} is active now, but then: {}", failure.message);
+            let message =
+                format!("robot type {in_force} is active now, but the next status request failed: {}", failure.message);
             Failure { message, ..failure }
         })?;
         Ok(RobotTypeReport {

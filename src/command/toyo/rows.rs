@@ -74,7 +74,8 @@ pub trait Kind: Debug + Send + Sync + 'static {
 }
 
 /// Help of commands that write to the EEPROM.
-pub const WRITING: &str = "Equal values are not written, because the EEPROM takes about a million rewrites.";
+pub const WRITING: &str = "armctl does not write equal values, because an EEPROM cell wears out after about a million \
+                           writes.";
 
 const fn words(nouns: [&'static str; 2], placeholder: &'static str, range: &'static str) -> TableWords {
     TableWords { nouns, placeholder, range, reading: None, writing: Some(WRITING) }
@@ -276,10 +277,10 @@ impl<T: EepromRow> Writable for T {
             (None, Some(old)) => changes.over(old)?,
             (None, None) => {
                 let message = format!(
-                    "{} was not read, so missing values are unknown",
+                    "{} could not be read, so the values that are not typed are unknown",
                     as_requested(T::WORDS.nouns[0], &T::name(key))
                 );
-                return Err(Failure::usage(message).hint("nothing was written; type all values"));
+                return Err(Failure::usage(message).hint("type all values; nothing was written"));
             }
         };
         self.check(key, &values)?;

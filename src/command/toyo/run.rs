@@ -49,9 +49,9 @@ commands! {
 
 /// Start the sequential program (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Without STEP the program continues at the current step: the step of the last stop, \
-    or the first step after `toyo reset`. `toyo status` shows mode, servo and origin, which the command does \
-    not change.")]
+#[command(after_help = "Without STEP the program continues at the current step: the step of the last stop, or the \
+                        first step after `toyo reset`. The command does not change mode, servo power or origin; `toyo \
+                        status` shows them.")]
 pub struct Sequential {
     /// First step; default: the current step
     #[arg(value_name = "STEP", value_parser = clap::value_parser!(i32).range(1..=5000))]
@@ -79,7 +79,7 @@ impl Command for Sequential {
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         if self.repeat.repeat.is_some() && self.step.is_none() {
             return Err(Failure::usage("--repeat needs the first step of each run")
-                .hint("type the step, as in `toyo run sequential 1 --repeat 20`; nothing was started"));
+                .hint("type the step, for example `toyo run sequential 1 --repeat 20`; nothing was started"));
         }
         confirm_start(&mut context, Change::new(self.intent()), Program::Sequential(self.step)).await?;
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
@@ -290,7 +290,7 @@ impl Program {
                     Ok(record) => {
                         let (step, text) =
                             (record.number("step").unwrap_or(0), record.text("text").unwrap_or_default());
-                        format!("It is the program of task {task}; it begins at step {step}: {text}.")
+                        format!("The program of task {task} begins at step {step}: {text}.")
                     }
                     Err(_) => format!("It is the program of task {task}; the controller did not report the step."),
                 })
@@ -377,7 +377,7 @@ async fn start_and_wait(
         }
         if report.program.state == Some(ProgramState::Held) {
             let failure = Failure::new(Kind::ConditionNotMet, "the program is paused at a stop or after a step")
-                .hint("to continue, start it without a step or program");
+                .hint("start the program without a step or program number to continue");
             return Err(runs.add_to_failure(failure));
         }
         runs.add(report.program.elapsed_ms.unwrap_or(0));
@@ -395,7 +395,8 @@ async fn within(
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
         let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
-        Err(Failure::new(Kind::ConditionNotMet, message).hint("the program continues; `toyo status` shows the state"))
+        Err(Failure::new(Kind::ConditionNotMet, message)
+            .hint("use `toyo status` to see the state; the program continues"))
     })
 }
 
@@ -425,7 +426,7 @@ fn plan_end(link: &mut Link, order: table::Command) -> Failure {
     if order != table::Command::Extp {
         link.plan(&step(0), "the last step");
     }
-    let stop_check = Reason::about("whether the program contains a stop").depending_on("whether it is paused");
+    let stop_check = Reason::about("whether the program contains a stop").depending_on("whether the program is paused");
     link.plan_depending("@STAS SNO=2", stop_check);
     link.plan_depending("@RSTX ?", stop_check);
     unknown()
@@ -448,14 +449,15 @@ fn stopped(last: Option<&(i32, String)>, coordinates: Option<Coordinates>) -> Fa
     let step = last.map(|(step, text)| format!(" at step {step} ({text})")).unwrap_or_default();
     let coordinates =
         coordinates.map(|coordinates| format!("; the axes are at {}", coordinates.in_a_line())).unwrap_or_default();
-    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{coordinates}"))
-        .hint("find the reason; then start it without a step or program to continue, or use `toyo reset`")
+    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{coordinates}")).hint(
+        "find the reason; then start the program without a step or program number to continue, or use `toyo reset`",
+    )
 }
 
 /// Failure after a run whose result is unknown.
 fn after(failure: &Failure) -> Failure {
     let message = format!("the run has ended, but its result is unknown: {}", failure.message);
-    Failure { message, ..failure.clone() }.hint("`toyo status` and `toyo position` show the state")
+    Failure { message, ..failure.clone() }.hint("use `toyo status` and `toyo position` to see the state")
 }
 
 /// Result of a start. A program at a STOP, or after a step in step mode, is held.

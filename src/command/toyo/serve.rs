@@ -17,7 +17,8 @@ use crate::transport::stream_server::StreamServer;
 
 /// Simulate a Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal
 #[derive(Debug, Args)]
-#[command(after_help = "A line has one host: while a client is connected, other TCP clients are disconnected at once.")]
+#[command(after_help = "A line has one host: while a client is connected, the simulator disconnects every other TCP \
+                        client at once.")]
 pub struct Serve {
     /// Address to listen on, with the TCP port; port 0 lets the system choose
     #[arg(

@@ -17,7 +17,7 @@ pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpe
         (None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
         (Some(file), None) => load(file)?,
         (Some(_), Some(_)) => {
-            return Err(Failure::usage("--axes and --state exclude each other")
+            return Err(Failure::usage("--axes cannot be used with --state")
                 .hint("write the number of axes into the state file"));
         }
     };
@@ -31,6 +31,6 @@ fn load(path: &Path) -> Result<Start, Failure> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
-            .hint("`armctl help simulator` shows the form of the file")
+            .hint("see `armctl help simulator` for the form of the file")
     })
 }

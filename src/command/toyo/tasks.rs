@@ -12,7 +12,7 @@ pub async fn choose(link: &mut Link, task: Option<u8>) -> Result<u8, Failure> {
         link.plan(&Request::bare(Command::Mtsk), "the current task");
         if let Some(task) = task {
             let back = format!("@{} TASK=?", Command::Ctsk.row().word);
-            link.plan_to_borrow(&select_request(task), &back, "whether it differs from the current task").await?;
+            link.plan_to_borrow(&select_request(task), &back, "whether the task differs from the current task").await?;
         }
         return Ok(task.unwrap_or(1));
     }

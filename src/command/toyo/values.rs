@@ -215,7 +215,7 @@ impl Changes {
             }
             if typed.len() != slots.len() {
                 let values = if slots.len() == 1 { "value" } else { "values" };
-                let message = format!("{} {values} needed, {} given", slots.len(), typed.len());
+                let message = format!("{} {values} needed, but {} typed", slots.len(), typed.len());
                 return Err(wrong_slot(message));
             }
             for (slot, text) in slots.iter().zip(typed) {
@@ -225,7 +225,7 @@ impl Changes {
         }
         for (assignment, text) in named.into_iter().zip(typed) {
             let (name, value) =
-                assignment.ok_or_else(|| wrong_slot(format!("'{text}' has no name, but other values have")))?;
+                assignment.ok_or_else(|| wrong_slot(format!("'{text}' has no name, but other values have names")))?;
             let slot = slot_by_name(&slots, layout, name).ok_or_else(|| {
                 if has_coordinates(layout) && ["x", "y", "z", "r"].iter().any(|axis| axis.eq_ignore_ascii_case(name)) {
                     let message = format!("the axis of {} is unknown: {}", name.to_uppercase(), machine(letters));
@@ -325,13 +325,13 @@ pub fn machine(letters: &Letters) -> String {
 /// Hint for coordinates by name.
 fn by_name(slots: &[ValueSlot]) -> String {
     let names: Vec<String> = slots.iter().map(|slot| format!("{}=…", slot.name)).collect();
-    format!("type them by name: {}; ax1 to ax4 also work on every machine", names.join(" "))
+    format!("type the coordinates by name: {}; ax1 to ax4 also work on every machine", names.join(" "))
 }
 
 /// Failure for an unchanged value that cannot be written again.
 fn unwritable_value(stored: &str) -> Failure {
     Failure::usage(format!("the stored value '{stored}' is not in the manual and cannot be written again"))
-        .hint("nothing was written; type all values")
+        .hint("type all values; nothing was written")
 }
 
 /// A number in its unit; a float only if it has decimals.
@@ -392,9 +392,13 @@ fn usage(slots: &[ValueSlot], layout: &Layout) -> String {
         [slot] => format!("type the value: {}", slot.expected(layout)),
         [first, ..] => {
             let names: Vec<&str> = slots.iter().map(|slot| &slot.name[..]).collect();
-            format!("type all values in the order {}, or only some by name, such as {}=…", names.join(" "), first.name)
+            format!(
+                "type all values in the order {}, or only some values by name, such as {}=…",
+                names.join(" "),
+                first.name
+            )
         }
-        [] => "it takes no values".to_owned(),
+        [] => "remove the values: this item has no values".to_owned(),
     }
 }
 

@@ -137,16 +137,17 @@ impl AcceptedWork {
 
     fn plan(self, link: &mut Link) {
         for page in self.pages() {
-            link.plan(&status_page(*page), "every 100 ms until it has ended");
+            link.plan(&status_page(*page), "every 100 ms until the command has ended");
         }
         if self.work != Work::Card {
-            link.plan(&position_request(), "every 100 ms until it has ended: position of the axes");
+            link.plan(&position_request(), "every 100 ms until the command has ended: position of the axes");
         }
         if self.work == Work::Program {
-            let about =
-                Reason::about("every 500 ms until it has ended: current step, and whether it waits for an input");
+            let about = Reason::about(
+                "every 500 ms until the command has ended: current step, and whether the step waits for an input",
+            );
             for request in [status_page(4), steps::read_request(0)] {
-                link.plan_depending(&request.text(), about.depending_on("duration of the work"));
+                link.plan_depending(&request.text(), about.depending_on("duration of the command"));
             }
         }
         link.plan_if(&status_page(1), "whether an error occurs");
@@ -159,14 +160,17 @@ impl AcceptedWork {
         let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{coordinates}", self.done));
         match reason {
             WaitFailure::Error => explain_present_error(link, &fail).await,
-            WaitFailure::NoOrigin => fail("it ended without the origin")
-                .hint("check the machine: it was stopped without an error. Then repeat `toyo home`"),
-            WaitFailure::NeverStarted => {
-                Failure { kind: Kind::OutcomeUnknown, ..fail("the status never showed execution") }
-                    .hint("check `toyo status` and the robot: it ended at once, or it did not begin")
+            WaitFailure::NoOrigin => fail("the status shows no origin after the end")
+                .hint("check why the machine stopped without an error; then repeat `toyo home`"),
+            WaitFailure::NeverStarted => Failure {
+                kind: Kind::OutcomeUnknown,
+                ..fail("the status never showed that the controller executed it")
             }
-            WaitFailure::NoStart => fail("the status did not show the start")
-                .hint("keep clear, because it can still begin; check `toyo status` and the teach pendant"),
+            .hint("check `toyo status` and the robot: the execution ended at once, or it did not begin"),
+            WaitFailure::NoStart => fail("the status did not show the start").hint(
+                "keep clear of the robot, because the motion can still begin; check `toyo status` and the teach \
+                 pendant",
+            ),
         }
     }
 
@@ -174,7 +178,7 @@ impl AcceptedWork {
     fn lost(self, failure: Failure) -> Failure {
         let message = format!("{}, but its result is unknown: {}", self.done, failure.message);
         Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-            .hint(format!("do not send the command again: {}", refusal::verification_hint(self.order)))
+            .hint(format!("do not send the command again; {}", refusal::verification_hint(self.order)))
     }
 }
 
@@ -182,7 +186,7 @@ impl AcceptedWork {
 pub(super) async fn explain_present_error(link: &mut Link, fail: &impl Fn(&str) -> Failure) -> Failure {
     match link.status_of(&[1]).await {
         Ok(Status { error: errors::NONE, .. }) => {
-            fail("an error occurred and was cancelled").hint("`toyo alarm history` can show the error")
+            fail("an error occurred and was cancelled").hint("use `toyo alarm history` to look for the error")
         }
         Ok(Status { error: code, .. }) => {
             let error = errors::explain(code);
@@ -191,7 +195,7 @@ pub(super) async fn explain_present_error(link: &mut Link, fail: &impl Fn(&str) 
                 .code(format!("{code:02X}"))
         }
         Err(failure) => fail(&format!("an error occurred, but its code could not be read: {}", failure.message))
-            .hint("`toyo alarm list` shows the error"),
+            .hint("use `toyo alarm list` to see the error"),
     }
 }
 
@@ -237,7 +241,7 @@ pub(super) async fn wait_for_status(
             Err(failure) if is_late || failure.kind != Kind::Refused => {
                 let message = format!("the command was accepted, but its result is unknown: {}", failure.message);
                 return Err(Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-                    .hint("`toyo status` shows the state of the controller"));
+                    .hint("use `toyo status` to see the state of the controller"));
             }
             _ => tokio::time::sleep(POLL_INTERVAL).await,
         }

@@ -206,7 +206,8 @@ pub(super) fn plan_latest(link: &mut Link) -> Result<(), Failure> {
 fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<(), Failure> {
     let item_name = link.plan_all(all);
     if texts && link.is_dry() {
-        let about = "without texts, if the controller has none; all later requests are then without texts";
+        let about = "without alarm texts, if the controller has no texts; armctl then sends all later requests \
+                     without texts";
         link.plan_if(
             &older.request(),
             Reason::about(about).depending_on("whether the controller refuses the previous request"),
@@ -266,7 +267,7 @@ macro_rules! order {
 order! {
     /// Resets the alarm (FS and DX 3.3.19).
     Reset, "yerc.alarm.reset", query::ResetAlarm, "alarm" = "reset",
-    "alarm reset accepted; `yerc alarm list` shows the remaining alarms"
+    "alarm reset accepted; use `yerc alarm list` to see the remaining alarms"
 }
 order! {
     /// Cancels the error (FS and DX 3.3.19).

@@ -97,17 +97,20 @@ pub fn plan_in_batches<S: PlannedRead>(
             (BatchSplit::Halves, [first, _, .., last]) => {
                 let (one, other) = asked.split_at(asked.len().div_ceil(2));
                 for (half, which) in [(one, "first"), (other, "second")] {
-                    let about = format!("its {which} half, if it is refused; divided again down to single items");
+                    let about = format!("the {which} half of a refused run, divided again down to single items");
                     for step in plan(half)? {
                         link.plan_if(&step.request(), Reason::about(&about).depending_on(REFUSED));
                     }
                 }
-                let about = "each item alone, if the controller has no request for several";
+                let about = "each item alone, if the controller has no request for several items";
                 link.plan_depending(first, last, Reason::about(about).depending_on(REFUSED));
             }
             _ => {
                 for single in &singles {
-                    link.plan_if(single, Reason::about("each item alone, if the run is refused").depending_on(REFUSED));
+                    link.plan_if(
+                        single,
+                        Reason::about("each item alone, if the controller refuses the run").depending_on(REFUSED),
+                    );
                 }
             }
         }

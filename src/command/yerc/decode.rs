@@ -21,10 +21,10 @@ use crate::output::view::{Cell, Section, View};
 /// Decode frames of the high-speed Ethernet server
 #[derive(Debug, Args)]
 #[command(
-    after_help = "An answer does not contain its command: give the request before it, or --command. A damaged frame is \
-                  explained up to the damage, and the exit code is 5.\n\nA capture file lists the frames in the same \
-                  text as --trace. NUMBER and TIME are those of Wireshark. A file without any frames is not an error. \
-                  A damaged file is decoded up to the damage, and the exit code is 1."
+    after_help = "An answer does not contain its command: type the request before the answer, or use --command. A \
+                  damaged frame is explained up to the damage, and the exit code is 5.\n\nFor a capture file, the \
+                  command lists the frames as --trace does. NUMBER and TIME are the same as in Wireshark. A file \
+                  without frames is not an error. A damaged file is decoded up to the damage, and the exit code is 1."
 )]
 pub struct Decode {
     /// Frames in hexadecimal (spaces, colons and 0x are allowed between the bytes), - for stdin with one frame per
@@ -70,7 +70,7 @@ impl decode::Decode for Decode {
 impl Decode {
     /// Bytes of each given frame.
     fn frames(&self) -> Result<Vec<Vec<u8>>, Failure> {
-        let wrong = |error| Failure::usage(error).hint("give bytes as 59455243… or 59 45 52 43 …");
+        let wrong = |error| Failure::usage(error).hint("type bytes as 59455243… or 59 45 52 43 …");
         let mut pieces = Vec::new();
         if self.hex == ["-"] {
             for line in stdin()?.lines().map(str::trim).filter(|line| !line.is_empty()) {

@@ -26,7 +26,7 @@ impl face::Explain for Explain {
 
     fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Listed>, Failure> {
         let mut found = status::lookup(&self.code).map_err(|error| {
-            Failure::usage(error.to_string()).hint("error messages and `alarm list` show the code to look up")
+            Failure::usage(error.to_string()).hint("look up a code that an error message or `alarm list` shows")
         })?;
         let number = alarm_number(&self.code);
         if number.is_some() {
@@ -69,8 +69,8 @@ fn alarm_number(text: &str) -> Option<u32> {
 fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>, Failure> {
     let code = number.to_string();
     let site = alarms.find(origin, &code)?;
-    let lookup_hint = "look up the number in the controller's maintenance manual, or read its text with `armctl yerc alarm \
-                list`";
+    let lookup_hint = "look up the number in the controller's maintenance manual, or read the alarm text with `armctl \
+                       yerc alarm list`";
     let text = site.is_none().then(|| "an alarm number".to_owned());
     let remedies: &[&str] = if site.as_ref().is_some_and(|site| site.remedy.is_some()) { &[] } else { &[lookup_hint] };
     let alarm = Alarm { code: Some(code), text, kind: Some(Kind::Alarm), source: Source::Armctl, ..Alarm::default() };

@@ -261,11 +261,12 @@ impl Select {
         let encoding = link.encoding;
         refuse_controls("the job name", name)?;
         let bytes = encoding.encode_name(name).map_err(|error| {
-            Failure::usage(format!("the job name: {error}")).hint("--encoding or the robot's entry sets the encoding")
+            Failure::usage(format!("the job name: {error}"))
+                .hint("set the encoding with --encoding or in the robot's entry in robots.toml")
         })?;
         if bytes.len() > MAX_NAME {
             let message = format!("the job name has {} bytes in {encoding}; the maximum is {MAX_NAME}", bytes.len());
-            return Err(Failure::usage(message).hint("`yerc file list` shows the names on the controller"));
+            return Err(Failure::usage(message).hint("use `yerc file list` to see the names on the controller"));
         }
         let execute = Selection::Execute { line: self.line };
         let selection = self.task.map_or(execute, |task| Selection::Master { task });

@@ -80,7 +80,7 @@ impl Family for Yerc {
         }
         link.screen.note("stopping the robot: HOLD on");
         link.stop().await?;
-        Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
+        Ok("the robot was stopped: HOLD is on; use `yerc hold off` to release HOLD".to_owned())
     }
 
     fn planned(link: &mut Link) -> Plan {
@@ -204,10 +204,10 @@ impl Link {
                 Kind::Malformed,
                 format!("{}: no valid answer after {bytes} bytes, but {counters}", self.label),
             )
-            .hint("no data was saved; repeat the command, and record it with --trace if the problem persists"),
+            .hint("repeat the command, and record it with --trace if the problem persists; no data was saved"),
             Cause::Client(Error::NoAnswer { .. }) if bytes > 0 => {
                 Failure::new(Kind::NoAnswer, format!("{}: the transfer stopped after {bytes} bytes", self.label))
-                    .hint("no data was saved; repeat the command, with a longer --timeout for a bad connection")
+                    .hint("repeat the command, with a longer --timeout for a bad connection; no data was saved")
             }
             Cause::Client(error) => self.failure(error),
         })
@@ -228,10 +228,13 @@ impl Link {
             if bytes == 0 {
                 return failure;
             }
-            let message = format!("{}; {bytes} bytes were sent: all or part of the file may exist", failure.message);
+            let message = format!(
+                "{}; {bytes} bytes were sent: the controller may have a part of the file or the whole file",
+                failure.message
+            );
             let kind = if failure.kind == Kind::NoAnswer { Kind::OutcomeUnknown } else { failure.kind };
             Failure { kind, message, ..failure }
-                .hint("before you use the file, compare it with `yerc file diff` or send it again")
+                .hint("compare the file with `yerc file diff` before you use it, or send the file again")
         })
     }
 
@@ -254,7 +257,8 @@ impl Link {
     /// Text in the encoding of the controller.
     pub fn encode(&self, what: &str, text: &str) -> Result<Vec<u8>, Failure> {
         self.encoding.encode(text).map_err(|error| {
-            Failure::usage(format!("{what}: {error}")).hint("--encoding or the robot's entry sets the encoding")
+            Failure::usage(format!("{what}: {error}"))
+                .hint("set the encoding with --encoding or in the robot's entry in robots.toml")
         })
     }
 
@@ -280,8 +284,8 @@ impl Watcher<Event> for TraceObserver {
         match event {
             Event::UnexpectedTraffic(counters) => self.screen.detail(1, &format!("{}: {counters}", self.label)),
             Event::TransferLeftOpen => self.screen.note(&format!(
-                "{}: the controller did not confirm the end of the transfer; it may refuse file commands as busy for some \
-                 seconds",
+                "{}: the controller did not confirm the end of the transfer; the controller may refuse file commands \
+                 as busy for some seconds",
                 self.label
             )),
             _ => {}

@@ -49,7 +49,10 @@ impl CachedModel {
         let unverified = model.unproven().map(|what| format!("; unproven: {what}")).unwrap_or_default();
         screen.detail(1, &format!("{label}: {model}, from software {software}; stored for one day{unverified}"));
         if let Err(error) = store.store(&self.address, news.clone()) {
-            screen.detail(1, &format!("{label}: the model could not be stored and is read each time: {error}"));
+            screen.detail(
+                1,
+                &format!("{label}: the model could not be stored, so armctl reads it for each command: {error}"),
+            );
         }
         self.stored = Some(news);
     }

@@ -34,7 +34,7 @@ pub(super) enum StandstillCause {
 const HOLDS: [(StatusBit, &str, &str); 3] = [
     (StatusBit::HoldPendant, "pendant", "release HOLD on the pendant"),
     (StatusBit::HoldExternal, "external signal", "clear the external hold (PLC, door, interlock)"),
-    (StatusBit::HoldCommand, "command", "`yerc hold off` releases it"),
+    (StatusBit::HoldCommand, "command", "use `yerc hold off` to release the hold"),
 ];
 
 impl StandstillCause {
@@ -68,15 +68,15 @@ impl StandstillCause {
         let place = place.map(|place| format!("; position: {place}")).unwrap_or_default();
         let hint = match self {
             Self::Alarm => {
-                "`yerc alarm list` shows the alarm; remove the cause, then use `yerc alarm reset`".to_owned()
+                "use `yerc alarm list` to see the alarm; remove the cause, then use `yerc alarm reset`".to_owned()
             }
-            Self::Error => "read the pendant; `yerc alarm cancel` clears the error".to_owned(),
+            Self::Error => "read the display of the pendant; use `yerc alarm cancel` to clear the error".to_owned(),
             Self::Hold(by) => {
                 let how = HOLDS.iter().find(|row| row.1 == by).map_or("release it", |row| row.2);
                 format!("{how}; the interrupted motion may then continue")
             }
             Self::ServoOff => "check for a stop or an open door before `yerc servo on`".to_owned(),
-            Self::Teach => "another person may be at the pendant; ask before you continue".to_owned(),
+            Self::Teach => "check whether another person is at the pendant, and ask before you continue".to_owned(),
         };
         let failure = Failure::new(Kind::ConditionNotMet, format!("{done}, but {what}{place}")).hint(hint);
         Failure { code, ..failure }
@@ -109,9 +109,9 @@ pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
 
 /// Failure for a lost connection during a wait. The action continues without supervision, so its outcome is unknown.
 pub(super) fn lost_contact(done: &str, failure: Failure) -> Failure {
-    let message = format!("{done}, but its end was not reported: {failure}");
+    let message = format!("{done}, but armctl could not read its end: {failure}");
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-        .hint("do not send it again; `yerc status` and `yerc position` show the result")
+        .hint("do not send the command again; use `yerc status` and `yerc position` to see the result")
 }
 
 #[cfg(test)]

@@ -321,7 +321,7 @@ impl Distance {
         };
         if order.target == [0; 6] && order.base == [0; 3] && order.station_axes == [0; 6] {
             return Err(Failure::usage("all distances are 0, so no axis would move")
-                .hint("give at least one of --x --y --z --rx --ry --rz, or --by"));
+                .hint("type at least one of --x --y --z --rx --ry --rz, or --by"));
         }
         let order = link.by_model(|model| MoveCartesian::new(model, MoveKind::Incremental, order)).await?;
         Ok(Execution { order, group: mover.group, goal, unnamed: Vec::new(), no_wait: mover.end.no_wait() })

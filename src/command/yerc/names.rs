@@ -28,11 +28,11 @@ commands! {
 /// Reads the names in the files of the controller, and stores them on this computer for its address.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The files are IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; a missing file has no names. \
-                  You can then type a name instead of its number: `io get`, `io set`, `var get`, `var set`, `register \
-                  get`, `teach`, `move --to`. Names of the robot in robots.toml have priority (`armctl help \
-                  inventory`). `armctl names list` shows all names. After a change on the controller, run this command \
-                  again."
+    after_help = "armctl reads the files IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; a missing file has no \
+                  names. After that, you can type a name instead of a number: `io get`, `io set`, `var get`, `var \
+                  set`, `register get`, `teach`, `move --to`. The robot's names in robots.toml have priority (`armctl \
+                  help inventory`). `armctl names list` shows all names. After a change on the controller, run this \
+                  command again."
 )]
 pub struct Get {}
 
@@ -86,7 +86,10 @@ impl Command for Get {
             (report.kept, report.read_at) = (true, Some(stored.read_at));
         }
         if !report.kept && robot.target.value.is_simulated() {
-            screen.note("Names of a simulator in this process are not stored: they always come from its start files.");
+            screen.note(
+                "Names of a simulator in this process are not stored: the simulator always reads them from its start \
+                 files.",
+            );
         }
         Ok(report)
     }
@@ -104,7 +107,7 @@ async fn told_software(link: &mut Link) -> Option<String> {
 /// Maximum size of a name file, which has some ten thousand lines.
 const MOST: u64 = 8 << 20;
 const ANOTHER_FORM: &str =
-    "armctl reads only the format of FS100, DX200 and YRC1000; define names in robots.toml instead";
+    "define names in robots.toml instead; armctl reads only the format of FS100, DX200 and YRC1000";
 
 /// Names that were read.
 #[derive(Debug, Default, Serialize, JsonSchema)]

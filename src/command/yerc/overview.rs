@@ -63,9 +63,9 @@ pub(super) fn left_over(status: ControllerStatus) -> Vec<LeftOver> {
         LeftOver::new(
             is_held,
             "HOLD by a command is on",
-            "`yerc hold off` releases it, and the held motion may continue",
+            "use `yerc hold off` to release HOLD; the held motion may continue",
         ),
-        LeftOver::new(with_power, "servo power is on", "`yerc servo off` switches it off"),
+        LeftOver::new(with_power, "servo power is on", "use `yerc servo off` to switch servo power off"),
     ]
     .into_iter()
     .flatten()

@@ -146,7 +146,7 @@ fn reported(
         }
         (_, kind) => {
             let message = format!("unexpected answer: position type {} was not requested", kind.word());
-            Err(Failure::new(Kind::Malformed, message).hint("-vvv shows the bytes"))
+            Err(Failure::new(Kind::Malformed, message).hint("use -vvv to see the bytes"))
         }
     }
 }

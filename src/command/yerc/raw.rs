@@ -31,10 +31,11 @@ use crate::output::view::{Cell, View};
 /// Sends a raw request.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Numbers are decimal, or hexadecimal after 0x. A request that the manuals do not list is sent with a \
-                  warning, or rejected with --strict. armctl treats an unknown request as a motion and asks for \
-                  confirmation. List (0x32) and save (0x16) show all blocks of the transfer as one. To send a file, \
-                  use `yerc file put`. If the controller refuses, its answer is printed and the exit code is 3."
+    after_help = "Numbers are decimal, or hexadecimal after 0x. armctl sends a request that the manuals do not list \
+                  with a warning, or rejects it with --strict. armctl treats an unknown request as a motion and asks \
+                  for confirmation. List (0x32) and save (0x16) show all blocks of the transfer as one block. To send \
+                  a file, use `yerc file put`. If the controller refuses the request, the command prints the answer, \
+                  and the exit code is 3."
 )]
 pub struct Raw {
     /// Command number, such as 0x72
@@ -142,7 +143,7 @@ impl Command for Raw {
         let doubt = uncertainty.map(|error| error.to_string());
         if let Some(doubt) = &doubt {
             if self.strict {
-                return Err(Failure::usage(doubt.clone()).hint("remove --strict to send it anyway"));
+                return Err(Failure::usage(doubt.clone()).hint("remove --strict to send the request anyway"));
             }
             screen.note(&format!("warning: {doubt}"));
         }

@@ -64,8 +64,8 @@ fn numbers(text: &str) -> Result<Vec<u16>, String> {
 /// Writes registers.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The ladder program can overwrite a register immediately after the write. Read the register back if \
-                  that matters."
+    after_help = "The ladder program can overwrite a register immediately after the write. To be sure, read the \
+                  register back."
 )]
 pub struct Set {
     /// 5=1000 or 5=0x03E8, or NAME=1000
@@ -85,7 +85,9 @@ impl FromStr for Assignment {
     fn from_str(text: &str) -> Result<Self, String> {
         let (number, value) = typed::setting(text, "a number", "a value", "5=1000")?;
         let numbers = numbers(number)?;
-        let [number] = numbers[..] else { return Err(format!("'{number}' is a range; give each register its value")) };
+        let [number] = numbers[..] else {
+            return Err(format!("'{number}' is a range; type a value for each register"));
+        };
         let value = typed::unsigned(value)
             .ok_or_else(|| format!("'{value}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))?;
         Ok(Self { number, value })
@@ -130,7 +132,8 @@ impl Command for Set {
         let names = names::of_robot(robot, screen);
         let mut seen_numbers = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen_numbers.insert(assignment.number)) {
-            return Err(Failure::usage(format!("register {} appears twice", twice.number)).hint("give it one value"));
+            return Err(Failure::usage(format!("register {} appears twice", twice.number))
+                .hint("type one value for the register"));
         }
         let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
         let steps = link.by_model(|model| plan_register_writes(model, &values)).await?;

@@ -61,9 +61,9 @@ impl SelectedJob {
             Self::Job(info) => {
                 let percent = units::PERCENT.show_unsigned(info.speed_override);
                 let name = encoding.decode(info.name.as_bytes());
-                change.note(format!("Currently selected: {name}. The speed override is {percent} %."))
+                change.note(format!("The selected job is {name}. The speed override is {percent} %."))
             }
-            Self::None => change.note("Currently no job is selected."),
+            Self::None => change.note("No job is selected."),
             Self::Unread(why) => change.note(format!("The selected job could not be read: {why}.")),
         }
     }
@@ -93,8 +93,10 @@ impl SelectedJob {
         let encoding = link.encoding;
         let shown = |chosen: &Self| chosen.name(encoding).unwrap_or_else(|| "an unknown job".to_owned());
         let message = match (shown(self), shown(&now)) {
-            (old, new) if old == new => format!("line or speed override of {old} changed since the question"),
-            (old, new) => format!("{new} is selected now, the question was about {old}"),
+            (old, new) if old == new => {
+                format!("the line or the speed override of {old} changed after the confirmation")
+            }
+            (old, new) => format!("{new} is selected now, but the confirmation was for {old}"),
         };
         Err(data_changed(format!("{message}; no job was started")))
     }

@@ -68,7 +68,7 @@ impl serve::Serve for Serve {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulator_start::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
-            let message = format!("the start state is for model {}, not {model}", start.model());
+            let message = format!("the start state is for model {}, but the selected model is {model}", start.model());
             return Err(Failure::usage(message).hint("remove --model, or change the file"));
         }
         let model = start.model();

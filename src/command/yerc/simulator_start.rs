@@ -33,6 +33,6 @@ fn load(path: &Path) -> Result<Start, Failure> {
     };
     Start::parse(&text, read).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
-            .hint("`armctl help simulator` shows the form of the file")
+            .hint("see `armctl help simulator` for the form of the file")
     })
 }

@@ -197,5 +197,5 @@ pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
 
 /// Failure for a request that cannot be built from the arguments.
 pub(super) fn usage(error: impl std::fmt::Display) -> Failure {
-    Failure::usage(error.to_string()).hint("see --help of the command, or `armctl help yerc` for all commands")
+    Failure::usage(error.to_string()).hint("see `--help` of the command, or `armctl help yerc` for all commands")
 }

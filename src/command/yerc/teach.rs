@@ -27,9 +27,9 @@ use crate::gate::{Change, Confirmation};
 /// 3.3.18).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The stored position is that of `yerc position`, with servo power on or off. Use P for a robot, BP \
-                  for its base, and EX for a station. Without --coordinates, the variable keeps its type; an undefined \
-                  variable gets pulses. `yerc position teach P5` and `yerc var set P5=here` do the same."
+    after_help = "The command stores the position of `yerc position`, with servo power on or off. Use P for a robot, \
+                  BP for its base, and EX for a station. Without --coordinates, the variable keeps its type; an \
+                  undefined variable gets pulses. `yerc position teach P5` and `yerc var set P5=here` do the same."
 )]
 pub struct Teach {
     /// Position variable: P5, BP1, EX1, or a name
@@ -160,7 +160,8 @@ impl Teach {
                 let text = old.and_then(PositionData::of).map(|data| data.text().to_owned()).unwrap_or_default();
                 let message =
                     format!("{} contains {text}, but armctl stores only pulses or base coordinates", self.variable);
-                Err(Failure::usage(message).hint("add --coordinates pulse or --coordinates base to change its type"))
+                Err(Failure::usage(message)
+                    .hint("add --coordinates pulse or --coordinates base to change the type of the variable"))
             }
         }
     }
@@ -208,7 +209,10 @@ impl Teach {
             .depending_on("the current position, and whether the variable already contains it");
         link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
         let query = ReadVariable::new(self.variable.kind, self.variable.number);
-        link.plan_if(&query.request(), Reason::about("reads it back").depending_on("whether it was written"));
+        link.plan_if(
+            &query.request(),
+            Reason::about("content of the variable after the write").depending_on("whether the position was written"),
+        );
         Ok(unknown())
     }
 }

@@ -77,7 +77,7 @@ fn summarize_failure<O: WriteOrder>(failure: Failure, orders: &[O], done: usize)
     if written.is_empty() && unknown.is_empty() {
         parts.push("nothing was written".to_owned());
     }
-    for (words, orders) in [("written", written), ("written or not", unknown), ("not written", rest)] {
+    for (words, orders) in [("written", written), ("possibly written", unknown), ("not written", rest)] {
         if !orders.is_empty() {
             parts.push(format!("{words}: {}", names(orders)));
         }

@@ -40,7 +40,8 @@ commands! {
 /// Present alarm: the latest entry of the history while SO(03) or SO(15) is on.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. It may have been reset since."
+    after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. That alarm may have been \
+                  reset since."
 )]
 pub struct List {}
 
@@ -56,7 +57,7 @@ impl Command for List {
             link.plan_depending(
                 &latest,
                 &latest,
-                Reason::about("which").depending_on("the signals: it is read if SO(03) or SO(15) is on"),
+                Reason::about("which").depending_on("the signals: read only if SO(03) or SO(15) is on"),
             );
         }
         let image = link.look().await?;
@@ -77,7 +78,7 @@ impl Command for List {
 pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, Failure> {
     let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).build()?;
     if link.is_dry() {
-        link.plan(&latest, "latest alarm, to recognize a new one");
+        link.plan(&latest, "latest alarm, to recognize a new alarm");
         return Ok(None);
     }
     match link.ask(&latest).await {
@@ -152,10 +153,8 @@ impl Command for History {
 
 /// Resets the alarm.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works when remote commands \
-                  are not accepted."
-)]
+#[command(after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works while the \
+                        controller does not accept remote commands.")]
 pub struct Reset {}
 
 impl Command for Reset {
@@ -182,8 +181,8 @@ impl Command for Reset {
             } else {
                 let alarm = link.link_alarm();
                 screen.note(&format!(
-                    "hint: motor power is off, and closing this connection raises alarm {alarm} again. Keep it open \
-                     with `armctl session open`, then `yrcx alarm reset` and `yrcx recover`"
+                    "hint: keep a connection open with `armctl session open`, then use `yrcx alarm reset` and `yrcx \
+                     recover`. Motor power is off, and the close of this connection raises alarm {alarm} again"
                 ));
             }
         }
@@ -192,7 +191,8 @@ impl Command for Reset {
 }
 
 /// Next step when an alarm has switched the motors off.
-const POWER_OFF: &str = "hint: motor power is off. `yrcx recover` clears the emergency stop and switches the servos on";
+const POWER_OFF: &str = "hint: use `yrcx recover` to clear the emergency stop and switch the servos on. Motor power \
+                         is off";
 
 /// Result of an alarm reset.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -50,7 +50,8 @@ pub enum Speed {
     MmS(String),
 }
 
-const WHOLE: &str = "a speed is whole percent as in 50 or 50%, or 200mm/s; --speed-of-max takes steps of 0.01 %";
+const WHOLE: &str = "a speed is a whole percentage such as 50 or 50%, or a speed such as 200mm/s; --speed-of-max \
+                     accepts steps of 0.01 %";
 
 fn speed(text: &str) -> Result<Speed, String> {
     let number = |text: &str| {
@@ -69,7 +70,7 @@ impl Pace {
     pub fn put(&self, draft: Draft) -> Result<Draft, Failure> {
         match &self.speed {
             Some(Speed::MmS(_)) => Err(Failure::usage("a speed in mm/s needs a linear or circular move")
-                .hint("use percent, as in --speed 50, or add --linear")),
+                .hint("use percent, such as --speed 50, or add --linear")),
             _ => Ok(self.put_linear(draft)),
         }
     }
@@ -112,8 +113,8 @@ impl Ramps {
         let row = command.row();
         if (self.accel.is_some() || self.decel.is_some()) && row.request().all(|field| field.key != Key::Accel) {
             return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id)).hint(
-                "remove them: only moves to a point without an arch accept them. Other moves use the robot's \
-                 parameters",
+                "remove --accel and --decel: only moves to a point without an arch accept them. Other moves use the \
+                 robot's parameters",
             ));
         }
         Ok(draft.with_some(Key::Accel, self.accel.clone()).with_some(Key::Decel, self.decel.clone()))
@@ -152,23 +153,23 @@ impl Axes {
         let named: Vec<Option<(&str, &str)>> = given.iter().map(|text| text.split_once('=')).collect();
         let pairs: Vec<(usize, &str)> = match named.into_iter().collect::<Option<Vec<_>>>() {
             Some(_) if self.axes.is_some() => {
-                return Err(Failure::usage("the axes are named twice: by --axes and with the numbers")
-                    .hint("name each axis once, as in --to 1=300,3=10"));
+                return Err(Failure::usage("the axes are typed twice: with --axes and with the numbers")
+                    .hint("type each axis once, such as --to 1=300,3=10"));
             }
             Some(named) => {
                 let pairs = named.into_iter().map(|(name, text)| axis(name).map(|axis| (axis, text.trim())));
                 pairs.collect::<Result<_, Failure>>()?
             }
             None if given.iter().any(|text| text.contains('=')) => {
-                return Err(Failure::usage("some numbers name their axis and some do not")
-                    .hint("name the axis of each, as in --to 1=300,3=10"));
+                return Err(Failure::usage("some numbers have an axis, and other numbers have no axis")
+                    .hint("type the axis of each number, such as --to 1=300,3=10"));
             }
             None => {
                 let axes = self.numbers()?;
                 if axes.len() != given.len() {
                     let message = format!("{} numbers for {} axes", given.len(), axes.len());
                     return Err(Failure::usage(message)
-                        .hint("give one number for each axis, or name the axes that move, as in --to 1=300,3=10"));
+                        .hint("type one number for each axis, or type the axes that move, such as --to 1=300,3=10"));
                 }
                 axes.into_iter().zip(given.iter().map(|text| text.trim())).collect()
             }
@@ -176,7 +177,7 @@ impl Axes {
         let mut seen = [false; 4];
         for (axis, _) in &pairs {
             if std::mem::replace(&mut seen[axis - 1], true) {
-                return Err(Failure::usage(format!("axis {axis} is named twice")).hint("name each axis once"));
+                return Err(Failure::usage(format!("axis {axis} appears twice")).hint("type each axis once"));
             }
         }
         Ok(pairs)
@@ -189,10 +190,10 @@ impl Axes {
 
     fn numbers(&self) -> Result<Vec<usize>, Failure> {
         let Some(axes) = &self.axes else { return Ok((1..=4).collect()) };
-        let wrong = || format!("'{axes}' is not a valid list of axes of 1 to 4, as in 1,3");
+        let wrong = || format!("'{axes}' is not a valid list of axes from 1 to 4, such as 1,3");
         let number = |text: &str| axis(text).map_err(|_| wrong());
         let ranges = axes.split(',').map(|text| typed::range(text, number)).collect::<Result<Vec<_>, String>>();
-        let ranges = ranges.map_err(|why| Failure::usage(why).hint("give axis numbers with commas, as in 1,3"))?;
+        let ranges = ranges.map_err(|why| Failure::usage(why).hint("type axis numbers with commas, such as 1,3"))?;
         Ok(ranges.into_iter().flatten().collect())
     }
 
@@ -239,7 +240,9 @@ impl Axes {
 fn axis(text: &str) -> Result<usize, Failure> {
     match text.trim().parse() {
         Ok(axis @ 1..=4) => Ok(axis),
-        _ => Err(Failure::usage(format!("'{text}' is not a valid axis of 1 to 4")).hint("use an axis number")),
+        _ => {
+            Err(Failure::usage(format!("'{text}' is not a valid axis; the axes are 1 to 4")).hint("use an axis number"))
+        }
     }
 }
 
@@ -268,7 +271,7 @@ struct Peak {
 }
 
 fn peak(text: &str) -> Result<Peak, String> {
-    let (axis, position) = text.split_once(':').ok_or("an arch is an axis and a position, as in 3:10.0")?;
+    let (axis, position) = text.split_once(':').ok_or("an arch is an axis and a position, such as 3:10.0")?;
     Ok(Peak { axis: axis.to_owned(), position: position.to_owned() })
 }
 

@@ -71,7 +71,7 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
         "emergency stop",
         !is_stopped,
         ("released", "pressed, or no master sets SI(00)"),
-        "release it, then `yrcx recover`",
+        "release the emergency stop, then use `yrcx recover`",
     );
     must(
         "alarm",
@@ -83,8 +83,8 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
     layers.judge(
         "remote command",
         status == Status::Ready,
-        ("ready", &format!("its status is: {status}")),
-        "another command is running, or an earlier one did not finish",
+        ("ready", &format!("the status is: {status}")),
+        "wait until the command ends: another command is running, or an earlier command did not finish",
     );
     layers.leftover_drafts(&left_over(image));
     let runs = output::PROGRAM_RUNNING.is_on(image);
@@ -92,31 +92,36 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
     // The signals do not identify the program. A running program is not a fault.
     layers.ok(
         "program",
-        if runs { "running; `yrcx info tasks` shows the program, `yrcx stop` stops it" } else { "not running" },
+        if runs {
+            "running; use `yrcx info tasks` to see the program, and `yrcx stop` to stop it"
+        } else {
+            "not running"
+        },
     );
     layers.judge(
         "mode",
         output::AUTO_MODE.is_on(image),
         ("auto", "manual"),
-        "programs need AUTO mode: select it at the SAFETY connector and the programming box",
+        "select AUTO mode at the SAFETY connector and the programming box: programs need AUTO mode",
     );
     layers.judge(
         "servo",
         output::SERVO_ON.is_on(image),
         (
             if is_idle {
-                "motor power on; no program is running and no session is open: `yrcx motor off`"
+                "motor power on, but no program is running and no session is open; use `yrcx motor off` to switch \
+                 motor power off"
             } else {
                 "motor power on"
             },
             "motor power off",
         ),
-        "motion needs motor power: `yrcx power-on`, or `yrcx motor on`",
+        "use `yrcx power-on` or `yrcx motor on`: a motion needs motor power",
     );
     layers.judge(
         "origin",
         output::ORIGIN_COMPLETE.is_on(image),
         ("complete", "incomplete"),
-        "moves to positions need it: `yrcx origin`",
+        "use `yrcx origin`: moves to positions need a complete origin",
     );
 }

@@ -79,7 +79,7 @@ fn time_of(values: &Values) -> Result<Time, Failure> {
 }
 
 fn malformed(message: String) -> Failure {
-    Failure::new(Kind::Malformed, message).hint("`yrcx clock set now` sets its clock")
+    Failure::new(Kind::Malformed, message).hint("use `yrcx clock set now` to set the clock of the controller")
 }
 
 /// Clock reading.
@@ -153,7 +153,7 @@ fn in_words(seconds: u64) -> String {
 
 /// Sets date and time of the controller, or one of them.
 #[derive(Debug, Args)]
-#[command(after_help = "The controller clock has local time and the years 2000 to 2099.")]
+#[command(after_help = "The controller clock uses local time. It supports the years 2000 to 2099.")]
 pub struct Set {
     /// now, or a date, a time or both: 2026-03-01T08:45:00, 2026-03-01, 08:45
     #[arg(value_name = "TIME", value_parser = moment)]

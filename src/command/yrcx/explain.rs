@@ -71,7 +71,7 @@ impl face::Explain for Explain {
 }
 
 /// Remedy for an alarm that only the controller's manual describes.
-const LOOK: &[&str] = &["look up the alarm in the controller's manual; `yrcx info alarm` shows the source"];
+const LOOK: &[&str] = &["look up the alarm in the controller's manual; use `yrcx info alarm` to see the source"];
 
 /// Classification of a code.
 #[derive(Debug, Serialize, JsonSchema)]

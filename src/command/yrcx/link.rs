@@ -116,8 +116,8 @@ impl Family for Yrcx {
             Entry::ThroughSession
         } else {
             Entry::Stops(format!(
-                "open the command connection and close it at the end. That stops the robot: motor power goes off with \
-                 alarm {} (`armctl session open` keeps a connection open)",
+                "open the command connection and close it at the end. The close stops the robot: motor power goes off \
+                 with alarm {} (`armctl session open` keeps a connection open)",
                 fieldbus.link_alarm
             ))
         }
@@ -152,9 +152,9 @@ impl Family for Yrcx {
         if ends_link {
             let lasting = Alarm::new(link_alarm.group, link_alarm.category + 1);
             screen.note(&format!(
-                "{label}: the connection is closed. The controller treats this as a link fault: it stops and raises \
-                 alarm {link_alarm} or {lasting} (`armctl help safety`). `armctl session open -r NAME` keeps a \
-                 connection open"
+                "{label}: the connection is closed. The controller treats the close as a link fault: the controller \
+                 stops and raises alarm {link_alarm} or {lasting} (`armctl help safety`). Use `armctl session open -r \
+                 NAME` to keep a connection open"
             ));
         }
         let recorded = lock_writer(&trace).finish().and(recorder.map_or(Ok(()), Recorder::finish));

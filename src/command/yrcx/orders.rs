@@ -77,7 +77,7 @@ one_row! {
     with draft => draft.with(Key::Axes, self.axis.as_str()).with(Key::Torque, self.percent.trim_end_matches('%')),
     done {
         let percent = self.percent.trim_end_matches('%');
-        let words = format!("limited the torque of axis {} to {percent} % , starting with the next motion", self.axis);
+        let words = format!("limited the torque of axis {} to {percent} %, starting with the next motion", self.axis);
         NewValue::of("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
     };
 
@@ -186,9 +186,9 @@ one_row! {
 
     /// Resets the status of remote commands to ready.
     #[command(
-        after_help = "armctl resets the status before and after each command, so you rarely need this. Use it if \
-                      another client's command left an end status. It does not stop a motion or a running command, and \
-                      does not reset an alarm (`yrcx alarm reset`)."
+        after_help = "armctl resets the status before and after each command, so this command is rarely necessary. \
+                      Use it if another client's command left an end status. The command does not stop a motion or a \
+                      running command. It does not reset an alarm (`yrcx alarm reset`)."
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,

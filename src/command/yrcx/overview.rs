@@ -47,7 +47,10 @@ pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
     };
     let known = if not_asked(link, &image).is_none() { latest_alarm(link).await? } else { None };
     let untold = || Alarm {
-        text: Some("number not read; `yrcx alarm list` reads it, which takes control of the controller".to_owned()),
+        text: Some(
+            "the alarm number was not read; use `yrcx alarm list` to read it, which takes control of the controller"
+                .to_owned(),
+        ),
         source: Source::Armctl,
         ..Alarm::default()
     };
@@ -119,5 +122,5 @@ pub(super) fn left_over(image: &Image) -> Vec<LeftOver> {
     // A running program is a normal state, regardless of the client that started it.
     let is_command = !matches!(status, Status::Ready | Status::Running);
     let what = format!("a remote command left its status: {status}");
-    LeftOver::new(is_command, &what, "`yrcx status-reset` clears it").into_iter().collect()
+    LeftOver::new(is_command, &what, "use `yrcx status-reset` to reset the status").into_iter().collect()
 }

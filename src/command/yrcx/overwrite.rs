@@ -123,7 +123,7 @@ trait Overwritten: Writable<Family = Yrcx> {
     /// Reads the row that a command overwrites, and asks for confirmation.
     async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Replaced, Failure> {
         let (table, key) = Self::target(order)?;
-        let about = format!("{}, which is overwritten", Self::asked(key));
+        let about = format!("old content of {}", Self::asked(key));
         let values = there(link, &table.read_order(key)?, &about).await?;
         let new = table.replacement(link, order, values.as_ref()).await?.map(|values| table.row(key, values));
         let old = values.map(|values| table.row(key, values)).filter(|old| !table.is_blank(old));
@@ -173,7 +173,7 @@ impl<K: Kind> Overwritten for Numbered<K> {
                 let is_mm = number(Key::Unit) == 1;
                 let read = if is_mm { Command::PositionMm } else { Command::PositionPulse };
                 let read = read.order().with(Key::Robot, number(Key::Robot)).build()?;
-                let position = there(link, &read, "current position, which is stored").await?;
+                let position = there(link, &read, "current position, which the command stores").await?;
                 position.map_or(Err("the current position".to_owned()), |mut position| {
                     position.set(Key::Unit, i32::from(is_mm));
                     Ok(position)
@@ -291,7 +291,7 @@ pub type Stored = WrittenItems<Json>;
 pub fn stored(words: impl Into<String>, given: &Done) -> Stored {
     let Replaced { kind, name, values: [old, new], is_there } = given.replaced.clone().unwrap_or_default();
     let words = if is_there {
-        format!("{} holds that already; nothing was written", as_requested(kind, &name))
+        format!("{} already has this content; nothing was written", as_requested(kind, &name))
     } else {
         words.into()
     };

@@ -96,7 +96,7 @@ impl Store for Parameters {
     const WORDS: TableWords = TableWords {
         nouns: ["parameter", "parameters"],
         placeholder: "PARAMETER",
-        range: "Name or number: WEIGHT; of an axis, TOLE.3, TOLE.1-4 or 259.3; TOLE is that of all axes",
+        range: "Name or number: WEIGHT; for an axis: TOLE.3, TOLE.1-4 or 259.3; TOLE selects all axes",
         reading: None,
         writing: None,
     };
@@ -255,7 +255,7 @@ fn listing() -> String {
     };
     let of = |per_axis| PARAMETERS.iter().filter(move |parameter| parameter.per_axis == per_axis).map(line);
     let lines = |per_axis| of(per_axis).collect::<Vec<_>>().join("\n");
-    format!("Of the robot:\n{}\n\nOf an axis:\n{}", lines(false), lines(true))
+    format!("Parameters of the robot:\n{}\n\nParameters of an axis:\n{}", lines(false), lines(true))
 }
 
 #[cfg(test)]

@@ -34,9 +34,9 @@ commands! {
 }
 
 /// Port names, for the help of get and set.
-const NAMES: &str = "DO12 is a port, DO2.1 and 'DO(21)' are its bit 1. DI, DO, MO, SI and SO have ports 0-7, 10-17 and \
-                     20-27, LO has 0 and 1, TO has 0. DO, MO, LO, TO and SO are writable; DO, MO and SO start with \
-                     port 2. `yrcx io` reads and switches SI and SO without remote commands.";
+const NAMES: &str = "DO12 is a port; DO2.1 and 'DO(21)' are bit 1 of port DO2. DI, DO, MO, SI and SO have ports 0-7, \
+                     10-17 and 20-27, LO has 0 and 1, TO has 0. DO, MO, LO, TO and SO are writable; DO, MO and SO are \
+                     writable from port 2. `yrcx io` reads and switches SI and SO without remote commands.";
 
 /// A port, or a signal of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

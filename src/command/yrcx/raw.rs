@@ -22,8 +22,8 @@ use crate::output::view::View;
 
 /// Sends words, if the manual allows them.
 #[derive(Debug, Args)]
-#[command(after_help = "Missing words are 0. If the controller refuses, the exit code is 3. `armctl decode yrcx` \
-                        explains words without sending them.")]
+#[command(after_help = "Missing words are 0. If the controller refuses the command, the exit code is 3. `armctl \
+                        decode yrcx` explains words without sending them.")]
 pub struct Raw {
     /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
     #[arg(long, value_name = "WORDS", value_parser = order)]

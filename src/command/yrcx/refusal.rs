@@ -19,7 +19,10 @@ impl From<WordError> for Failure {
         };
         let failure = Self::usage(message);
         match error.alarm {
-            Some(alarm) => failure.hint(format!("the controller would refuse it with alarm {alarm}, {}", alarm.text())),
+            Some(alarm) => failure.hint(format!(
+                "correct the value; the controller would refuse this value with alarm {alarm}, {}",
+                alarm.text()
+            )),
             None => failure.hint("see `--help` for the valid values"),
         }
     }
@@ -74,7 +77,7 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
     };
     let remedy = match alarm.known().and_then(|known| known.remedies.first()) {
         Some(remedy) => (*remedy).to_owned(),
-        None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` shows the source"),
+        None => format!("look up {alarm} in the controller's manual; use `yrcx info alarm` to see the source"),
     };
     let way_out = WAYS_OUT.iter().find(|(_, alarms)| alarms.contains(&alarm)).map(|(way, _)| *way).unwrap_or_default();
     let kept = kept(row, "if the robot had started to move, ");
@@ -85,7 +88,7 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
 
 /// Commands that remove the cause of an alarm.
 const WAYS_OUT: [(&str, &[Alarm]); 2] =
-    [(": `yrcx io set stop=on`", &[STOP_INPUT]), ("; `yrcx recover` clears the alarm", &RECOVERABLE)];
+    [(": use `yrcx io set stop=on`", &[STOP_INPUT]), ("; use `yrcx recover` to clear the alarm", &RECOVERABLE)];
 
 /// Alarms of a lost link, on each fieldbus, and of an emergency stop.
 const RECOVERABLE: [Alarm; 9] = [

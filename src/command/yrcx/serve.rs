@@ -56,7 +56,7 @@ impl ServeArgs {
 
 fn misplaced(flag: &str, chosen: &str, right: &str) -> Failure {
     Failure::usage(format!("--{flag} has no effect with --bus {chosen}; use it with {right}"))
-        .hint("`armctl sim yrcx -h` lists the options of each fieldbus")
+        .hint("use `armctl sim yrcx -h` to list the options of each fieldbus")
 }
 
 /// Console line of a slave or device.

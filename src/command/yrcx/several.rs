@@ -103,7 +103,7 @@ pub fn check_echo(order: &Order, values: &Values) -> Result<(), Failure> {
     match order.values().iter().find(differs) {
         Some((key, _)) => {
             let message = format!("{}: the answer is for another {key}", order.row().id);
-            Err(Failure::new(Kind::Malformed, message).hint("`-vvv` shows the words"))
+            Err(Failure::new(Kind::Malformed, message).hint("use `-vvv` to see the words"))
         }
         None => Ok(()),
     }

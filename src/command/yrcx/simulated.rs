@@ -27,7 +27,7 @@ pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
-            .hint("`armctl help simulator` shows the form of the file")
+            .hint("see `armctl help simulator` for the form of the file")
     })
 }
 
@@ -37,7 +37,8 @@ pub fn faults_of_url<S: FaultText, D: Copy>(
     names: &FaultNames<D>,
 ) -> Result<SimulatorFaults<S, D>, Failure> {
     faults(sim.fault.as_deref(), names).map_err(|why| {
-        Failure::usage(format!("fault: {why}")).hint("write % as %25 in a URL; `armctl help simulator` lists faults")
+        Failure::usage(format!("fault: {why}"))
+            .hint("write % as %25 in a URL; see `armctl help simulator` for a list of faults")
     })
 }
 
@@ -46,8 +47,9 @@ pub fn faults_of_option<S: FaultText, D: Copy>(
     text: Option<&str>,
     names: &FaultNames<D>,
 ) -> Result<SimulatorFaults<S, D>, Failure> {
-    faults(text, names)
-        .map_err(|why| Failure::usage(format!("--fault: {why}")).hint("`armctl help simulator` lists faults"))
+    faults(text, names).map_err(|why| {
+        Failure::usage(format!("--fault: {why}")).hint("see `armctl help simulator` for a list of faults")
+    })
 }
 
 /// Parses faults; no text means no faults.

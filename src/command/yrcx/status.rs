@@ -28,7 +28,8 @@ use crate::output::view::{Cell, Section, Tone, View};
 #[command(
     after_help = "Reading signals does not affect the controller. Servos and position need remote commands. A session \
                   reads them unless another client's command is running. Without a session, --full takes control of \
-                  the controller to read them, which raises an alarm when the command ends (`armctl help safety`)."
+                  the controller to read them. The controller then raises an alarm when the command ends (`armctl \
+                  help safety`)."
 )]
 pub struct Status {
     /// Take control of the controller and also read servos and position
@@ -53,12 +54,12 @@ impl Command for Status {
         let latest = latest(link)?;
         if link.is_dry() && (self.full || link.commands()) {
             let noted = link.plan_all(&orders);
-            let reason = Reason::about("which alarm").depending_on("the signals: it is read if there is an alarm");
+            let reason = Reason::about("which alarm").depending_on("the signals: read only if there is an alarm");
             link.plan_depending(&latest, &latest, reason);
             noted?;
         }
         if link.is_dry() && link.is_held() {
-            let reason = Reason::default().depending_on("the session: they are read if no other command is running");
+            let reason = Reason::default().depending_on("the session: read only if no other command is running");
             for order in &orders {
                 link.plan_depending(order, order, reason);
             }

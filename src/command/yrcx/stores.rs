@@ -223,7 +223,7 @@ impl<K: Kind> Writable for Numbered<K> {
                 let unit =
                     unit.and_then(|at| draft[at].as_ref()).map_or_else(String::new, |unit| format!(" in {unit}"));
                 let message = format!("{one} {number} is not defined{unit}, so it has no {field} to keep");
-                Err(Failure::usage(message).hint("nothing was written; give all values"))
+                Err(Failure::usage(message).hint("type all values; nothing was written"))
             }
         };
         let texts = draft.iter().enumerate().map(kept).collect::<Result<Vec<String>, Failure>>()?;

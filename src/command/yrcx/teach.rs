@@ -65,7 +65,7 @@ impl Command for Teach {
         let row = if unit == Unit::Mm { table::Command::PositionMm } else { table::Command::PositionPulse };
         let here = link.draft(row)?.build()?;
         if link.is_dry() {
-            link.plan(&read, "reads it back");
+            link.plan(&read, "the point after the write");
             link.plan(&here, "current position, for the comparison");
             return Err(unknown());
         }

@@ -89,7 +89,7 @@ impl Source<'_> {
 
     /// Reads a date and time in a `strptime` format.
     pub(crate) fn time(&self, entry: &Spanned<String>, form: &str, example: &str) -> Result<DateTime, String> {
-        let wrong = |_| format!("write a time as in \"{example}\"");
+        let wrong = |_| format!("write a time, for example \"{example}\"");
         self.read(entry, |text| DateTime::strptime(form, text).map_err(wrong))
     }
 
@@ -107,7 +107,7 @@ impl Source<'_> {
 /// Parses a numeric key; `things` names what it counts.
 pub(crate) fn numbered(things: &str, key: &str, range: RangeInclusive<usize>) -> Result<usize, String> {
     let number = key.parse().ok().filter(|number| range.contains(number));
-    number.ok_or_else(|| format!("{things} are {} to {}", range.start(), range.end()))
+    number.ok_or_else(|| format!("{things} must be from {} to {}", range.start(), range.end()))
 }
 
 /// Line number, from 1, of a byte offset.

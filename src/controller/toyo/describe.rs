@@ -125,7 +125,7 @@ fn citation(row: &'static Row) -> String {
 fn verdict(text: &str) -> Option<(&'static str, &'static str)> {
     match text.trim_end_matches(' ') {
         "@OK" => Some(("done", "accepted; a longer action has started")),
-        "@NG" => Some(("refused", "refused, now or always; the controller sends no code")),
+        "@NG" => Some(("refused", "refused: not possible now, or never possible; the controller sends no code")),
         _ => None,
     }
 }

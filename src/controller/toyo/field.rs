@@ -425,8 +425,8 @@ impl Field {
                     _ => texts.concat(),
                 }
             }
-            Form::Bits => "eight of 0 and 1".to_owned(),
-            Form::Mask => "eight of 0, 1 and .".to_owned(),
+            Form::Bits => "eight digits, each 0 or 1".to_owned(),
+            Form::Mask => "eight characters, each 0, 1 or .".to_owned(),
             Form::Token => "one word".to_owned(),
             Form::Text => "a text".to_owned(),
         }

@@ -57,7 +57,7 @@ pub enum LayoutProblem {
         found: String,
     },
     /// Wrong number of values.
-    #[error("{found} values for {expected} fields")]
+    #[error("{found} values, but {expected} fields")]
     Count {
         /// Number of fields.
         expected: usize,

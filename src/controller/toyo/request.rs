@@ -36,7 +36,7 @@ pub enum BlockError {
     #[error("a block must begin with @")]
     Start,
     /// The block is too long.
-    #[error("{len} characters; a block has at most {MOST}, with its line end")]
+    #[error("the block has {len} characters; the maximum is {MOST}, with the line end")]
     Long {
         /// Characters, without line end.
         len: usize,

@@ -160,7 +160,7 @@ fn status_words(status: Status) -> String {
 fn block_words(block: u32) -> String {
     match (block & LAST_BLOCK != 0, block & !LAST_BLOCK) {
         (true, 0) => "single frame".to_owned(),
-        (true, number) => format!("block {number}, the last"),
+        (true, number) => format!("block {number}, the last block"),
         (false, number) => format!("block {number}"),
     }
 }

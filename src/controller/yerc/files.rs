@@ -81,7 +81,7 @@ pub enum FileNameError {
     #[error("the file name is empty")]
     Empty,
     /// Longer than a frame.
-    #[error("the file name has {len} bytes; at most {MAX_DATA} fit a frame")]
+    #[error("the file name has {len} bytes; a frame can have at most {MAX_DATA}")]
     TooLong {
         /// Length in bytes.
         len: usize,
@@ -105,19 +105,19 @@ pub enum FileNameError {
         name: String,
     },
     /// Without extension.
-    #[error("the file name '{name}' needs an extension, as in TESTJOB.JBI")]
+    #[error("the file name '{name}' needs an extension, for example TESTJOB.JBI")]
     Extension {
         /// The name, escaped.
         name: String,
     },
     /// Not one of the six extensions of files that can be sent.
-    #[error("the file name '{name}' needs an extension out of JBI, DAT, CND, PRM, SYS, LST to be sent")]
+    #[error("the file name '{name}' must have the extension JBI, DAT, CND, PRM, SYS or LST to be sent")]
     Type {
         /// The name, escaped.
         name: String,
     },
     /// A job name longer than 32 bytes.
-    #[error("the job name '{name}' has {len} bytes in the controller's encoding; at most {MAX_JOB_NAME} fit")]
+    #[error("the job name '{name}' has {len} bytes in the controller's encoding; it can have at most {MAX_JOB_NAME}")]
     JobName {
         /// The name, escaped.
         name: String,
@@ -230,7 +230,7 @@ fn transfer_frame(id: u8, service: u8, block: u32, data: &[u8]) -> Vec<u8> {
 
 /// A list line that is too long for a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("line {line} of the list has {len} bytes; at most {MAX_DATA} fit a frame")]
+#[error("line {line} of the list has {len} bytes; a frame can have at most {MAX_DATA}")]
 pub struct ListError {
     /// Line number, from 1.
     pub line: usize,

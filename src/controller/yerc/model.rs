@@ -72,9 +72,10 @@ impl Model {
         match self {
             Self::Fs100 | Self::Dx200 => None,
             Self::Dx100 => Some(
-                "number ranges beyond those of an FS100, texts of sub-codes (0x30A, 0x30B), layouts of moves (0x8A, 0x8B)",
+                "number ranges beyond the ranges of an FS100, texts of sub-codes (0x30A, 0x30B), layouts of moves \
+                 (0x8A, 0x8B)",
             ),
-            Self::Yrc1000 => Some("ranges of I/O, registers and variables, which are those of a DX200"),
+            Self::Yrc1000 => Some("ranges of I/O, registers and variables (taken from the DX200)"),
         }
     }
 }

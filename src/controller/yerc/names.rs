@@ -35,7 +35,7 @@ const MOST: usize = 1 << 16;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum WrongFile {
     /// Unknown first line.
-    #[error("its first line is not that of a file of names")]
+    #[error("its first line is not the first line of a name file")]
     Head,
     /// No known section.
     #[error("it has no known section")]

@@ -141,7 +141,7 @@ pub enum QueryError {
         bits: u32,
     },
     /// Different kinds of values in one plural write.
-    #[error("a plural write needs at least one value, and all of one type")]
+    #[error("a plural write needs at least one value, and all values must have the same type")]
     MixedKinds,
     /// A request that violates the table.
     #[error(transparent)]

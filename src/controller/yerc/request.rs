@@ -49,7 +49,7 @@ pub enum RequestError {
         model: Model,
     },
     /// A service that the command does not have.
-    #[error("service {found:#04x} is not one of command {command:#06x} ({name}); allowed: {allowed}")]
+    #[error("command {command:#06x} ({name}) has no service {found:#04x}; allowed: {allowed}")]
     Service {
         /// The command.
         command: u16,
@@ -141,7 +141,7 @@ pub enum RequestError {
         max: u16,
     },
     /// Elements beyond the range of the first one.
-    #[error("{name}: {count} elements from {first} on exceed the last one, {last}")]
+    #[error("{name}: {count} elements from {first} end after the last element {last}")]
     Overrun {
         /// The command's name.
         name: &'static str,

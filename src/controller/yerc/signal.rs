@@ -20,13 +20,13 @@ pub struct Signal {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SignalError {
     /// Not a number of up to five digits.
-    #[error("'{found}' is not a valid signal number, e.g. 10010")]
+    #[error("'{found}' is not a valid signal number, for example 10010")]
     Malformed {
         /// The invalid text.
         found: String,
     },
     /// A last digit above 7.
-    #[error("signal {number} does not exist: the last digit goes from 0 to 7")]
+    #[error("signal {number} does not exist: the last digit must be from 0 to 7")]
     Digit {
         /// The number given.
         number: u32,

@@ -164,7 +164,7 @@ impl Header {
 
     /// Encodes a frame with an empty sub-header.
     fn emit(self, data: &[u8]) -> Vec<u8> {
-        assert!(data.len() <= MAX_DATA, "a frame holds {MAX_DATA} data bytes, not {}", data.len());
+        assert!(data.len() <= MAX_DATA, "a frame can have {MAX_DATA} data bytes, not {}", data.len());
         let mut frame = vec![0; HEADER_LEN + data.len()];
         frame[field::IDENTIFIER].copy_from_slice(IDENTIFIER);
         frame[field::HEADER_SIZE].copy_from_slice(&le16(HEADER_LEN));

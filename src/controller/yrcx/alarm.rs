@@ -33,7 +33,7 @@ pub struct Known {
 
 /// An invalid alarm number.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("'{found}' is not a valid alarm number, e.g. 12.600")]
+#[error("'{found}' is not a valid alarm number, for example 12.600")]
 pub struct AlarmError {
     /// The invalid text.
     pub found: String,
@@ -128,28 +128,29 @@ pub const KNOWN: [Known; 19] = [
     Known {
         alarm: INPUT_FORMAT,
         text: "input format error",
-        causes: &["a word of the command has an invalid value, e.g. both position outputs at once"],
-        remedies: &["compare the words sent with the section of the command: armctl decode yrcx"],
+        causes: &["a word of the command has an invalid value, for example both position outputs at once"],
+        remedies: &["compare the sent words with the manual section of the command; `armctl decode yrcx` shows the \
+                     words"],
     },
     Known {
         alarm: Alarm::new(12, 75),
         text: "illegal remote command",
         causes: &["the code in WI0 does not exist"],
-        remedies: &["check the code, and that words arrive in the right order and byte order"],
+        remedies: &["check the code, and that words arrive in the correct order and byte order"],
     },
     Known {
         alarm: Alarm::new(12, 76),
         text: "remote command not enabled",
         causes: &[
             "the programming box has control: the controller accepts only references",
-            "a safety setting disables the dedicated inputs, and with them every remote command",
+            "a safety setting disables the dedicated inputs and all remote commands",
         ],
         remedies: &["give control back at the programming box", "check mode and safety settings"],
     },
     Known {
         alarm: STOP_INPUT,
         text: "stopped by the stop input",
-        causes: &["SI(06) went off: the motion was stopped"],
+        causes: &["SI(06) was switched off: the motion was stopped"],
         remedies: &["switch SI(06) on again before the next motion"],
     },
     link(541, "DeviceNet link error"),
@@ -164,7 +165,7 @@ pub const KNOWN: [Known; 19] = [
         alarm: Alarm::new(12, 600),
         text: "emergency stop on",
         causes: &["an emergency stop was pressed, or SI(00) is off", "a connection was opened with SI(00) off"],
-        remedies: &["release it, switch SI(00) on, reset the alarm, switch the servos on"],
+        remedies: &["release the emergency stop, switch SI(00) on, reset the alarm, switch the servos on"],
     },
     unit(761),
     unit(762),

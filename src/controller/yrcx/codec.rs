@@ -217,7 +217,7 @@ pub(super) fn decode_strictly(layout: impl Layout, words: &Words) -> Result<Valu
     }
     match strays(layout, words, None).next() {
         Some((word, bits)) => {
-            Err(WordError::at(side, Some(word), None, format!("bits {bits:#06x} are set, which must be 0 here")))
+            Err(WordError::at(side, Some(word), None, format!("bits {bits:#06x} must be 0 here, but are set")))
         }
         None => Ok(values),
     }

@@ -41,7 +41,7 @@ impl Register {
                 Ok(Self { side, word, is_double })
             }
             Some(0 | 1) => {
-                Err(format!("{name}(0) and {name}(1) belong to remote commands; general-purpose are 2 to 15"))
+                Err(format!("{name}(0) and {name}(1) belong to remote commands; the words 2 to 15 are general-purpose"))
             }
             _ if is_double => Err(format!("'{text}' is not a valid double word; use {name}2, {name}4, … {name}14")),
             _ => Err(format!("'{text}' is not a valid word; use {name}2 to {name}15")),

@@ -56,8 +56,8 @@ impl fmt::Display for Outcome {
                 let after = if begun { ", after inputs were switched" } else { "; nothing was switched" };
                 write!(f, "{} is not {}{after}", signal.named(), state(on))
             }
-            Self::TimedOut { signal, on } => write!(f, "{} did not go {} in time", signal.named(), state(on)),
-            Self::Broken { signal } => write!(f, "{} went on during the procedure", signal.named()),
+            Self::TimedOut { signal, on } => write!(f, "{} did not switch {} in time", signal.named(), state(on)),
+            Self::Broken { signal } => write!(f, "{} switched on during the procedure", signal.named()),
             Self::NoImage => f.write_str("the controller sends no data"),
             Self::LinkLost { begun: false } => f.write_str("the connection was lost before the first switch"),
             Self::LinkLost { begun: true } => f.write_str("the connection was lost during the procedure"),

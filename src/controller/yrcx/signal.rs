@@ -154,7 +154,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "emergency-stop",
         "emergency stop input",
         Trigger::WhileOff,
-        "off puts the controller into emergency stop; no substitute for a hard-wired safety circuit",
+        "off puts the controller into emergency stop; this does not replace a hard-wired safety circuit",
         Risk::Write,
     ),
     given(
@@ -162,7 +162,8 @@ pub const DEDICATED: [Dedicated; 20] = [
         "servo-on",
         "servo ON input",
         Trigger::Rise,
-        "cancels the emergency stop state and switches the servos on; SI(00) must be on and every stop released",
+        "cancels the emergency stop state and switches the servos on; SI(00) must be on, and every stop must be \
+         released",
         Risk::Motion,
     ),
     given(
@@ -170,7 +171,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "stop",
         "stop input",
         Trigger::WhileOff,
-        "off stops programs and jogs; must be on to run",
+        "off stops programs and jogs; the signal must be on to run",
         Risk::Write,
     ),
     given(
@@ -210,7 +211,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "alarm-reset",
         "alarm reset input",
         Trigger::Rise,
-        "resets the alarm; if that does not help, the power must be switched off and on",
+        "resets the alarm; if the alarm stays, switch the power off and on",
         Risk::Write,
     ),
     given(
@@ -218,7 +219,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "origin-absolute",
         "return-to-origin input (absolute type axis)",
         Trigger::Rise,
-        "returns absolute axes to origin; with parameter DI17 at ABS/ORG the incremental ones after them",
+        "returns absolute axes to origin; if parameter DI17 is ABS/ORG, then also the incremental axes",
         Risk::Motion,
     ),
     says(
@@ -254,7 +255,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         output::PROGRAM_RESET,
         "program-reset",
         "program reset status output",
-        "the robot program is reset; off when it starts",
+        "the robot program is reset; off when the program starts",
     ),
     says(output::WARNING, "warning", "warning output", "a warning is active"),
 ];

@@ -165,7 +165,7 @@ fn shorten(text: &str) -> String {
 /// Converts a value to JSON. Numbers that JSON does not support are written as in jq.
 fn json(value: &Val, depth: usize) -> Result<Value, String> {
     if depth > MAX_DEPTH {
-        return Err(format!("it makes a value with more than {MAX_DEPTH} nested levels"));
+        return Err(format!("it makes a value with more than {MAX_DEPTH} levels"));
     }
     Ok(match value {
         Val::Null => Value::Null,

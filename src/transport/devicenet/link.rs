@@ -31,7 +31,7 @@ impl Polled {
     pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
         let connection = network.connect(settings).await?;
         let size = connection.view().details.size;
-        let size = size.ok_or_else(|| Error::Settings("the connection is only for messages".to_owned()))?;
+        let size = size.ok_or_else(|| Error::Settings("the connection carries only messages, no images".to_owned()))?;
         Ok(Self::over(connection, Sizes { output: size, input: size }))
     }
 }
@@ -219,7 +219,7 @@ pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Erro
         // Class, instance and attribute, each in one byte.
         [0x20, class, 0x24, instance, 0x30, attribute] => Ok(Request::get(*class, (*instance).into(), *attribute)),
         [0x20, class, 0x24, instance] => Ok(Request::get(*class, (*instance).into(), 3)),
-        _ => Err(Error::Senseless { mac, what: IMAGE, why: "the path is not that of an attribute" }),
+        _ => Err(Error::Senseless { mac, what: IMAGE, why: "the path does not lead to an attribute" }),
     }
 }
 

@@ -140,7 +140,8 @@ impl Network {
                 if !fits || adapter.bitrate != other.bitrate {
                     let place = &adapter.place;
                     return Err(Error::Settings(format!(
-                        "{place} is in use with another bit rate or master MAC; an adapter has only one of each"
+                        "{place} is in use with another bit rate or master MAC; an adapter can have only one bit rate \
+                         and one master MAC"
                     )));
                 }
                 if tap.is_open() {
@@ -177,7 +178,8 @@ impl Network {
             news: watch::channel(0).0,
         });
         let (opened, is_open) = oneshot::channel();
-        let failed = |error: &std::io::Error| Error::Settings(format!("a thread for the adapter: {error}"));
+        let failed =
+            |error: &std::io::Error| Error::Settings(format!("cannot start a thread for the adapter: {error}"));
         let runtime = Builder::new_current_thread().enable_all().build().map_err(|error| failed(&error))?;
         let shared = Arc::clone(&inner);
         let work = move || runtime.block_on(run(shared, opened));

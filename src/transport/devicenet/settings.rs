@@ -87,7 +87,7 @@ impl Settings {
             ));
         }
         if images.profiles.iter().any(|profile| profile.resting.is_empty()) {
-            return wrong("an image has at least one byte".to_owned());
+            return wrong("an image must have at least one byte".to_owned());
         }
         Ok(())
     }

@@ -40,7 +40,7 @@ impl Message {
     /// Encodes the frame data.
     pub fn emit(&self) -> Result<Vec<u8>, EipError> {
         if self.data.len() > MOST_DATA || self.path.emit().len() > MOST_PATH {
-            let text = format!("a message has at most {MOST_DATA} bytes of data and {MOST_PATH} of path");
+            let text = format!("a message can have at most {MOST_DATA} bytes of data and {MOST_PATH} bytes of path");
             return Err(EipError::Impossible(text));
         }
         Ok(RrData::new(&self.request()).emit())

@@ -157,9 +157,9 @@ impl From<EipError> for LinkError {
             EipError::Unreachable { .. }
             | EipError::NoAnswer { .. }
             | EipError::Hangup { .. }
-            | EipError::Silent { .. } => Self::Silent(
-                cause.advice("check the address; check that the controller is on and its EtherNet/IP board enabled"),
-            ),
+            | EipError::Silent { .. } => Self::Silent(cause.advice(
+                "check the address; check that the controller is on, and that its EtherNet/IP board is enabled",
+            )),
             EipError::Encapsulation { .. } | EipError::Refused { .. } => match known {
                 Some(code) if code.code == OWNED => Self::Owned(cause),
                 Some(code) => Self::Refused(cause.advice(as_advice(code.remedy))),

@@ -86,7 +86,7 @@ impl Scanner {
 
     /// Binds UDP port 2222, or any port if another program uses that one.
     pub fn start(address: Ipv4Addr) -> Result<Self, EipError> {
-        let failed = |error: io::Error| LocalError::new("UDP socket for images", &error);
+        let failed = |error: io::Error| LocalError::new("cannot open a UDP socket for images", &error);
         let socket = match UdpSocket::bind((address, IO_PORT)) {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => UdpSocket::bind((address, 0)),
             bound => bound,
@@ -134,7 +134,7 @@ impl Scanner {
     pub async fn open(&self, target: SocketAddrV4, settings: Settings, tap: Tap) -> Result<Connection, EipError> {
         let inner = &self.owner.inner;
         if settings.multicast && self.port() != IO_PORT {
-            let text = format!("multicast images use UDP port {IO_PORT}, but another program on this computer has it");
+            let text = format!("multicast images use UDP port {IO_PORT}, but another program on this computer uses it");
             return Err(EipError::Impossible(text));
         }
         let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;
@@ -278,12 +278,12 @@ impl Inner {
                     // Before the send, so that a trace never has an answer before its request.
                     slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes);
                     if let Err(error) = self.socket.send_to(&bytes, to) {
-                        slot.core.failed(LocalError::new("sending an image", &error).into());
+                        slot.core.failed(LocalError::new("cannot send an image", &error).into());
                     }
                 }
                 Action::Join(group) => {
                     if let Err(error) = self.join(group, slot.here) {
-                        slot.core.failed(LocalError::new("joining the group", &error).into());
+                        slot.core.failed(LocalError::new("cannot join the multicast group", &error).into());
                     }
                 }
                 Action::Leave(group) => self.leave(group, slot.here),

@@ -116,14 +116,14 @@ impl Settings {
     pub fn check(&self) -> Result<(), EipError> {
         let wrong = |text: String| Err(EipError::Impossible(text));
         if self.output_size.max(self.input_size) > MOST_IMAGE {
-            return wrong(format!("an image has at most {MOST_IMAGE} bytes"));
+            return wrong(format!("an image can have at most {MOST_IMAGE} bytes"));
         }
         if self.role != Role::ExclusiveOwner && self.output_size != 0 {
             return wrong("a listen-only connection has no output image".to_owned());
         }
         if self.resting.len() != usize::from(self.output_size) {
             let (len, size) = (self.resting.len(), self.output_size);
-            return wrong(format!("the resting image has {len} bytes, the output image {size}"));
+            return wrong(format!("the resting image has {len} bytes, but the output image has {size}"));
         }
         if !(SHORTEST..=LONGEST).contains(&self.rpi) {
             return wrong(format!("the rpi must be {SHORTEST:?} to {LONGEST:?}, not {:?}", self.rpi));

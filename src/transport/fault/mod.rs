@@ -88,7 +88,7 @@ pub enum FaultSpecError {
         known: String,
     },
     /// Two faults of the device, which has one at a time.
-    #[error("{first} and {second} exclude each other")]
+    #[error("{first} and {second} cannot be used together")]
     TwoOfDevice {
         /// The first fault.
         first: &'static str,
@@ -112,7 +112,7 @@ pub enum FaultSpecError {
         form: &'static str,
     },
     /// A value for a key that takes none.
-    #[error("{key} has no value, but got '{value}'")]
+    #[error("{key} takes no value, but has the value '{value}'")]
     NeedlessValue {
         /// The key.
         key: &'static str,
@@ -121,8 +121,8 @@ pub enum FaultSpecError {
     },
 }
 
-const SHARE_FORM: &str = "a percentage from 0% to 100% with at most two decimals, as in 2.5%";
-const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
+const SHARE_FORM: &str = "a percentage from 0% to 100% with at most two decimals, for example 2.5%";
+const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, for example 20ms or 0..50ms";
 const SEED_FORM: &str = "a whole number from 0 to 18446744073709551615";
 
 /// Faults of a link in text form.

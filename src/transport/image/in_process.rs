@@ -49,7 +49,7 @@ impl InProcess {
             match (&last_output, known.is_up) {
                 (None, true) => {
                     self.pending = None;
-                    let cause = Cause::new("the other side has ended");
+                    let cause = Cause::new("the other side of the connection has ended");
                     return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Released });
                 }
                 (Some(_), false) => return Event::Reopened,

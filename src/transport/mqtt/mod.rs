@@ -36,7 +36,7 @@ pub enum Loss {
     #[error("it accepts the connection, but does not answer")]
     Unanswered,
     /// The broker stopped answering.
-    #[error("it does not answer any more")]
+    #[error("it does not answer any longer")]
     Silent,
     /// The broker closed the connection.
     #[error("it closed the connection")]
@@ -53,7 +53,7 @@ pub enum Loss {
     #[error("it does not send MQTT ({0})")]
     Garbage(String),
     /// Violation of the MQTT protocol.
-    #[error("it breaks the MQTT protocol: {0}")]
+    #[error("it does not follow the MQTT protocol: {0}")]
     Protocol(&'static str),
     /// The broker sends too much; see the flood limit.
     #[error("it sends too much: more than {} packets or {} bytes in {} s without a request", FLOOD.0, FLOOD.1, FLOOD.2)]
@@ -62,7 +62,7 @@ pub enum Loss {
     #[error("it does not read the sent data")]
     Unread,
     /// The broker sent a packet above the size limit.
-    #[error("it sends a packet of more than {LARGEST} bytes")]
+    #[error("it sends a packet that is longer than {LARGEST} bytes")]
     TooLarge,
     /// Error of the connection.
     #[error("{0}")]
@@ -83,9 +83,9 @@ fn goodbye(code: u8, reason: Option<&str>) -> String {
         (0x82, "protocol error"),
         (0x87, "not authorized"),
         (0x89, "it is busy"),
-        (0x8b, "it shuts down"),
+        (0x8b, "it is shutting down"),
         (0x8d, "keep-alive timeout"),
-        (0x8e, "another client has taken over this name"),
+        (0x8e, "another client connected with the same name"),
         (0x90, "invalid topic"),
         (0x93, "receive maximum exceeded"),
         (0x95, "packet too large"),

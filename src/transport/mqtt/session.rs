@@ -155,7 +155,7 @@ impl Session {
         if let (Some(first), false) = (bytes.first(), std::mem::replace(&mut self.has_heard, true))
             && *first != CONNACK
         {
-            return self.lose(Loss::Garbage(format!("it begins with 0x{first:02X}")));
+            return self.lose(Loss::Garbage(format!("the data begins with 0x{first:02X}")));
         }
         self.flood.bytes(now, bytes.len());
         if self.outgoing.is_empty() {
@@ -301,7 +301,7 @@ impl Session {
         }
         // The reason follows as a separate event, if there is one.
         if closes {
-            self.lose(Loss::Garbage("it breaks the protocol".to_owned()));
+            self.lose(Loss::Garbage("it does not follow the protocol".to_owned()));
         }
     }
 

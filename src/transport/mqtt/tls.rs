@@ -133,14 +133,14 @@ mod rustls_link {
                 let found = rustls_native_certs::load_native_certs();
                 let (_, _) = store.add_parsable_certificates(found.certs);
                 if store.is_empty() {
-                    return Err(TlsError::Setup("this computer has no certificates of authorities".to_owned()));
+                    return Err(TlsError::Setup("this computer has no CA certificates".to_owned()));
                 }
             }
             Trust::Roots(pem) => {
-                for certificate in certificates_of(pem, "the certificate of the authority")? {
-                    store.add(certificate).map_err(|error| {
-                        TlsError::Setup(format!("the certificate of the authority is not valid: {error}"))
-                    })?;
+                for certificate in certificates_of(pem, "the CA certificate")? {
+                    store
+                        .add(certificate)
+                        .map_err(|error| TlsError::Setup(format!("the CA certificate is not valid: {error}")))?;
                 }
             }
         }

@@ -80,7 +80,7 @@ impl Entry<'_> {
     }
 
     fn byte(&self, text: &str) -> Result<u8, GsdError> {
-        u8::try_from(self.number(text)?).map_err(|_| self.error(format!("'{}' is more than a byte", text.trim())))
+        u8::try_from(self.number(text)?).map_err(|_| self.error(format!("'{}' does not fit in one byte", text.trim())))
     }
 
     fn bytes(&self, text: &str) -> Result<Vec<u8>, GsdError> {
@@ -89,12 +89,12 @@ impl Entry<'_> {
             .filter(|part| !part.trim().is_empty())
             .map(|part| self.byte(part))
             .collect::<Result<_, _>>()?;
-        if bytes.len() > MAX_DATA { Err(self.error(format!("{} bytes: too many", bytes.len()))) } else { Ok(bytes) }
+        if bytes.len() > MAX_DATA { Err(self.error(format!("{} bytes are too many", bytes.len()))) } else { Ok(bytes) }
     }
 
     /// Splits the value into the quoted text and the rest.
     fn quoted(&self) -> Result<(&str, &str), GsdError> {
-        let wrong = || self.error("a name in quotation marks is expected");
+        let wrong = || self.error("a name in quotation marks is missing");
         let rest = self.value.trim().strip_prefix('"').ok_or_else(wrong)?;
         rest.split_once('"').ok_or_else(wrong)
     }
@@ -157,7 +157,7 @@ impl Gsd {
                 if entry.is("EndModule") {
                     gsd.modules.extend(module.take().map(|(_, module)| module));
                 } else if entry.is("Module") {
-                    return Err(entry.error("the module before it has no EndModule"));
+                    return Err(entry.error("EndModule is missing in the module before this line"));
                 } else if entry.is("Ext_Module_Prm_Data_Len") {
                     entry.length(&mut inside.parameters)?;
                 } else {
@@ -169,7 +169,7 @@ impl Gsd {
                 Configuration::parse(&configuration).map_err(|error| entry.error(error.to_string()))?;
                 module = Some((line, Module { name: name.trim().to_owned(), configuration, parameters: Vec::new() }));
             } else if entry.is("EndModule") {
-                return Err(entry.error("no Module is before it"));
+                return Err(entry.error("Module is missing before this line"));
             } else if entry.is("Ident_Number") {
                 let number = entry.number(entry.value)?;
                 ident = Some(u16::try_from(number).map_err(|_| entry.error("it must have two bytes"))?);

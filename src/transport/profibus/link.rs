@@ -179,26 +179,26 @@ impl From<ProfibusError> for LinkError {
         match error {
             ProfibusError::Settings(_) => Self::Settings(cause),
             ProfibusError::Port { .. } => Self::Silent(cause.advice(
-                "check the name of the port (`armctl robots discover` lists the ports) and the abilities of the \
-                 adapter; close every session and program that uses the port",
+                "check the name of the port (`armctl robots discover` lists the ports); check that the adapter \
+                 supports the settings; close every session and program that uses the port",
             )),
             ProfibusError::Gone { .. } => {
                 Self::Silent(cause.advice("check the plug and the power supply of the adapter"))
             }
             ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
-                "disconnect the other master, because armctl must be the only one; or add role=listen to the URL to \
-                 only read",
+                "disconnect the other master, because armctl must be the only master; or add role=listen to the URL \
+                 to only read",
             )),
             ProfibusError::Unreadable { .. } => Self::Owned(cause.advice(
-                "set baud in the URL to that of the bus; check for another master, missing terminators, and crossed \
-                 A and B wires",
+                "set baud in the URL to the bit rate of the bus; check for another master, missing terminators, and \
+                 crossed A and B wires",
             )),
             ProfibusError::NoAnswer { .. } => Self::Silent(cause.advice(
                 "check station and baud in the URL, the A and B wires, and both terminators with their supply; check \
                  that the controller is on. With a slow adapter, set slot=50ms",
             )),
             ProfibusError::IsMaster { .. } => {
-                Self::Malformed(cause.advice("check station in the URL: `yrcx profibus scan`"))
+                Self::Malformed(cause.advice("check station in the URL; `yrcx profibus scan` lists the stations"))
             }
             ProfibusError::Refused { .. } => Self::Refused(
                 cause
@@ -236,8 +236,8 @@ impl From<ProfibusError> for LinkError {
                  diagnosis",
             )),
             ProfibusError::NotHeard { .. } => Self::Silent(cause.advice(
-                "a controller sends its images only to its master. Open a session, which takes control (`armctl \
-                 session open`), or listen on the bus of its PLC; set station and baud to those of the bus",
+                "open a session, which takes control (`armctl session open`), or listen on the bus of the PLC (set \
+                 station and baud to the values of that bus). A controller sends its images only to its master",
             )),
             ProfibusError::Outdated | ProfibusError::Ended => Self::Local(cause),
         }

@@ -59,7 +59,9 @@ impl Serial {
         };
         let port = serial::open(&line, MOST_OFF).map_err(|error| {
             let text = match error {
-                OpenError::Unsupported(what) => format!("the adapter cannot do {} with even parity: {what}", rate.name),
+                OpenError::Unsupported(what) => {
+                    format!("the adapter does not support {} with even parity: {what}", rate.name)
+                }
                 other => other.to_string(),
             };
             ProfibusError::Port { port: path.to_owned(), text }
@@ -77,7 +79,7 @@ impl Port for Serial {
         // For some drivers, a timeout of 0 means no timeout.
         self.port.set_timeout(wait.max(Duration::from_micros(50))).map_err(vanished)?;
         match io::Read::read(&mut self.port, buffer) {
-            Ok(0) => Err(vanished("its end was reached")),
+            Ok(0) => Err(vanished("the port was closed")),
             Ok(len) => Ok(len),
             Err(error)
                 if matches!(

@@ -94,7 +94,9 @@ impl Settings {
             return wrong(format!("station and master cannot both be {}", self.station));
         }
         if self.output_size.max(self.input_size) > MAX_DATA || self.resting.len() != self.output_size {
-            return wrong(format!("an image has at most {MAX_DATA} bytes, and its resting image has the same size"));
+            return wrong(format!(
+                "an image can have at most {MAX_DATA} bytes, and its resting image must have the same size"
+            ));
         }
         if self.parameters.as_ref().is_some_and(|user| user.len() > Parameters::MAX_USER) {
             return wrong(format!("at most {} bytes of user parameters are possible", Parameters::MAX_USER));

@@ -48,7 +48,7 @@ pub enum ProfinetError {
         here: Ipv4Addr,
     },
     /// Another station has the same IP address.
-    #[error("{station} reports that another station also has its address {address}")]
+    #[error("{station} reports that another station has the same address {address}")]
     AddressConflict {
         /// The station.
         station: String,
@@ -157,7 +157,7 @@ pub enum ProfinetError {
     #[error("the connection is closed")]
     Ended,
     /// No permission for raw Ethernet.
-    #[error("PROFINET needs raw Ethernet, but armctl has no right to open it (CAP_NET_RAW)")]
+    #[error("PROFINET needs raw Ethernet, but armctl has no permission for it (CAP_NET_RAW)")]
     Privilege,
     /// The network interface does not exist.
     #[error("this computer has no network interface '{name}'")]
@@ -229,8 +229,8 @@ impl fmt::Display for ModuleMismatch {
             what = "submodule";
         }
         match self.found {
-            Some(found) => write!(f, " holds {what} {found:#x}")?,
-            None => write!(f, " holds no {what}")?,
+            Some(found) => write!(f, " has {what} {found:#x}")?,
+            None => write!(f, " has no {what}")?,
         }
         match self.expected {
             Some(expected) if self.found == Some(expected) => write!(f, ", which is not usable now"),

@@ -274,10 +274,8 @@ impl<'a, 'input> Reader<'a, 'input> {
         let slots = self.slots(node, "PhysicalSlots")?;
         let references: Vec<_> = node.descendants().filter(|item| item.has_tag_name_local("ModuleItemRef")).collect();
         if references.len() > MOST_MODULES {
-            return Err(self.wrong(
-                node,
-                format!("{} modules are usable in it; at most {MOST_MODULES} are possible", references.len()),
-            ));
+            return Err(self
+                .wrong(node, format!("it can use {} modules; at most {MOST_MODULES} are possible", references.len())));
         }
         let modules =
             references.into_iter().map(|reference| self.fitting(reference, &slots)).collect::<Result<_, _>>()?;
@@ -381,7 +379,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         let index = self.number(node, "Index")?;
         let length = usize::from(self.number(node, "Length")?);
         if length > LONGEST_RECORD {
-            return Err(self.wrong(node, format!("a record has at most {LONGEST_RECORD} bytes")));
+            return Err(self.wrong(node, format!("a record can have at most {LONGEST_RECORD} bytes")));
         }
         let mut data = vec![0; length];
         for part in node.children().filter(Node::is_element) {
@@ -395,7 +393,7 @@ impl<'a, 'input> Reader<'a, 'input> {
                 _ => continue,
             };
             let place = data.get_mut(at..at + bytes.len());
-            place.ok_or_else(|| self.wrong(part, "it is too long for its record"))?.copy_from_slice(&bytes);
+            place.ok_or_else(|| self.wrong(part, "the value does not fit in the record"))?.copy_from_slice(&bytes);
         }
         Ok((index, data))
     }
@@ -411,7 +409,7 @@ impl<'a, 'input> Reader<'a, 'input> {
     fn value(&self, node: Node<'a, 'input>, byte: u8) -> GsdmlResult<Option<Vec<u8>>> {
         let Some(text) = node.attribute("DefaultValue") else { return Ok(None) };
         let kind = self.text(node, "DataType")?;
-        let wrong = || self.wrong(node, format!("'{text}' is no {kind}"));
+        let wrong = || self.wrong(node, format!("'{text}' is not a valid {kind}"));
         let bits = match kind {
             "Bit" => 1,
             "BitArea" => self.number(node, "BitLength")?,

@@ -81,7 +81,7 @@ impl Interface {
         if let Some(network) = simulated::Network::find(name) {
             return Ok(network.interface());
         }
-        let all = all().map_err(|error| LocalError::new("list of network interfaces", &error))?;
+        let all = all().map_err(|error| LocalError::new("cannot list the network interfaces", &error))?;
         let present = all.iter().map(|interface| interface.name.clone()).collect();
         let found = all.into_iter().find(|interface| interface.name == name);
         found.ok_or(ProfinetError::NoInterface { name: name.to_owned(), present })
@@ -120,7 +120,7 @@ impl Interface {
     pub fn raw_socket(&self, ether_type: u16) -> Result<Socket, ProfinetError> {
         let failed = |error: &io::Error| match error.kind() {
             ErrorKind::PermissionDenied => ProfinetError::Privilege,
-            _ => LocalError::new("raw Ethernet socket", error).into(),
+            _ => LocalError::new("cannot open a raw Ethernet socket", error).into(),
         };
         let Card::Real(link) = &self.card else { return Err(ProfinetError::Ended) };
         let protocol = Protocol::from(i32::from(ether_type.to_be()));

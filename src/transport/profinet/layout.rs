@@ -64,7 +64,7 @@ impl Layout {
     /// Two submodules have the same place, a slot has two modules, or the data does not fit a frame.
     pub fn new(mut submodules: Vec<Submodule>) -> Result<Self, String> {
         if submodules.is_empty() || submodules.len() > MOST {
-            return Err(format!("a layout has 1 to {MOST} submodules, not {}", submodules.len()));
+            return Err(format!("a layout must have 1 to {MOST} submodules, not {}", submodules.len()));
         }
         submodules.sort_by_key(|submodule| (submodule.slot, submodule.subslot));
         for pair in submodules.windows(2) {

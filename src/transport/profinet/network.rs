@@ -87,8 +87,9 @@ impl Network {
         });
         let runs = Arc::clone(&inner);
         let thread = std::thread::Builder::new().name("profinet".to_owned());
-        let thread =
-            thread.spawn(move || runs.run()).map_err(|error| LocalError::new("thread of the connections", &error))?;
+        let thread = thread
+            .spawn(move || runs.run())
+            .map_err(|error| LocalError::new("cannot start the thread of the connections", &error))?;
         Ok(Self { owner: Arc::new(Owner { name: interface.name.clone(), inner, thread: Some(thread) }) })
     }
 
@@ -217,7 +218,7 @@ impl Inner {
                 Action::Frame(bytes) => {
                     slot.tap.pass(|| Passage::Frame(bytes.clone()));
                     if let Err(error) = self.sockets.send_frame(&bytes) {
-                        slot.core.failed(LocalError::new("sending a frame", &error).into());
+                        slot.core.failed(LocalError::new("cannot send a frame", &error).into());
                     }
                 }
                 Action::Datagram(to, bytes) => {
@@ -225,7 +226,7 @@ impl Inner {
                     let card = slot.core.card().unwrap_or_default();
                     slot.tap.pass(|| Passage::Frame(in_frame(self.here.mac, card, from, to, &bytes)));
                     if let Err(error) = self.sockets.send_datagram(to, &bytes) {
-                        slot.core.failed(LocalError::new("sending a call", &error).into());
+                        slot.core.failed(LocalError::new("cannot send a call", &error).into());
                     }
                 }
             }

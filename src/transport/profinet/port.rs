@@ -80,7 +80,7 @@ impl Frames {
             End::Simulated(network) => network.send_frame(frame),
             End::Socket(socket, _) => {
                 let mut socket = socket;
-                socket.write_all(frame).map_err(|error| LocalError::new("sending a frame", &error))?;
+                socket.write_all(frame).map_err(|error| LocalError::new("cannot send a frame", &error))?;
             }
         }
         Ok(())
@@ -129,7 +129,7 @@ impl Frames {
                     return Ok(Some(buffer));
                 }
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
-                Err(error) => return Err(LocalError::new("hearing frames", &error).into()),
+                Err(error) => return Err(LocalError::new("cannot receive frames", &error).into()),
             }
         }
     }
@@ -142,7 +142,7 @@ impl Calls {
             End::Simulated(network.clone())
         } else {
             let socket = UdpSocket::bind((interface.address()?.address, 0));
-            let socket = socket.map_err(|error| LocalError::new("UDP socket for calls", &error))?;
+            let socket = socket.map_err(|error| LocalError::new("cannot open a UDP socket for calls", &error))?;
             End::Socket(socket, Instant::now())
         };
         Ok(Self { end, tap: interface.tap.clone(), cards: (interface.mac, mac), target })
@@ -158,7 +158,7 @@ impl Calls {
             End::Simulated(network) => network.send_datagram(self.target, bytes),
             End::Socket(socket, _) => {
                 let sent = socket.send_to(bytes, self.target);
-                sent.map_err(|error| LocalError::new("calling the device", &error))?;
+                sent.map_err(|error| LocalError::new("cannot call the device", &error))?;
             }
         }
         Ok(())
@@ -174,7 +174,7 @@ impl Calls {
             End::Socket(socket, start) => {
                 let wait = until.saturating_sub(start.elapsed()).max(Duration::from_millis(1));
                 let timed = socket.set_read_timeout(Some(wait));
-                timed.map_err(|error| LocalError::new("calling the device", &error))?;
+                timed.map_err(|error| LocalError::new("cannot call the device", &error))?;
                 let mut buffer = vec![0; BUFFER];
                 // A timeout or a signal; the caller checks the time.
                 let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer) else { return Ok(None) };

@@ -119,7 +119,10 @@ impl Settings {
         }
         let size = self.layout.size(Direction::Output);
         if self.resting.len() != size {
-            return wrong(format!("the resting image has {} bytes, the output image {size}", self.resting.len()));
+            return wrong(format!(
+                "the resting image has {} bytes, but the output image has {size}",
+                self.resting.len()
+            ));
         }
         if self.swapped % 2 == 1 {
             return wrong("the number of bytes must be even".to_owned());

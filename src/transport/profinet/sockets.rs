@@ -35,7 +35,8 @@ impl Sockets {
         let raw = interface.raw_socket(ETHER_TYPE)?;
         interface.check()?;
         let ip = interface.address()?;
-        let failed = |error: &io::Error| ProfinetError::from(LocalError::new("UDP socket for calls", error));
+        let failed =
+            |error: &io::Error| ProfinetError::from(LocalError::new("cannot open a UDP socket for calls", error));
         let udp = UdpSocket::bind((ip.address, rpc::PORT)).map_err(|error| match error.kind() {
             ErrorKind::AddrInUse => ProfinetError::PortTaken { address: ip.address },
             _ => failed(&error),

@@ -24,7 +24,7 @@ impl WriteHalf {
     }
 
     /// As in `socket`.
-    #[expect(clippy::unused_async, reason = "as of a socket")]
+    #[expect(clippy::unused_async, reason = "as in the version with a socket")]
     pub async fn writable(&self) -> io::Result<()> {
         match *self {}
     }
@@ -72,14 +72,14 @@ impl Listener {
     }
 
     /// As in `socket`.
-    #[expect(clippy::unused_async, reason = "as of a socket")]
+    #[expect(clippy::unused_async, reason = "as in the version with a socket")]
     pub async fn accept(&self) -> io::Result<(ReadHalf, WriteHalf, Option<u32>)> {
         match *self {}
     }
 }
 
 /// Always `None`.
-#[expect(clippy::unused_async, reason = "as of a socket")]
+#[expect(clippy::unused_async, reason = "as in the version with a socket")]
 pub async fn connect(_path: &Path) -> io::Result<Option<(ReadHalf, WriteHalf)>> {
     Ok(None)
 }

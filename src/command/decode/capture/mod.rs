@@ -376,7 +376,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         let file = (self.open)().with_context(|| self.name.to_owned())?;
         read(file, each).map_err(|error| {
             let hint = match error {
-                OpenError::Compressed => "decompress it first with gunzip or unzstd",
+                OpenError::Compressed => "decompress the file first with gunzip or unzstd",
                 OpenError::Unreadable => "check the disk of the file",
                 OpenError::Other => "use a file from tcpdump, Wireshark or --trace",
             };

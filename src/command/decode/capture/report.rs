@@ -156,7 +156,9 @@ impl<F: Field> Report for Capture<F> {
         }
         if let Some(damage) = &self.damage {
             let failure = Failure::local(format!("{}: {damage}", self.file));
-            return Some(failure.hint("the part before the damage is shown; an aborted capture ends like this"));
+            return Some(
+                failure.hint("check whether the capture was aborted; the command shows the part before the damage"),
+            );
         }
         let Problems { all, damaged, first } = &self.problems;
         let (number, problem) = first.as_ref()?;
@@ -166,13 +168,13 @@ impl<F: Field> Report for Capture<F> {
         };
         Some(
             Failure::new(Kind::Malformed, message)
-                .hint("--frame NUMBER shows the fields of a message up to the damage"),
+                .hint("use --frame NUMBER to see the fields of a message up to the damage"),
         )
     }
 }
 
 /// Reason why not all messages are shown.
-pub const FULL: &str = "it has too many messages; only the first ones are shown";
+pub const FULL: &str = "the capture has too many messages; only the first messages are shown";
 
 /// Links of a file, in the order of their first message.
 #[derive(Debug, Default)]

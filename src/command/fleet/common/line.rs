@@ -196,7 +196,7 @@ fn parse_first(family: Family, lines: &[Vec<String>]) -> Parsed {
         let name = lines.first().and_then(|words| words.last()).map_or("", String::as_str);
         let message = format!("'{name}' is not a signal, variable, counter or other value of {family}");
         Failure::usage(message)
-            .hint("`armctl names list` shows your names, `armctl status --json` the keys of a status")
+            .hint("use `armctl names list` to list your names, and `armctl status --json` to see the keys of a status")
     }))
 }
 

@@ -31,7 +31,7 @@ pub struct Extra {
 /// A parsed command, or the error.
 pub type Read = Result<Box<dyn AnyCommand>, Failure>;
 
-const EXAMPLE: &str = "examples: 'yerc var get B0..B9', 'toyo counter get'";
+const EXAMPLE: &str = "type a command such as 'yerc var get B0..B9' or 'toyo counter get'";
 
 impl Extra {
     /// Parses a command; its first word is the family.
@@ -50,7 +50,7 @@ impl Extra {
         let (command, is_named) = names::detect_names(|| read(text, family, &words));
         let command = command?;
         if command.intent(None).risk > Risk::Read {
-            return wrong("does more than read", "monitoring only reads; use a command that reads");
+            return wrong("does more than read", "use a command that only reads, because monitoring only reads");
         }
         if command.driver().is_none() {
             return wrong("does not read from a robot", EXAMPLE);
@@ -59,7 +59,10 @@ impl Extra {
             return Err(check_files(text));
         }
         if command.is_endless() {
-            return wrong("does not end by itself", "use the command that reads once; armctl repeats it at each poll");
+            return wrong(
+                "does not end by itself",
+                "use the command that reads once, because armctl repeats the command at each poll",
+            );
         }
         Ok(Self { text: text.into(), family, command, is_named })
     }

@@ -56,7 +56,7 @@ impl FromStr for Url {
         let rest = rest.strip_suffix('/').unwrap_or(rest);
         if rest.contains('@') {
             return Err(format!(
-                "remove user and password from the URL, where others can read them: use --user NAME, and \
+                "remove user and password from the URL, because other users can read the URL; use --user NAME, and \
                  --password-file FILE or {PASSWORD}"
             ));
         }
@@ -152,8 +152,8 @@ impl Broker {
     pub fn new(url: &Url, login: &Login) -> Result<Self, Failure> {
         let has_tls_words = login.ca.is_some() || login.cert.is_some();
         if has_tls_words && !url.is_secure {
-            return Err(Failure::usage("--ca, --cert and --key are for TLS")
-                .hint(format!("for TLS, write mqtts://{}:8883", url.host)));
+            return Err(Failure::usage("--ca, --cert and --key need TLS")
+                .hint(format!("write mqtts://{}:8883 for TLS", url.host)));
         }
         let tls = if url.is_secure {
             let trust = match &login.ca {

@@ -69,12 +69,13 @@ use crate::settings::duration;
 /// Publish changes of robots to an MQTT broker.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without -r, --tag, --sim or -t, armctl publishes all robots in the inventory. --watch INTERVAL \
-                  sets how often it polls them (1s). Topics are PREFIX/ROBOT/status and so on. They are retained, \
-                  with the envelope of --json as payload; PREFIX/NODE/state is online or offline. Messages from the \
-                  broker cannot move a robot or change anything. publish runs until Ctrl-C or SIGTERM (exit code 0), \
-                  and connects again if the broker is away. With --count N it ends after N polls of each robot, or \
-                  with exit code 4 if there is no broker. See docs/monitoring/mqtt.md."
+    after_help = "Without -r, --tag, --sim or -t, armctl publishes all robots in the inventory. --watch INTERVAL sets \
+                  how often armctl polls the robots (1s). The topics are PREFIX/ROBOT/status and so on. Messages are \
+                  retained, and their payload is the envelope of --json. PREFIX/NODE/state is online or offline. \
+                  Messages from the broker cannot move a robot or change anything. publish runs until Ctrl-C or \
+                  SIGTERM (exit code 0), and connects again after the broker was away. With --count N, publish ends \
+                  after N polls of each robot, or with exit code 4 if there is no broker. See \
+                  docs/monitoring/mqtt.md."
 )]
 pub struct Publish {
     // Not parsed by clap, whose message would show the password in a wrong URL.
@@ -251,7 +252,7 @@ impl Publish {
         self.check_globals(run, interval)?;
         let also = ExtraTopic::all(&self.also)?;
         let url: Url = self.broker.parse().map_err(|why: String| {
-            Failure::usage(format!("this is not the URL of a broker: {why}")).hint("example: mqtt://192.168.1.5")
+            Failure::usage(format!("this is not a valid broker URL: {why}")).hint("example: mqtt://192.168.1.5")
         })?;
         let broker = Broker::new(&url, &self.login)?;
         let node = topic::level(&self.node.clone().unwrap_or_else(this_machine))?;
@@ -311,13 +312,13 @@ impl Publish {
         if run.filter.is_some() || run.repeat.until.is_some() {
             return wrong(
                 "prints only a report at its end",
-                "`armctl status --until FILTER` waits for a condition, and takes --jq",
+                "use `armctl status --until FILTER` to wait for a condition, also with --jq",
             );
         }
         if run.gate.dry_run {
             return wrong(
                 "has no dry run: it sends only reads to robots",
-                "see some of its reads: `armctl status --dry-run`",
+                "use `armctl status --dry-run` to see some of the reads",
             );
         }
         if run.trace.is_some() {
@@ -331,7 +332,7 @@ impl Publish {
         }
         if run.repeat.count.is_some() && self.sparkplug.host.is_some() {
             return wrong(
-                "cannot have --count with --host: it waits for the host without a limit",
+                "cannot have --count with --host, because --host waits without a limit",
                 "remove --count or --host",
             );
         }
@@ -353,7 +354,7 @@ impl Publish {
         let usual = || Some(service_state_folder()?.join("publish").join(format!("{way}-{node}")));
         let Some(folder) = path.clone().or_else(usual) else {
             return Err(Failure::usage("armctl finds no folder for the buffer on disk")
-                .hint("set one with --buffer-dir, or use no disk: --buffer-disk 0"));
+                .hint("set a folder with --buffer-dir, or use no disk: --buffer-disk 0"));
         };
         let spool = Spool::open(&folder, *disk).map_err(|error| {
             if spool::is_locked(&error) {

@@ -54,7 +54,7 @@ pub fn level(name: &str) -> Result<String, Failure> {
         let shown: String = name.chars().take(40).collect();
         let why = if level.is_empty() { "is empty" } else { "is too long for a topic" };
         return Err(Failure::usage(format!("the name '{shown}' {why}"))
-            .hint(format!("a name has 1 to {LONGEST} bytes in a topic; change it in robots.toml")));
+            .hint(format!("change the name in robots.toml: a name in a topic has 1 to {LONGEST} bytes")));
     }
     Ok(level)
 }

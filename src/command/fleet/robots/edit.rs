@@ -56,7 +56,7 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
         Err(failure) => {
             let message = copy.keep().map_err(|error| Failure::io(place(), &error.error))?;
             let why = failure.hint.map_or_else(String::new, |hint| format!("{hint}; "));
-            let hint = format!("{why}the inventory is unchanged; your text is in {}", message.display());
+            let hint = format!("{why}correct your text, which is in {}; the inventory is unchanged", message.display());
             Err(Failure { hint: Some(hint), ..failure }.into())
         }
     }

@@ -95,7 +95,8 @@ impl Session {
             Ok(Some(status)) => return Self::living(status),
             Ok(None) => (
                 "dead",
-                "remove it with `armctl session close`, or open it again with `armctl session open`".to_owned(),
+                "remove the session with `armctl session close`, or open it again with `armctl session open`"
+                    .to_owned(),
             ),
             Err(error) => ("silent", error.to_string()),
         };
@@ -107,7 +108,7 @@ impl Session {
 
     fn living(status: Status) -> Self {
         let foreign = (status.version != VERSION)
-            .then(|| "opened by another version of armctl; close it and open it again".to_owned());
+            .then(|| "opened by another version of armctl; close the session and open it again".to_owned());
         Self {
             robot: status.info.robot,
             family: status.info.family,
@@ -137,7 +138,7 @@ impl Session {
             remarks.push("a motion runs".to_owned());
         }
         if let Some(Left { client, died }) = &self.leftover {
-            let how = if *died { "has died" } else { "did not wait" };
+            let how = if *died { "has died" } else { "did not wait for the end" };
             remarks.push(format!("process {} {how}: {}", client.pid, client.command));
         }
         remarks.join("; ")

@@ -37,8 +37,9 @@ impl WatchedEntry {
 
     fn update(&mut self, path: PathBuf) -> Result<(), String> {
         // A deleted file changes nothing.
-        let inventory = Inventory::load(&Location::Default(path))
-            .map_err(|failure| format!("cannot read again whether {} is read-only: {failure}", self.robot.name))?;
+        let inventory = Inventory::load(&Location::Default(path)).map_err(|failure| {
+            format!("armctl could not check again whether {} is read-only: {failure}", self.robot.name)
+        })?;
         let sources = Sources { inventory, ..Sources::default() };
         self.robot.read_only.value =
             sources.read_only(self.robot.family).any(|(_, entry)| entry.name == self.robot.name);

@@ -44,7 +44,7 @@ pub struct Teach {
 
 fn parse_positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("it must be above 0".to_owned()) }
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("the number must be above 0".to_owned()) }
 }
 
 impl Teach {

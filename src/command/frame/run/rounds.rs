@@ -112,6 +112,6 @@ impl<'a> Rounds<'a> {
     pub fn end(&self) -> Result<(), Failure> {
         let Some(until) = &self.repeat.until else { return Ok(()) };
         Err(Failure::new(Kind::ConditionNotMet, format!("the condition '{until}' was not met"))
-            .hint("--for sets how long to wait for it"))
+            .hint("use --for to set a longer wait"))
     }
 }

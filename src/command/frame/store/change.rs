@@ -233,5 +233,5 @@ fn changes<'r, S: Writable>(rows: &'r [ComparedRow<S>], indices: &[usize]) -> Ve
 fn unwritten_rows(failure: &Failure) -> Failure {
     let kind = if failure.kind == Kind::OutcomeUnknown { Kind::NoAnswer } else { failure.kind };
     Failure { kind, message: format!("not written: {}", failure.message), ..failure.clone() }
-        .hint("the same command goes on: what is stored already is not written again")
+        .hint("repeat the same command: armctl does not write values that are already stored")
 }

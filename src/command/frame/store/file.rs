@@ -26,9 +26,9 @@ use crate::output::view::{Section, View};
 /// Saves rows to a CSV file.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The file has a row per line: its name, then its values, each in a column of its own. `restore` writes \
-                        them back. Empty rows are left out. With --update, a file that exists keeps its own columns \
-                        (names that begin with comment) and its order."
+    after_help = "The file has one row per line: the name of the row, then its values, each value in its own column. \
+                  `restore` writes the rows back. Empty rows are omitted. With --update, an existing file keeps its \
+                  own columns (names that begin with comment) and the order of its rows."
 )]
 pub struct Dump<S: Store> {
     /// A new CSV file
@@ -188,7 +188,7 @@ pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failu
         let Some(at) = sheet.column("name") else {
             let message = format!("column name is missing ({expected})");
             return Err(Failure::usage(format!("{}: {message}", text_files::display_path(path)))
-                .hint("nothing was read; --force replaces the file"));
+                .hint("add --force to replace the file; nothing was read from the controller"));
         };
         for row in sheet.rows() {
             match read_keys::<S>(row.text(at)) {
@@ -246,9 +246,9 @@ impl Report for Dumped {
 /// Writes rows from a CSV file.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "All of the file is checked before anything is sent. A value without a column stays as it is on the \
-                        controller. What the controller holds already is not written: the same command goes on where one \
-                        was cut off. Columns whose names begin with comment are yours."
+    after_help = "armctl checks the whole file before it sends anything. A value without a column stays as it is on \
+                  the controller. armctl does not write values that are already stored, so the same command continues \
+                  after an interruption. Columns whose names begin with comment are for your own use."
 )]
 pub struct Restore<S: Writable> {
     /// What `dump` wrote, or a table like it; - is stdin
@@ -293,7 +293,7 @@ impl<S: Writable> Command for Restore<S> {
         }
         if rows.is_empty() {
             let message = format!("{name}: the file has no {} to write", S::WORDS.nouns[1]);
-            return Err(Failure::usage(message).hint("`dump FILE` writes such a file"));
+            return Err(Failure::usage(message).hint("use `dump FILE` to write such a file"));
         }
         write(TableWrite { table, robot, link, screen, authority }, rows).await
     }
@@ -329,7 +329,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
         let key = match read_keys::<S>(row.text(of_name)).as_deref() {
             Ok([key]) => *key,
             Ok(_) => {
-                findings.error(row.place(of_name), "one row per line".to_owned(), None);
+                findings.error(row.place(of_name), "a line can have only one row".to_owned(), None);
                 continue;
             }
             Err(why) => {
@@ -338,7 +338,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
             }
         };
         if let Some(other) = seen.insert(key, row.line) {
-            findings.error(row.place(of_name), format!("{} is in line {other} already", S::name(key)), None);
+            findings.error(row.place(of_name), format!("{} is already in line {other}", S::name(key)), None);
         }
         let mut texts = Vec::new();
         for ((column, place), field) in columns.iter().zip(&places).skip(1).zip(&fields) {
@@ -348,7 +348,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
                 Some(at) if column.is_number => match sheet.number(row, *at) {
                     Ok(number) if !number.is_empty() => Some(number.into_owned()),
                     Ok(_) => {
-                        let message = format!("{} is empty; to keep its value, remove the column", column.name);
+                        let message = format!("{} is empty; remove the column to keep the stored value", column.name);
                         findings.error(row.place(*at), message, None);
                         None
                     }

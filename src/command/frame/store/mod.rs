@@ -353,7 +353,7 @@ pub trait Writable: Store {
     }
 
     /// Why `restore` skips rows unless they are typed.
-    const NOT_RESTORED: &'static str = "type them to write them";
+    const NOT_RESTORED: &'static str = "to write these rows, type them in the command";
 
     /// Whether `restore` writes this row if no rows are typed.
     fn is_restored(_key: Self::Key) -> bool {

@@ -126,7 +126,7 @@ impl<S: Writable> Part<S> {
                 parts.push(format!("{state}: {}", span(&names)));
             }
         }
-        let again = "repeat the command: it continues and skips stored values".to_owned();
+        let again = "repeat the command to continue; it skips stored values".to_owned();
         let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
         Some(Failure { message: parts.join("; "), ..failure }.hint(hint))
     }

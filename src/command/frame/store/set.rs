@@ -40,7 +40,7 @@ impl<S: Store> Clone for SingleRow<S> {
 fn one<S: Store>(text: &str) -> Result<SingleRow<S>, String> {
     match read_keys::<S>(text)?[..] {
         [key] => Ok(SingleRow(key)),
-        _ => Err(format!("'{text}' names several {}; name one", S::WORDS.nouns[1])),
+        _ => Err(format!("'{text}' selects several {}; type one", S::WORDS.nouns[1])),
     }
 }
 
@@ -70,15 +70,17 @@ pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S:
     let row = as_requested(S::WORDS.nouns[0], &S::name(key));
     let names: Vec<&str> = fields.iter().map(|field| &*field.name).collect();
     let usage = match &names[..] {
-        [_] => "give one value".to_owned(),
-        names => format!("give all values in this order, or some by name: {}", names.join("=… ") + "=…"),
+        [_] => "type one value".to_owned(),
+        names => format!("type all values in this order, or some values by name: {}", names.join("=… ") + "=…"),
     };
     let invalid = |message: String| Failure::usage(format!("{row}: {message}")).hint(usage.as_str());
     let mut texts: Vec<Option<&str>> = vec![None; fields.len()];
     let has_name = |word: &String| word.split_once('=').is_some_and(|(name, _)| name.starts_with(char::is_alphabetic));
     if !S::IS_TEXT && words.iter().any(has_name) {
         for word in words {
-            let (name, value) = word.split_once('=').ok_or_else(|| invalid(format!("'{word}' has no name")))?;
+            let (name, value) = word
+                .split_once('=')
+                .ok_or_else(|| invalid(format!("'{word}' has no name, but other values have names")))?;
             let requested = name.to_ascii_lowercase().replace('-', "_");
             let exact = names.iter().position(|field| *field == requested);
             // Accepts `speed` for `speed_mm_s`.
@@ -95,7 +97,7 @@ pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S:
     } else if words.len() == fields.len() {
         texts = words.iter().map(|word| Some(word.as_str())).collect();
     } else {
-        return Err(invalid(format!("{} values needed, {} given", fields.len(), words.len())));
+        return Err(invalid(format!("{} values needed, but {} typed", fields.len(), words.len())));
     }
     table.draft(key, &texts).map_err(invalid)
 }

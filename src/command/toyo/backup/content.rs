@@ -134,7 +134,7 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
     let left_out = foreign.map(|(step, record): (i32, _)| LeftOut {
         key: step.to_string(),
         why: format!(
-            "'{}' is {NOT_IN_MANUAL}; the backup has its text, but a restore cannot write it",
+            "'{}' is {NOT_IN_MANUAL}; the backup contains this text, but a restore cannot write it",
             record.written()
         ),
     });

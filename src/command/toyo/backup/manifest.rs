@@ -44,7 +44,7 @@ impl About for Controller {
         let name = &entry.name;
         let part: Part = name.parse()?;
         if part.to_string() != *name {
-            return Err(format!("'{name}' is {part}"));
+            return Err(format!("'{name}' must be written as {part}"));
         }
         match &entry.copy {
             Some(copy) if copy.file != part.file() => {

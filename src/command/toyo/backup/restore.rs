@@ -34,13 +34,13 @@ use crate::output::Screen;
 
 /// Write a backup back to the controller.
 #[derive(Debug, Args)]
-#[command(after_help = "All files are checked first: their hashes and their content. Each value is compared \
-                  before the write. Equal values are not written, because the EEPROM takes about a \
-                  million rewrites. After an interrupted restore, the same command continues.\n\n\
-                  Machine parameters (E) and special ones (U) need --machine. They are written first; \
-                  after a change of E nothing else is written, because the controller executes nothing before a \
-                  restart. Then restore again without --machine.\n\nThe restore \
-                  selects program mode temporarily.")]
+#[command(after_help = "armctl first checks all files: their hashes and their content. It compares each value before \
+                        the write. It does not write equal values, because an EEPROM cell wears out after about a \
+                        million writes. After an interrupted restore, the same command continues.\n\nMachine \
+                        parameters (E) and special parameters (U) need --machine. armctl writes them first. After a \
+                        change of a machine parameter (E), armctl writes nothing else, because the controller \
+                        executes no command until a restart. Restart the controller, then restore again without \
+                        --machine.\n\nThe restore selects program mode temporarily.")]
 pub struct Restore {
     #[command(flatten)]
     options: RestoreOptions,
@@ -82,7 +82,7 @@ impl Command for Restore {
     type Report = Restored;
     const ID: &'static str = "toyo.restore";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite what the controller stores by the backup";
+    const INTENT: &'static str = "overwrite the data of the controller with the backup";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
@@ -166,14 +166,15 @@ impl Asked {
         only.check(&parts.iter().flat_map(|part| part.names()).collect::<Vec<_>>())?;
         parts.retain(|part| only.has_any(&part.names()));
         if parts.is_empty() {
-            return Err(Failure::usage("the backup has none of these parts").hint(format!("{MANIFEST} lists them")));
+            return Err(Failure::usage("the backup has none of these parts")
+                .hint(format!("see {MANIFEST} for the parts of the backup")));
         }
         if let Some(resume) = self.resume {
             let first = parts.iter().position(|part| *part == resume);
             // All of them, where it is the first that there can be.
             let first = first.or_else(|| (resume == Part::Parameters).then_some(0));
             let first = first.ok_or_else(|| {
-                Failure::usage(format!("--resume={resume}: the backup does not have it"))
+                Failure::usage(format!("--resume={resume}: the backup does not contain this part"))
                     .hint("type a part from the manifest of the backup, or --resume alone")
             })?;
             parts.drain(..first);
@@ -255,7 +256,7 @@ impl Asked {
         manifest: &Manifest,
         jobs: Jobs,
     ) -> Result<Restored, Failure> {
-        const ON: &str = "the comparison: values that differ are written";
+        const ON: &str = "the comparison: armctl writes the values that differ";
         let Jobs { machine, mut parts, speed } = jobs;
         for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
             let Some(job) = parts.iter().find(|job| job.part.to_string() == entry.name) else {
@@ -264,7 +265,7 @@ impl Asked {
             };
             link.plan_item(would_write(&entry.name, ("values", job.table.count() as u64), ON));
             if let Some(machine) = machine.as_ref().filter(|table| job.part == Part::Parameters && table.count() > 0) {
-                let name = format!("{}: machine and special", entry.name);
+                let name = format!("{}: machine and special parameters", entry.name);
                 let written = || would_write(&name, ("values", machine.count() as u64), ON);
                 link.plan_item(if self.restoring.machine { written() } else { would_leave(&name, NOT_MACHINE) });
             }
@@ -278,7 +279,7 @@ impl Asked {
             job.table.compare(link, screen).await?;
             if let Part::Program(_) = job.part {
                 let behind = steps::read_request(job.steps.saturating_add(1).min(5000));
-                link.plan(&behind, "and so on to the end of the task");
+                link.plan(&behind, "and so on to the last step of the task");
             }
         }
         if let Some((cell, _)) = &speed {
@@ -291,7 +292,7 @@ impl Asked {
         for job in &mut parts {
             job.table.write(link, screen).await?;
             if let Part::Program(_) = job.part {
-                link.then(&format!("steps behind those of {} that are no NOP become one", job.part));
+                link.then(&format!("after the steps of {}, each later step that is not NOP becomes NOP", job.part));
             }
         }
         if let Some((cell, _)) = &speed {
@@ -357,7 +358,7 @@ fn replacing<'j>(
     let values = if total == 1 { "a value" } else { &format!("{total} values") };
     let change = match total {
         0 => return Change::none(),
-        _ => Change::new(format!("overwrite {values} by the backup")),
+        _ => Change::new(format!("overwrite {values} with the backup")),
     };
     let notes = machine.map(|table| table.consequences()).unwrap_or_default();
     let change = notes.into_iter().fold(change, Change::note);
@@ -417,13 +418,14 @@ fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()
         ),
     ];
     let other = marks.iter().filter(|(_, saved, found, counts)| *counts && saved != found);
-    let other: Vec<String> =
-        other.map(|(what, saved, found, _)| format!("{what} is {saved} in the backup and {found} here")).collect();
+    let other: Vec<String> = other
+        .map(|(what, saved, found, _)| format!("{what} is {saved} in the backup and {found} on this controller"))
+        .collect();
     if other.is_empty() {
         return Ok(());
     }
-    Err(Failure::new(Kind::Rejected, format!("the backup is of another machine: {}", other.join(", ")))
-        .hint("use the backup of this robot, or --force to write this one; nothing was written"))
+    Err(Failure::new(Kind::Rejected, format!("the backup is from another machine: {}", other.join(", ")))
+        .hint("use a backup of this robot, or add --force to write this backup anyway; nothing was written"))
 }
 
 /// Whether all programs fit the tasks; before anything is written.

@@ -25,11 +25,11 @@ use crate::settings::Robot;
 /// Save all data of a controller to a folder of text files.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The backup has parameters, tables, palletizing and easy programs, and the points and program of each task. \
-                  manifest.json lists them with sizes and hashes, and the reason for missing parts. At 9600 baud a backup \
-                  takes some minutes: half a minute for the parameters, and for each task a minute and a half for the \
-                  points and 35 ms for each step.\n\nEach task is made the current one for a while, which is a change: \
-                  use --current-task for a read-only robot."
+    after_help = "The backup contains parameters, tables, palletizing and easy programs, and the points and program \
+                  of each task. manifest.json lists these parts with sizes and hashes, and the reason for missing \
+                  parts. At 9600 baud a backup takes some minutes: half a minute for the parameters. Each task takes \
+                  a minute and a half for the points, and 35 ms for each step.\n\narmctl selects each task \
+                  temporarily, which is a change: use --current-task for a read-only robot."
 )]
 pub struct Backup {
     #[command(flatten)]
@@ -122,7 +122,7 @@ async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackedUp, Failur
     if !current_task {
         tasks::choose(link, Some(1)).await?;
     }
-    let points = if current_task { "of the current task" } else { "of every task, which is made the current one" };
+    let points = if current_task { "of the current task" } else { "of every task, after the selection of the task" };
     link.then(&format!("every parameter, row, easy program and record is read, then every point and step {points}"));
     Err(unknown())
 }

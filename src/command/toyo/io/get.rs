@@ -42,7 +42,7 @@ async fn get(
 ) -> Result<Signals, Failure> {
     if station != 0 && arguments.iter().any(|signals| signals.is_named) {
         return Err(Failure::usage("names belong to ports of station 0, the controller itself")
-            .hint("type port and bit, as in IN1.3"));
+            .hint("type the port and the bit, such as IN1.3"));
     }
     let signals: Vec<Signal> = typed::once(arguments.iter().flat_map(|signals| signals.signals.iter().copied()));
     let names = names::of_robot(context.robot, context.screen);

@@ -63,6 +63,6 @@ fn exists(bank: PortBank, station: u8, port: u8) -> Result<(), Failure> {
         Failure::usage("only station 0, the controller itself, has internal ports").hint("remove --station")
     } else {
         let message = format!("station {station} has {} ports {first} to {last}, not {port}", bank.word());
-        Failure::usage(message).hint("`armctl toyo io list` lists the signals of a station")
+        Failure::usage(message).hint("use `armctl toyo io list` to list the signals of a station")
     })
 }

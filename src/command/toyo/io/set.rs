@@ -27,9 +27,9 @@ use crate::failure::{Failure, Kind};
 /// Set outputs. All bits of a port change at once; ports change in the typed order.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A whole port is eight characters for bits 8 to 1; the rightmost character is bit 1. 1 is on, 0 is off, \
-                        and a dot keeps the bit. Each port that `io list` shows is read back. \
-                        A running program can set the same outputs."
+    after_help = "A whole port is eight characters for bits 8 to 1; the rightmost character is bit 1. 1 is on, 0 is \
+                  off, and a dot keeps the bit. armctl reads back each port that `io list` shows. A running program \
+                  can set the same outputs."
 )]
 pub struct Set {
     /// Outputs with states, such as OUT1.3=on (port 1, bit 3), OUT1=.......1 (port 1, bits 8 to 1), or NAME=on
@@ -94,8 +94,8 @@ impl FromStr for Assignment {
                 Ok(field::Value::Mask(mask)) => mask,
                 _ => {
                     return Err(format!(
-                        "'{value}' is not a valid port: eight of 0, 1 and . are expected, for the bits 8 to 1; \
-                         one bit is set by OUT{port}.1=on"
+                        "'{value}' is not a valid port value: type eight characters (0, 1 or a dot) for bits 8 to 1; \
+                         for a single bit, type OUT{port}.1=on"
                     ));
                 }
             },
@@ -140,7 +140,7 @@ impl Command for Set {
         let Station { station } = self.station;
         if station != 0 && self.assignments.iter().any(|assignment| assignment.is_named) {
             return Err(Failure::usage("names belong to ports of station 0, the controller itself")
-                .hint("type port and bit, as in OUT1.3=on"));
+                .hint("type the port and the bit, such as OUT1.3=on"));
         }
         let orders = self.orders()?;
         let names = names::of_robot(context.robot, context.screen);
@@ -201,13 +201,17 @@ impl Assignment {
         }
         let answer = read_back(link, &order, &read).await?;
         let Some(written) = own(&answer) else {
-            let message =
-                format!("{} was accepted, but {} is not in '{}'", order.text(), name(self.port), answer.written());
+            let message = format!(
+                "the controller accepted {}, but {} is not in its answer '{}'",
+                order.text(),
+                name(self.port),
+                answer.written()
+            );
             return Err(Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command())));
         };
         let reads = format!("{} reads {:08b}", written.name, written.byte);
         let failure = stored_otherwise(&order, &reads)
-            .hint("a running program can set the same outputs; `toyo io list --out` shows the outputs");
+            .hint("use `toyo io list --out` to see the outputs; a running program can set the same outputs");
         Ok(PortChange { old, now: Some(written.byte), failure: Some(failure) })
     }
 

@@ -36,10 +36,11 @@ impl Link {
             }
         }
         if abandoned.entry.moving.is_some() && (status.executing() || status.homing()) {
-            notices.push("the robot still runs a program or a jog; `toyo stop` stops it".to_owned());
+            notices.push("the robot still runs a program or a jog; use `toyo stop` to stop it".to_owned());
         }
         if abandoned.entry.host && status.host_on() {
-            notices.push("the host is still ON and was OFF before; `toyo host off` releases it".to_owned());
+            notices
+                .push("the host is still ON, and was OFF before; use `toyo host off` to release the host".to_owned());
         }
         for block in &abandoned.entry.back {
             let Ok(back) = Request::parse(block) else { continue };
@@ -50,16 +51,19 @@ impl Link {
                     let (current, earlier) = (record.number("task"), back.record().number("task"));
                     let (current, earlier) = (current.unwrap_or_default(), earlier.unwrap_or_default());
                     let notice = format!(
-                        "the current task is {current} and was {earlier} before; `toyo task set {earlier}` selects it"
+                        "the current task is {current}, and was {earlier} before; use `toyo task set {earlier}` to \
+                         select the earlier task"
                     );
                     (current != earlier).then_some(notice)
                 }
                 Command::Maut if status.run_mode() == Some(RunMode::Program) => Some(
-                    "the controller is in program mode and was in automatic mode before; `toyo mode auto` selects it"
+                    "the controller is in program mode, and was in automatic mode before; use `toyo mode auto` to \
+                     select automatic mode"
                         .to_owned(),
                 ),
                 Command::Mstp if status.run_mode() == Some(RunMode::Program) => Some(
-                    "the controller is in program mode and was in step mode before; `toyo mode step` selects it"
+                    "the controller is in program mode, and was in step mode before; use `toyo mode step` to select \
+                     step mode"
                         .to_owned(),
                 ),
                 _ => None,

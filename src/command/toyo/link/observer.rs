@@ -92,11 +92,11 @@ impl Observer {
         }
         self.printed.host = true;
         let what = if status.executing() || status.homing() {
-            "another client switched the host ON and started a program: if no other person uses the robot, \
-             `toyo stop` stops it and `toyo host off` releases the host"
+            "another client switched the host ON and started a program; if no other person uses the robot, use `toyo \
+             stop` to stop the program and `toyo host off` to release the host"
         } else {
-            "another client switched the host ON, which disables the start input; \
-             `toyo host off` releases the host"
+            "another client switched the host ON, which disables the start input; use `toyo host off` to release the \
+             host"
         };
         self.screen.note(&format!("{}: {what}", self.label));
     }
@@ -116,8 +116,8 @@ impl Observer {
         }
         self.printed.task = true;
         self.screen.note(&format!(
-            "{}: another client selected task {task}, and commands without --task use \
-             it; `toyo task set 1` selects task 1",
+            "{}: another client selected task {task}, and commands without --task use that task; use `toyo task set \
+             1` to select task 1",
             self.label
         ));
     }

@@ -166,9 +166,9 @@ impl Store for Records {
         range: "Records by name or number: start source-p0 6",
         reading: None,
         writing: Some(
-            "All values of a record in order, or some by name; the others stay: `palletizing set 1 source-p1 \
-             100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. Equal values \
-             are not written, because the EEPROM takes about a million rewrites.",
+            "Type all values of a record in order, or only some values by name; the other values stay: `palletizing \
+             set 1 source-p1 100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. \
+             armctl does not write equal values, because an EEPROM cell wears out after about a million writes.",
         ),
     };
     const IDS: Ids = ids!("toyo.palletizing");

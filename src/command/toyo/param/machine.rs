@@ -11,7 +11,8 @@ const MOST_STEPS: i32 = 5000;
 const BESIDE_EASY: i32 = 2000;
 
 /// Remedy after a change of a machine parameter.
-pub const POWER_CYCLE: &str = "switch the controller's power off and on; until then it executes nothing";
+pub const POWER_CYCLE: &str = "switch the controller's power off and on; until then the controller executes no \
+                               command";
 
 /// Consequence of a change of several machine parameters.
 pub fn consequence_of(parameters: &[&Parameter]) -> String {
@@ -24,11 +25,12 @@ pub fn consequence_of(parameters: &[&Parameter]) -> String {
 /// Consequence of a change of machine parameters; `has_steps` if the steps of tasks are among them.
 fn of_machine(what: &str, has_steps: bool) -> String {
     let lost = if has_steps {
-        "; steps above a smaller limit are lost, and above 2000 steps all easy programs are lost"
+        "; a task with fewer steps loses its last steps, and with more than 2000 steps in total all easy programs are \
+         lost"
     } else {
         ""
     };
-    format!("after a change of {what} the controller executes nothing before a restart{lost}")
+    format!("after a change of {what}, the controller executes no command until a restart{lost}")
 }
 
 /// Warnings before a parameter changes.

@@ -136,7 +136,7 @@ fn parse(name: &str) -> Result<Vec<Key>, String> {
     }
     match Parameter::named(name) {
         Some(parameter) if parameter.row().is_some() => {
-            Err(format!("{} is a table; `toyo {} get` reads its rows", parameter.name, command_of(parameter)))
+            Err(format!("{} is a table; use `toyo {} get` to read its rows", parameter.name, command_of(parameter)))
         }
         Some(parameter) => Ok(vec![Key::single(parameter)]),
         None => {
@@ -185,7 +185,7 @@ pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Reco
     let rare = |key: &Key, failure: Failure| match &failure.hint {
         Some(hint) if failure.kind == Kind::Refused && !key.parameter.only_on.is_empty() => {
             let (id, models) = (key.parameter.id, key.parameter.only_on.join(", "));
-            let hint = format!("only some controllers have {id}: {models}; {hint}");
+            let hint = format!("check the model, because only these controllers have {id}: {models}; {hint}");
             failure.hint(hint)
         }
         _ => failure,
@@ -213,15 +213,15 @@ impl Store for Parameters {
         placeholder: "NAME",
         range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, table, machine, special",
         reading: Some(
-            "`param list` shows the names of the parameters of this controller. In JSON, each value has its unit, \
-             its protocol text and its meaning.",
+            "`param list` shows the names of the parameters of this controller. In JSON, each parameter has the unit, \
+             the protocol text and the meaning of its value.",
         ),
         writing: Some(
-            "All values in order, or some by name; the others stay: `param set soft-limit-plus 100 200 0 0`, \
-             `param set P01 ax2=150`. Words of the protocol or their meaning: `param set pendant-language english`. A bit \
-             of a port is STATION/PORT/BIT: 0/01/3.\n\nEqual values are not written, because the EEPROM takes \
-             about a million rewrites. After a change of machine parameters (E) the controller executes nothing before a \
-             restart.",
+            "Type all values in order, or only some values by name; the other values stay: `param set soft-limit-plus \
+             100 200 0 0`, `param set P01 ax2=150`. A value is the word of the protocol or its meaning: `param set \
+             pendant-language english`. A bit of a port is STATION/PORT/BIT: 0/01/3.\n\narmctl does not write equal \
+             values, because an EEPROM cell wears out after about a million writes. After a change of machine \
+             parameters (E), the controller executes no command until a restart.",
         ),
     };
     const IDS: Ids = ids!("toyo.param");
@@ -288,12 +288,12 @@ impl Store for Parameters {
     }
 
     fn unsaved(&self, key: Key, record: Option<&Record>) -> Option<String> {
-        let Some(record) = record else { return Some("the controller refused it".to_owned()) };
+        let Some(record) = record else { return Some("the controller refused to report the parameter".to_owned()) };
         let values = &record.values()[key.parameter.key.fields.len()..];
         let unwritable = || {
             let error = self.cell(key, values.to_vec()).err()?;
             let value = values::in_a_line(&values_of(record));
-            Some(format!("its value {value} cannot be written back: {}", error.message))
+            Some(format!("the value {value} cannot be written back: {}", error.message))
         };
         unlisted(Some(record)).or_else(unwritable)
     }
@@ -305,8 +305,8 @@ impl Store for Parameters {
 
 impl EepromRow for Parameters {
     const IS_MIXED: bool = true;
-    const NOT_RESTORED: &'static str = "machine and special parameters are written if their group is typed, such as \
-                                        `param restore FILE machine special`";
+    const NOT_RESTORED: &'static str = "to write machine and special parameters, type their groups, such as `param \
+                                        restore FILE machine special`";
 
     fn is_restored(key: Key) -> bool {
         !is_machine(key)
@@ -332,7 +332,7 @@ impl EepromRow for Parameters {
         let values = key.row.map(Value::Number).into_iter().chain(values).collect();
         parameter_cell(key.parameter, values).map_err(|error| {
             Failure::usage(format!("{}: {error}", key.parameter.name))
-                .hint("the stored value cannot be written back; type all values")
+                .hint("type all values; the stored value cannot be written back")
         })
     }
 

@@ -126,13 +126,13 @@ impl Store for Points {
         nouns: ["point", "points"],
         placeholder: "POINT",
         range: "Rows of the coordinate table, 1 to 999: 1-10,20; or names",
-        reading: Some("999 points take a minute and a half at 9600 baud."),
+        reading: Some("At 9600 baud, a read of 999 points takes a minute and a half."),
         writing: Some(
-            "Values are x, y, z and r in mm, all in this order or some by name; the others stay: z=12.5. Names are the \
-             letters on the teach pendant (E01). If they are not X, Y, Z and R in this order, names are necessary. \
-             ax1 to ax4 are axes 1 to 4 on every machine. @FILE reads the output of `position --json`, @- reads it from \
-             stdin, `here` is the current position. Equal values are not written, because the EEPROM takes about a \
-             million rewrites.",
+            "The values are x, y, z and r in mm. Type all values in this order, or only some values by name; the \
+             other values stay: z=12.5. The names are the letters on the teach pendant (E01). If the letters are not \
+             X, Y, Z and R in this order, names are necessary. ax1 to ax4 are axes 1 to 4 on every machine. @FILE \
+             reads the output of `position --json`, @- reads it from stdin, `here` is the current position. armctl \
+             does not write equal values, because an EEPROM cell wears out after about a million writes.",
         ),
     };
     const IDS: Ids = ids!("toyo.point");

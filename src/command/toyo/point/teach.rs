@@ -23,9 +23,8 @@ use crate::gate::{Confirmation, data_changed};
 /// Store the current position as a point, and read it back.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The command stores the position of `toyo position`, with servo power on or off. It needs a completed return \
-                  to the origin. `toyo point set 5 here` and `toyo point teach 5` are \
-                  the same."
+    after_help = "The command stores the position of `toyo position`, with servo power on or off. The axes must have \
+                  returned to the origin before. `toyo point set 5 here` and `toyo point teach 5` are the same."
 )]
 pub struct Teach {
     /// Row of the coordinate table, 1 to 999, or a name

@@ -23,13 +23,13 @@ use crate::output::view::{Cell, Section, Tone, View};
 /// Check program files and print each error with line and column. Needs no robot.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The exit code is 0 if all files are valid programs, 8 if a file has errors, and 1 if a file cannot be read. \
-                        `program put` and `sim run` check too, and end with exit code 2.\n\n\
-                        Form of a file: one step per line, # or ; begins a comment, labels stand for tags, numbers can \
-                        be short. Warnings show where a controller stops: a RET without a call, a call that leads \
-                        back to itself, half an arc, a missing point, or an error in an offline run of some \
-                        seconds.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
-                        JMPI TAG=next STN=0 PN1=.......1   ; while the gripper is full\n      END"
+    after_help = "The exit code is 0 if all files are valid programs, 8 if a file has errors, and 1 if a file cannot \
+                  be read. `program put` and `sim run` also check the file, and end with exit code 2 after an \
+                  error.\n\nForm of a file: one step per line, # or ; begins a comment, a label can replace a tag, \
+                  numbers can be short. Warnings show where a controller stops: a RET without a call, a call that \
+                  leads back to itself, an incomplete arc, a missing point, or an error in an offline run of some \
+                  seconds.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      JMPI TAG=next STN=0 \
+                  PN1=.......1   ; while the gripper is full\n      END"
 )]
 pub struct Check {
     /// Program files; - is stdin
@@ -90,7 +90,7 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
         Some(code) => {
             format!("a controller stops here after {after_s:.3} s: error {}", errors::explain(*code).in_a_line())
         }
-        None => format!("everything waits here after {after_s:.3} s"),
+        None => format!("all tasks wait here after {after_s:.3} s"),
     };
     let at = findings.iter().position(|finding| finding.line > *line).unwrap_or(findings.len());
     findings.insert(
@@ -100,7 +100,9 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
             line: *line,
             column: 1,
             message: format!("in an offline run {what}"),
-            hint: Some("`toyo sim run` shows the earlier steps; counters begin at 0, inputs are off".to_owned()),
+            hint: Some(
+                "use `toyo sim run` to see the earlier steps; counters begin at 0, and inputs are off".to_owned(),
+            ),
         },
     );
 }

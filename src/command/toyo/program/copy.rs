@@ -25,7 +25,8 @@ use crate::output::view::View;
 
 /// Copy steps over others, within a task or to another task.
 #[derive(Debug, Args)]
-#[command(after_help = and_mode("A tag that is copied within a task exists twice, and a program stops there with error A2."))]
+#[command(after_help = and_mode("If you copy a tag within a task, the task contains the tag twice, and a program \
+                                 stops there with error A2."))]
 pub struct Copy {
     /// First step
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
@@ -55,7 +56,7 @@ impl Command for Copy {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
         let Context { link, screen, authority, .. } = context;
         if self.to < self.from {
-            return Err(Failure::usage(format!("the last step, {}, is before the first, {}", self.to, self.from))
+            return Err(Failure::usage(format!("the last step {} is before the first step {}", self.to, self.from))
                 .hint("type the lower step first"));
         }
         if usize::from(self.end()) > crate::controller::toyo::program::MOST_STEPS {
@@ -85,7 +86,7 @@ impl Copy {
             return Ok(());
         }
         let Self { from, to, at, .. } = self;
-        Err(Failure::usage(format!("steps {from} to {to} and their copy, {at} to {}, overlap", self.end()))
+        Err(Failure::usage(format!("steps {from} to {to} overlap their copy, steps {at} to {}", self.end()))
             .hint("use `program get --from --to` and `program put --at` instead"))
     }
 
@@ -163,9 +164,9 @@ impl Copy {
             link.plan(read, "the target of the copy");
         }
         steps::plan_open(link).await?;
-        link.plan_order(&self.sketch(), "whether they differ, and the current task").await?;
+        link.plan_order(&self.sketch(), "whether the steps differ, and the current task").await?;
         for read in &there {
-            link.plan_if(read, "whether they differ");
+            link.plan_if(read, "whether the steps differ");
         }
         link.put_back().await?;
         Err(unknown())

@@ -26,10 +26,10 @@ use crate::output::view::{Section, View};
 
 /// Compare a program in the controller with a text file. The exit code is 8 if they differ.
 #[derive(Debug, Args)]
-#[command(after_help = "The comparison ignores labels, comments, the form of numbers, and NOPs at the end. \
-                        It reads all steps of the task, which takes about 35 ms each at 9600 baud. For another task \
-                        than the current one, armctl selects that task temporarily. This is a change, which a \
-                        read-only robot does not allow.")]
+#[command(after_help = "The comparison ignores labels, comments, the form of numbers, and NOPs at the end. It reads \
+                        all steps of the task, which takes about 35 ms per step at 9600 baud. If the task is not the \
+                        current task, armctl selects it temporarily. This is a change, which a read-only robot does \
+                        not allow.")]
 pub struct Diff {
     /// A program file; - is stdin
     file: PathBuf,

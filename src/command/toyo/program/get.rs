@@ -32,13 +32,13 @@ use crate::output::view::{Cell, View};
 /// Read the program of a task as text, which `program put` writes back.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "All steps are read, because subroutines can follow END. The text omits NOPs at the end. A step takes about 35 ms at 9600 baud. For another task than the current one, armctl selects that task \
-                        temporarily. This is a change, which a read-only robot does not allow.\n\nA controller \
-                        stores neither labels nor comments. If it has the steps that `program put` of this computer \
-                        wrote last, the command prints that text; otherwise it prints a note and the steps.\
-                        \n\nIf the controller \
-                        refuses a step, the text has ? in its place. Such a text \
-                        is not a valid program, and no file is written."
+    after_help = "All steps are read, because subroutines can follow END. The text omits NOPs at the end. A step \
+                  takes about 35 ms at 9600 baud. If the task is not the current task, armctl selects it temporarily. \
+                  This is a change, which a read-only robot does not allow.\n\nA controller stores neither labels nor \
+                  comments. If the controller has the steps that the last `program put` on this computer wrote, the \
+                  command prints the text of that file. Otherwise the command prints a note and the steps.\n\nIf the \
+                  controller refuses a step, the text has ? in its place. Such a text is not a valid program, and \
+                  armctl writes no file."
 )]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
 pub struct Get {
@@ -83,7 +83,7 @@ impl Command for Get {
         let Context { robot, link, screen, several, .. } = context;
         if let Some(to) = self.to.filter(|to| *to < self.from) {
             return Err(Failure::usage(format!("--to {to} is before --from {}", self.from))
-                .hint("name the lower step with --from"));
+                .hint("type the lower step with --from"));
         }
         if let Some(file) = self.file.as_ref().filter(|_| several) {
             return Err(Failure::usage(format!("{} needs one robot", file.display()))
@@ -190,8 +190,8 @@ fn other_program(source: &Source, differences: usize) -> String {
     let Source { file, put_at, .. } = source;
     let steps = if differences == 1 { "1 step differs".to_owned() } else { format!("{differences} steps differ") };
     format!(
-        "note: the program differs from the text of {}, written on {put_at}: {steps}. The output shows its steps without \
-         labels and comments",
+        "note: the program differs from the text of {}, written on {put_at}: {steps}. The output shows the steps of \
+         the controller, without labels and comments",
         escape::line(file)
     )
 }

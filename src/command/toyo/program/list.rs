@@ -20,9 +20,8 @@ use crate::output::view::{Cell, Table, Tone, View};
 /// List the tasks with the number of steps of their programs.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "--used reads every step of every task, which takes about 35 ms per step at 9600 baud. armctl selects \
-                        each task temporarily. This is a change, which a read-only robot does not \
-                        allow."
+    after_help = "With --used, armctl reads every step of every task, which takes about 35 ms per step at 9600 baud. \
+                  armctl selects each task temporarily. This is a change, which a read-only robot does not allow."
 )]
 pub struct List {
     /// Read the programs to count their steps and list their tags

@@ -61,14 +61,14 @@ pub struct Put {
     expected: Option<Vec<Record>>,
 }
 
-const HELP: &str = "The whole file is checked before anything is sent. The file is the program of the task: later \
-                    steps become NOP, so that no tag of an older program exists twice. With --at \
-                    it is a part of the program, and other steps stay.\n\nThe steps of the file are read, and \
-                    later steps; only different steps are written. If the controller has the program that armctl \
-                    wrote last, the later steps are NOP and are not read, unless the new program has \
-                    other tags or continues after its last step; --read-all reads them. \
-                    This computer stores the text, so that `program get` shows labels and comments again.\n\nNames \
-                    of points, counters and timers (robots.toml) stand for their numbers: PT=pick.";
+const HELP: &str = "armctl checks the whole file before it sends anything. The file is the whole program of the task: \
+                    later steps of the task become NOP, so that no tag of an older program exists twice. With --at, \
+                    the file is only a part of the program, and the other steps stay.\n\narmctl reads the steps of \
+                    the file and the later steps, and writes only different steps. If the controller has the program \
+                    that armctl wrote last, the later steps are NOP. armctl then does not read them, unless the new \
+                    program has other tags or continues after its last step; --read-all reads them. This computer \
+                    stores the text, so that `program get` shows labels and comments again.\n\nNames of points, \
+                    counters and timers (robots.toml) can replace their numbers: PT=pick.";
 
 /// A step to write.
 struct Edit {
@@ -253,7 +253,7 @@ impl Put {
         }
         let clears = self.at.is_none() && !self.keep_rest && usize::from(last) < MOST_STEPS;
         if clears {
-            link.plan(&steps::read_request(last + 1), "and so on to the end of the task");
+            link.plan(&steps::read_request(last + 1), "and so on to the last step of the task");
         }
         steps::plan_open(link).await?;
         for cell in &cells {
@@ -313,11 +313,12 @@ async fn tags_around(
 fn account(failure: Failure, name: &str, first: u16, next: u16, left: usize) -> Failure {
     let rest = if left == 1 { "1 step is".to_owned() } else { format!("{left} steps are") };
     let state = match next - first {
-        0 => format!("no step of {name} is known to be written, {rest} still to be written"),
+        0 => format!("it is not known whether a step of {name} was written; {rest} still to be written"),
         1 => format!("step {first} equals {name}; {rest} still to be written"),
         _ => format!("steps {first} to {} equal {name}; {rest} still to be written", next - 1),
     };
-    let again = format!("use --resume={next} to continue there; without it, all steps are compared again");
+    let again =
+        format!("use --resume={next} to continue at that step; without --resume, armctl compares all steps again");
     let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
     Failure { message: format!("{}; {state}", failure.message.trim_end_matches('.')), ..failure }.hint(hint)
 }

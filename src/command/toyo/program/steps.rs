@@ -37,7 +37,7 @@ pub async fn room(link: &mut Link, task: u8, last: u16) -> Result<u16, Failure> 
     }
     let has = if room == 0 { "no steps".to_owned() } else { format!("{room} steps") };
     Err(Failure::usage(format!("task {task} has {has}, but the command needs step {last}"))
-        .hint("the machine parameter E22 (task-steps) sets the number of steps of each task"))
+        .hint("check the machine parameter E22 (task-steps), which sets the number of steps of each task"))
 }
 
 /// Request for a step.
@@ -101,13 +101,19 @@ pub fn nop() -> Record {
 pub async fn open(link: &mut Link) -> Result<(), Failure> {
     let status = link.status_of(&[0, 2]).await?;
     let busy = |what: &str, hint: &str| {
-        Err(Failure::new(Kind::Rejected, format!("{what}, which prevents the write of steps")).hint(hint))
+        Err(Failure::new(Kind::Rejected, format!("{what}, so armctl cannot write steps")).hint(hint))
     };
     if status.executing() || status.homing() {
-        return busy("the controller executes a program or a command", "wait for the end, or use `toyo stop`");
+        return busy(
+            "the controller executes a program or a command",
+            "wait until the program or command has ended, or use `toyo stop`",
+        );
     }
     if status.paused() {
-        return busy("a program is paused", "continue it with `toyo run sequential`, or reset it with `toyo reset`");
+        return busy(
+            "a program is paused",
+            "continue the program with `toyo run sequential`, or reset it with `toyo reset`",
+        );
     }
     let back = match status.run_mode() {
         Some(RunMode::Automatic) => Command::Maut,

@@ -25,11 +25,12 @@ use crate::settings::duration;
 
 /// Run a program in the simulator in virtual time, and print steps, outputs and positions.
 #[derive(Debug, Args)]
-#[command(after_help = "The controller is new, with known origin, position 0 and servo power on; --state, \
-                  --params and --points change its content. Task 1 runs the program.\n\nThe run ends \
-                  at END or a STOP of task 1 (exit code 0), with an error, when every task waits \
-                  without end, or after --for (8). A faulty file is a usage error (2).\n\n  \
-                  armctl toyo sim run pick.txt --points points.csv --input 'at 2s 0/01/3 on'")]
+#[command(after_help = "The simulated controller is new: the origin is known, the position is 0 and servo power is \
+                        on. --state, --params and --points change its content. Task 1 runs the program.\n\nThe run \
+                        ends at END or a STOP of task 1 (exit code 0). The exit code is 8 after an error, if all \
+                        tasks wait without end, or if the program still runs after --for. A faulty file is a usage \
+                        error (exit code 2).\n\n  armctl toyo sim run pick.txt --points points.csv --input 'at 2s \
+                        0/01/3 on'")]
 pub struct Run {
     /// Program of task 1; - is stdin
     file: PathBuf,
@@ -167,7 +168,7 @@ impl Run {
         simulator.record_trace(true);
         simulator.console(Duration::ZERO, &format!("start {}", self.from)).map_err(|why| {
             Failure::usage(format!("the program cannot be started: {why}"))
-                .hint("check the step of --from, and the state of --state")
+                .hint("check the step of --from, and the file of --state")
         })?;
         Ok(self.watch(&mut simulator, Recorder::new(sources, self.rows)))
     }
@@ -178,12 +179,12 @@ impl Run {
             Some(path) => {
                 let bytes = files::read(path)?;
                 let text = String::from_utf8(bytes).map_err(|_| {
-                    Failure::usage(format!("{}: this is not a text in UTF-8", path.display()))
-                        .hint("`armctl help simulator` shows the form of the file")
+                    Failure::usage(format!("{}: the file is not UTF-8 text", path.display()))
+                        .hint("see `armctl help simulator` for the form of the file")
                 })?;
                 Start::parse(&text).map_err(|error| {
                     Failure::usage(format!("{}: {error}", path.display()))
-                        .hint("`armctl help simulator` shows the form of the file")
+                        .hint("see `armctl help simulator` for the form of the file")
                 })?;
                 text
             }
@@ -195,7 +196,7 @@ impl Run {
         }
         // These writes precede the power-on, so that parameter 2 is active.
         let mut document: toml::Table = state.parse().map_err(|error| {
-            Failure::usage(format!("{error}")).hint("`armctl help simulator` shows the form of the file")
+            Failure::usage(format!("{error}")).hint("see `armctl help simulator` for the form of the file")
         })?;
         if let toml::Value::Array(list) = document.entry("write").or_insert_with(|| toml::Value::Array(Vec::new())) {
             list.extend(written.into_iter().map(toml::Value::String));
@@ -291,7 +292,7 @@ fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failur
 
 /// A row of a file that cannot be used.
 fn in_file(path: &Path, why: &str) -> Failure {
-    Failure::usage(format!("{}: {why}", files::display_path(path))).hint("`dump` writes a valid file")
+    Failure::usage(format!("{}: {why}", files::display_path(path))).hint("use `dump` to write a valid file")
 }
 
 /// Adds a point to a start state.

@@ -257,11 +257,14 @@ impl End {
             }
             Self::Waits => {
                 let what = steps.iter().find_map(TraceStep::awaited_condition).unwrap_or("something");
-                let hint = steps.iter().find_map(TraceStep::help).unwrap_or_else(|| "no other task runs".into());
+                let hint = steps
+                    .iter()
+                    .find_map(TraceStep::help)
+                    .unwrap_or_else(|| "check what the tasks wait for; no other task runs".into());
                 failed(format!("after {after:.3} s, all tasks wait for {what} without end: {places}")).hint(hint)
             }
             Self::TimeUp => {
-                failed(format!("after {after:.3} s, it still runs: {places}")).hint("use --for to run longer")
+                failed(format!("after {after:.3} s, the program still runs: {places}")).hint("use --for to run longer")
             }
         })
     }
@@ -304,7 +307,7 @@ impl TraceStep {
         let (station, port, mask) = (record.number("station")?, record.number("port")?, record.mask("data")?);
         let bit = (0..8).find(|bit| mask.care >> bit & 1 == 1)?;
         let state = if mask.bits >> bit & 1 == 1 { "on" } else { "off" };
-        Some(format!("set it with --input \"at 2s {station}/{port:02}/{} {state}\"", bit + 1))
+        Some(format!("set the input with --input \"at 2s {station}/{port:02}/{} {state}\"", bit + 1))
     }
 }
 
@@ -329,10 +332,10 @@ impl Trace {
     /// The end in one line.
     pub fn summary(&self) -> String {
         let outputs: Vec<String> = self.outputs.iter().map(Port::in_words).collect();
-        let outputs = if outputs.is_empty() { "no output on".to_owned() } else { outputs.join(", ") };
+        let outputs = if outputs.is_empty() { "no output is on".to_owned() } else { outputs.join(", ") };
         let more = match self.rows_left_out {
             0 => String::new(),
-            rows => format!("; {rows} earlier rows were omitted, --rows prints more"),
+            rows => format!("; {rows} earlier rows were omitted, use --rows to print more"),
         };
         let end = match self.end {
             "ended" | "stopped" => format!("{} after {:.3} s: ", self.end, self.elapsed_s),

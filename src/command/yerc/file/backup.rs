@@ -26,7 +26,7 @@ pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<
         let question = Controller::question()?.request();
         link.plan_next(&question)?;
         transfer::plan_all(link, transfer::LISTS, FileType::ALL.iter().map(|kind| files::list(*kind)))?;
-        link.then("downloads every listed file (service 0x16) and acknowledges each block");
+        link.then("armctl downloads every listed file (service 0x16) and acknowledges each block");
         return Ok(BackedUp::new(&task.folder, task.scope, false, Vec::new()));
     }
     interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task))).await

@@ -58,7 +58,7 @@ impl Command for Cmos {
             return self.start(link, screen).await;
         };
         let name = file.file_name().ok_or_else(|| {
-            Failure::usage(format!("{} is not a file name", file.display())).hint("use a file name, as in cmos.bin")
+            Failure::usage(format!("{} is not a file name", file.display())).hint("use a file name such as cmos.bin")
         })?;
         let folder = private_folder(&folder_of(file), &robot.name, several);
         let path = if several { folder.join(name) } else { file.to_owned() };
@@ -66,8 +66,9 @@ impl Command for Cmos {
         if link.is_dry() {
             link.plan_download(&files::batch_backup(), Reason::default())?;
             if !self.download_only {
-                let reason = Reason::about("after the backup has been created");
-                let reason = reason.depending_on("whether the controller creates the backup first or sends it at once");
+                let reason = Reason::about("after the controller has created the backup");
+                let reason =
+                    reason.depending_on("whether the controller creates the backup first, or sends a backup at once");
                 link.plan_download(&files::batch_backup(), reason)?;
             }
             return Err(unknown());
@@ -84,8 +85,8 @@ impl Cmos {
         let _waiting = Waiting::new(screen, CREATE_TIMEOUT);
         // The transfer ends at its first block, so that the controller keeps its existing backup.
         let existed = |_: &[u8]| {
-            Err(Failure::new(Kind::Malformed, "the controller already has a backup and created no new one")
-                .hint("download it with --download-only"))
+            Err(Failure::new(Kind::Malformed, "the controller already has a backup, so it created no new backup")
+                .hint("download the existing backup with --download-only"))
         };
         self.ask(link, existed).await?;
         Ok(created_files(FileItem::pending(NAME)))
@@ -107,8 +108,8 @@ impl Cmos {
             }
         }
         Err(Failure::new(Kind::Malformed, "the controller created a backup instead of sending the existing one").hint(
-            "download it with --download-only; if that also creates a backup, save it on the pendant and report the \
-             problem",
+            "download the backup with --download-only; if that also creates a backup, save the backup on the pendant \
+             and report the problem",
         ))
     }
 
@@ -118,9 +119,9 @@ impl Cmos {
         handle_block: impl FnMut(&[u8]) -> Result<(), Failure>,
     ) -> Result<Option<u64>, Failure> {
         transfer::fetch_backup(link, self.wait, handle_block).await.map_err(|failure| match failure.kind {
-            Kind::OutcomeUnknown => {
-                failure.hint("the controller may still be busy: wait, then use --download-only, or set a longer --wait")
-            }
+            Kind::OutcomeUnknown => failure.hint(
+                "wait, because the controller may still be busy; then use --download-only, or set a longer --wait",
+            ),
             _ => failure,
         })
     }
@@ -160,6 +161,6 @@ fn created_files(mut file: FileItem) -> Files {
         [FileItem { path: Some(path), bytes: Some(bytes), .. }] => {
             View::text(format!("batch backup saved in {path}, {bytes} bytes"))
         }
-        _ => View::text("batch backup created on the controller; --download-only downloads it"),
+        _ => View::text("the controller has created the batch backup; use --download-only to download it"),
     })
 }

@@ -40,7 +40,7 @@ impl Content {
         let content = Self::open_file(path)?;
         if content.len == 0 {
             return Err(Failure::usage(format!("{} is empty", path.display()))
-                .hint("the protocol cannot transfer an empty file"));
+                .hint("check the file: the protocol cannot transfer an empty file"));
         }
         Ok(content)
     }
@@ -95,14 +95,14 @@ impl Content {
         let path = self.path.display();
         if let Some(line) = scan.first_bare.filter(|_| !rules.fix_line_endings) {
             let message =
-                format!("{path}: line {line} ends in a bare LF ({} lines in total); jobs need CR LF", scan.bare);
+                format!("{path}: line {line} ends in LF without CR ({} lines in total); jobs need CR LF", scan.bare);
             return Err(
                 Failure::usage(message).hint(format!("add --fix-line-endings to send CR LF; {path} stays unchanged"))
             );
         }
         if let Some(missing) = scan.missing().filter(|_| !rules.force) {
-            return Err(Failure::usage(format!("{path} does not look like a job: {missing}"))
-                .hint("the controller would refuse it or raise an alarm; --force sends it anyway"));
+            return Err(Failure::usage(format!("{path} is not in the form of a job: {missing}"))
+                .hint("add --force to send the file anyway; the controller would refuse the file or raise an alarm"));
         }
         self.job_name = scan.name;
         self.fixes = scan.bare > 0;

@@ -73,7 +73,9 @@ fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Chan
     for file in files {
         match tell(file) {
             Existence::Yes => items.push(name(file)),
-            Existence::Unlisted => items.push(format!("{} (not known whether it exists)", name(file))),
+            Existence::Unlisted => {
+                items.push(format!("{} (armctl could not check whether the file exists)", name(file)))
+            }
             Existence::No => missing.push(name(file)),
         }
     }

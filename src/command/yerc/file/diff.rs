@@ -137,10 +137,7 @@ impl Difference {
         let Sides { compared, controller_bytes, first_difference_offset, .. } = more;
         match (first_difference_offset, compared.only_line_endings) {
             (None, _) if !compared.ignored.is_empty() => {
-                format!(
-                    "{name} on the controller and {path} are the same, except for the line {DATE_LINE}, which is \
-                     ignored"
-                )
+                format!("{name} on the controller and {path} are the same; the comparison ignores the line {DATE_LINE}")
             }
             (None, _) => format!("{name} on the controller and {path} are the same, {local_bytes} bytes"),
             (Some(_), Some(true)) => format!("{name} on the controller and {path} differ only in line endings"),
@@ -162,7 +159,7 @@ impl Report for Difference {
         if let Some(hunks) = compared.changes() {
             let mut lines = text_diff::unified(&format!("{name} (controller)"), path, hunks);
             if !compared.ignored.is_empty() {
-                lines.push(format!("the line {DATE_LINE} also differs and is ignored").into());
+                lines.push(format!("the line {DATE_LINE} also differs, but the comparison ignores it").into());
             }
             return View::default().append(Section::Lines(lines));
         }
@@ -176,7 +173,7 @@ impl Report for Difference {
                     named.iter().filter(|(n, _)| *n > 0).map(|(n, name)| format!("{n} with {name}")).collect::<Vec<_>>()
                 };
                 View::text(format!(
-                    "only line endings differ: on the controller {} where {path} has {}",
+                    "only line endings differ: the controller has {}, {path} has {}",
                     ends(Change::Removed).join(", "),
                     ends(Change::Added).join(", ")
                 ))

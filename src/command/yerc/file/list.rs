@@ -43,7 +43,7 @@ impl Command for List {
         };
         let requests = filters.iter().map(|(filter, _)| files::list_by(filter));
         let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| {
-            Failure::usage(error.to_string()).hint("a filter looks like *.JBI; remove --filter to list jobs")
+            Failure::usage(error.to_string()).hint("type a filter such as *.JBI, or remove --filter to list jobs")
         })?;
         if link.is_dry() {
             transfer::plan_all(link, transfer::LISTS, requests)?;

@@ -95,11 +95,12 @@ pub fn parse_name(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
     let bytes = if let Some(digits) = text.strip_prefix("hex:") {
         unhex(digits).ok_or_else(|| {
             Failure::usage(format!("'{text}' has an incomplete hexadecimal byte"))
-                .hint("use hex: with the name_hex of `yerc file list --json`, as in hex:5445535430312e4a4249")
+                .hint("type hex: and the name_hex from `yerc file list --json`, such as hex:5445535430312e4a4249")
         })?
     } else {
         encoding.encode_name(text).map_err(|error| {
-            Failure::usage(format!("'{text}': {error}")).hint("--encoding or the robot's entry sets the encoding")
+            Failure::usage(format!("'{text}': {error}"))
+                .hint("set the encoding with --encoding or in the robot's entry in robots.toml")
         })?
     };
     exact(bytes)
@@ -119,7 +120,7 @@ pub fn parse_names(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>
     for text in texts {
         let file = parse_name(encoding, text)?;
         if files.contains(&file) {
-            return Err(Failure::usage(format!("{text} is named twice")).hint("list every file once"));
+            return Err(Failure::usage(format!("{text} appears twice")).hint("type every file once"));
         }
         files.push(file);
     }
@@ -133,7 +134,8 @@ pub fn exact(bytes: Vec<u8>) -> Result<FileName, Failure> {
             .hint("use full file names (see `yerc file list`); only `yerc file get` accepts patterns"));
     }
     FileName::new(bytes).map_err(|error| {
-        Failure::usage(error.to_string()).hint("use a job name such as TESTJOB.JBI; `yerc file list` shows the files")
+        Failure::usage(error.to_string())
+            .hint("use a job name such as TESTJOB.JBI; use `yerc file list` to see the files")
     })
 }
 

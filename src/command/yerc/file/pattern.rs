@@ -41,13 +41,13 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePa
     };
     if let Some(pattern) = patterns.iter().find(|pattern| types(pattern).is_empty()) {
         return Err(Failure::usage(format!("no controller file can match '{pattern}'"))
-            .hint("file names end in JBI, DAT, CND, PRM, SYS or LST"));
+            .hint("use a file name that ends in JBI, DAT, CND, PRM, SYS or LST"));
     }
     if link.is_dry() {
         transfer::plan_all(link, transfer::LISTS, kinds.into_iter().map(files::list))?;
         transfer::plan_all(link, "downloads the file", files.iter().map(FileName::save))?;
         if !patterns.is_empty() {
-            link.then("downloads every listed file that matches a pattern and acknowledges each block");
+            link.then("armctl downloads every listed file that matches a pattern, and acknowledges each block");
         }
         return Ok(None);
     }
@@ -86,7 +86,7 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePa
         // After a refused list, the matching files are unknown.
         if !fitted && !types(pattern).iter().any(|kind| refused.iter().any(|list| list.name.name == kind.filter())) {
             let no_match = Failure::new(Kind::Refused, "no file on the controller matches")
-                .hint("`yerc file list --type all` shows the names; names are case-sensitive");
+                .hint("use `yerc file list --type all` to see the names; names are case-sensitive");
             found.push(FilePattern { name: Shown { name: pattern.clone(), name_hex: None }, file: Err(no_match) });
         }
     }

@@ -68,8 +68,8 @@ impl Command for Put {
             let mut result = Shown::new(link.encoding, file.as_bytes()).pending().with_path(content.path());
             if let Some((own, sent)) = delivery.name_in_job(link.encoding) {
                 screen.note(&format!(
-                    "warning: {} has //NAME {own} but is sent as {sent}: a controller may refuse it, or store it as \
-                     {own}",
+                    "warning: {} has //NAME {own}, but armctl sends it as {sent}: a controller may refuse the job, or \
+                     store it as {own}",
                     content.path().display()
                 ));
                 result.more.notes.push("name_differs".to_owned());
@@ -117,7 +117,7 @@ impl Put {
                     "{}: another file has the same name on the controller",
                     path.display()
                 ))
-                .hint("send one of them separately with another name (--as)"));
+                .hint("send one of the files separately with another name (--as)"));
             }
             let mut content = Content::open(path)?;
             if file.file_type() == Some(FileType::Jbi) {

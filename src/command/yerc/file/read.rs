@@ -33,7 +33,7 @@ pub async fn read_files(
     let files = files.collect::<Result<Vec<FileName>, Failure>>()?;
     let looking = screen.spinner("looking for files");
     let Some(lists) = Lists::ask(link, &files).await? else {
-        transfer::plan_all(link, "if the controller has it", files.iter().map(FileName::save))?;
+        transfer::plan_all(link, "if the controller has the file", files.iter().map(FileName::save))?;
         return Ok(None);
     };
     drop(looking);
@@ -49,8 +49,10 @@ pub async fn read_files(
             progress.advance(block.len() as u64);
             bytes.extend_from_slice(block);
             if bytes.len() as u64 > most {
-                return Err(Failure::new(Kind::Malformed, format!("{name} has more than {most} bytes"))
-                    .hint("no known controller has such a large file; record it with --trace and report it"));
+                return Err(Failure::new(Kind::Malformed, format!("{name} has more than {most} bytes")).hint(
+                    "record the transfer with --trace and report the problem; no known controller has such a large \
+                     file",
+                ));
             }
             Ok(())
         });

@@ -67,9 +67,9 @@ impl Restore {
         let manifest: Manifest = manifest::open_existing(&folder)?;
         let (taken_of, model) = (manifest.controller.description_of(), link.model().await?);
         if taken_of != model.name() && !link.is_dry() && !self.force {
-            let message = format!("the backup is of a {taken_of}, {} is a {model}", robot.label());
+            let message = format!("the backup is from a {taken_of}, but {} is a {model}", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
-                .hint("check the model (?model=…); --force sends the files anyway"));
+                .hint("check the model (?model=…), or add --force to send the files anyway"));
         }
         let chosen = self.select_entries(&manifest)?;
         let (mut deliveries, mut results) = (Vec::with_capacity(chosen.len()), Vec::with_capacity(chosen.len()));
@@ -130,7 +130,9 @@ impl Restore {
             link.plan_item(match (is_sent, is_usual) {
                 (true, _) => would_write(&entry.name, ("bytes", copy.bytes), enabled),
                 (false, true) => would_leave(&entry.name, NOT_CHOSEN),
-                (false, false) => would_leave(&entry.name, "parameters or system data; written only with --machine"),
+                (false, false) => {
+                    would_leave(&entry.name, "parameters or system data, which armctl writes only with --machine")
+                }
             });
         }
     }
@@ -147,8 +149,8 @@ impl Restore {
             }
         }
         if chosen.is_empty() {
-            let message = "the backup has only lists, parameters or system data, which change the controller";
-            return Err(Failure::usage(message).hint("add --machine to send them"));
+            let message = "the backup contains only lists, parameters or system data, which change the controller";
+            return Err(Failure::usage(message).hint("add --machine to send these files"));
         }
         let place = |file: &FileName| ORDER.iter().position(|kind| Some(*kind) == file.file_type());
         chosen.sort_by_key(|(file, _)| place(file));
@@ -185,10 +187,11 @@ async fn compare(
 async fn plan(link: &mut Link, deliveries: &mut [Delivery], authority: &Authority<'_>) -> Result<(), Failure> {
     authority.confirm(&Change::none()).await?;
     for Delivery { file, .. } in &*deliveries {
-        let reason = Reason::about("if the file is listed: compares").depending_on("whether the file is listed");
+        let reason =
+            Reason::about("content of the file, for the comparison").depending_on("whether the file is listed");
         link.plan_download(&file.save(), reason)?;
     }
-    let reason = Reason::about("if it differs").depending_on("whether the file differs");
+    let reason = Reason::about("if the file differs").depending_on("whether the file differs");
     for delivery in deliveries {
         upload::plan(link, delivery, OPTIONS, reason)?;
     }

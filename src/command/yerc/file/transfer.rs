@@ -52,7 +52,8 @@ pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>,
         end => {
             name_taken(service::LIST, &end)?;
             let names = split_list(&data).map_err(|error| {
-                Failure::new(Kind::Malformed, error.to_string()).hint("record it with --trace and report it")
+                Failure::new(Kind::Malformed, error.to_string())
+                    .hint("record the transfer with --trace and report the problem")
             })?;
             Ok(names.into_iter().map(<[u8]>::to_vec).collect())
         }
@@ -150,7 +151,7 @@ pub async fn fetch_backup(
 /// Deletes a file.
 pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     let reply = link.raw(&file.delete()).await.map_err(|failure| match failure.kind {
-        Kind::OutcomeUnknown => failure.hint("`yerc file list` shows whether the file still exists"),
+        Kind::OutcomeUnknown => failure.hint("use `yerc file list` to see whether the file still exists"),
         _ => failure,
     })?;
     match reply.status {
@@ -219,7 +220,7 @@ pub fn is_job_exists(failure: &Failure) -> bool {
 /// Failure for a file that the controller does not list.
 pub fn not_listed() -> Failure {
     Failure::new(Kind::Refused, "the file does not exist on the controller")
-        .hint("`yerc file list` shows the names; names are case-sensitive")
+        .hint("use `yerc file list` to see the names; names are case-sensitive")
 }
 
 /// Received size, or the failure of the transfer.
@@ -229,22 +230,26 @@ pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
         DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => {
             Err(Refusal::of_file(service, status).into())
         }
-        DownloadEnd::Refused { status, bytes } => {
-            Err(describe_request(&format!("aborted after {bytes} bytes"), Refusal::of_file(service, status).into()))
+        DownloadEnd::Refused { status, bytes } => Err(describe_request(
+            &format!("the transfer ended after {bytes} bytes"),
+            Refusal::of_file(service, status).into(),
+        )),
+        DownloadEnd::Finished => {
+            Err(Failure::new(Kind::Malformed, "the controller reported success, but it sent no data")
+                .hint("use `yerc file list` to see whether the file exists; the file may be empty"))
         }
-        DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller reported success but sent nothing")
-            .hint("`yerc file list` shows whether the file exists; it may be empty")),
         DownloadEnd::Violated { violation, bytes } => {
             Err(Failure::new(Kind::Malformed, format!("the transfer failed after {bytes} bytes: {violation}"))
-                .hint("no data was saved; repeat the command, and record it with --trace if the problem persists"))
+                .hint("repeat the command, and record it with --trace if the problem persists; no data was saved"))
         }
         DownloadEnd::TooLarge { limit, .. } => {
-            Err(Failure::new(Kind::Malformed, format!("the controller sends more than {limit} bytes"))
-                .hint("no known controller has such large files; record it with --trace and report it"))
+            Err(Failure::new(Kind::Malformed, format!("the controller sends more than {limit} bytes")).hint(
+                "record the transfer with --trace and report the problem; no known controller has such large files",
+            ))
         }
         DownloadEnd::NoAnswer { bytes, counters } => {
             Err(Failure::new(Kind::NoAnswer, format!("no answer after {bytes} bytes ({counters})"))
-                .hint("repeat the command (no data was saved), or set a longer --timeout"))
+                .hint("repeat the command, or set a longer --timeout; no data was saved"))
         }
     }
 }
@@ -252,20 +257,25 @@ pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
 fn name_sent(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Failure> {
     let unknown = |message: String| {
         Err(Failure::new(Kind::OutcomeUnknown, message)
-            .hint(format!("`yerc file diff {name} {path}` shows what the controller has now")))
+            .hint(format!("use `yerc file diff {name} {path}` to see what the controller has now")))
     };
     match *end {
         UploadEnd::Complete { bytes, .. } => Ok(bytes),
         UploadEnd::Unnumbered { .. } => unknown(format!(
-            "all data was sent, but the last acknowledgement has no block number and {name} is not listed"
+            "all data was sent, but the last acknowledgement has no block number, and the controller does not list \
+             {name}"
         )),
-        UploadEnd::Empty => Err(Failure::usage("an empty file cannot be sent").hint("check that it is the right file")),
+        UploadEnd::Empty => {
+            Err(Failure::usage("an empty file cannot be sent").hint("check whether this is the right file"))
+        }
         UploadEnd::TooLong { .. } => {
-            Err(Failure::usage("the file is too long for a transfer").hint("check that it is the right file"))
+            Err(Failure::usage("the file is too long for a transfer").hint("check whether this is the right file"))
         }
         UploadEnd::Refused { status, sent, repeated: true, .. } if sent >= total => {
             let Failure { message, .. } = Refusal::of_file(service::LOAD, status).into();
-            unknown(format!("the last block was sent again and then refused: {message} The file may exist"))
+            unknown(format!(
+                "armctl sent the last block again, and the controller refused the block: {message} The file may exist"
+            ))
         }
         // Refused at the start, or the whole file at the end.
         UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => {
@@ -278,8 +288,8 @@ fn name_sent(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64,
         UploadEnd::OutcomeUnknown { sent: 0, counters, .. } => {
             let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
             unknown(format!(
-                "the request was sent once without an answer{seen}: no data was sent, but the controller may wait for \
-                 it"
+                "the request was sent once, with no answer{seen}: armctl sent no data, but the controller may wait \
+                 for data"
             ))
         }
         UploadEnd::OutcomeUnknown { sent, .. } if sent >= total => {

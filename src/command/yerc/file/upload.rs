@@ -51,7 +51,7 @@ pub async fn confirm_uploads<'a>(
     for Delivery { file, content } in deliveries {
         let unlisted_count = match lists.map_or(Existence::No, |lists| lists.existence(file)) {
             Existence::Yes => "",
-            Existence::Unlisted => " (not known whether it exists)",
+            Existence::Unlisted => " (armctl could not check whether the file exists)",
             Existence::No => continue,
         };
         let (name, path) = (encoding.decode(file.as_bytes()), content.path().display());
@@ -80,12 +80,20 @@ pub fn plan(
     transfer::plan_send(link, file, content, reason)?;
     if manner.replace && file.file_type() == Some(FileType::Jbi) {
         let if_refused = |about| Reason::about(about).depending_on("whether the controller overwrites the job");
-        link.plan_download(&file.save(), if_refused("if it does not overwrite the job: copies the old job"))?;
-        link.plan_if(&file.delete(), if_refused("if it does not overwrite the job: deletes the old job"));
-        transfer::plan_send(link, file, content, if_refused("if it does not overwrite the job: sends the new job"))?;
+        link.plan_download(
+            &file.save(),
+            if_refused("if the controller does not overwrite the job: copy of the old job"),
+        )?;
+        link.plan_if(&file.delete(), if_refused("if the controller does not overwrite the job: deletes the old job"));
+        transfer::plan_send(
+            link,
+            file,
+            content,
+            if_refused("if the controller does not overwrite the job: sends the new job"),
+        )?;
     }
     if manner.verify {
-        link.plan_download(&file.save(), Reason { about: Some("reads it back"), ..reason })?;
+        link.plan_download(&file.save(), Reason { about: Some("content of the file after the write"), ..reason })?;
     }
     Ok(())
 }
@@ -102,8 +110,8 @@ pub async fn upload(
         Err(failure) if transfer::is_job_exists(&failure) => {
             if !manner.replace {
                 return Err(failure.hint(
-                    "add --replace to delete that job and send this one; if that fails, the old job is restored. `yerc \
-                     file diff` shows the differences",
+                    "add --replace to delete the old job and send the new job; if the transfer fails, armctl restores \
+                     the old job. `yerc file diff` shows the differences",
                 ));
             }
             let sent = replace(link, screen, delivery).await?;
@@ -136,7 +144,9 @@ impl Delivery {
 /// Adds a hint if the name in the job differs from its file name, a likely cause of a refusal.
 fn check_job_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure {
     match delivery.name_in_job(link.encoding) {
-        Some((own, stem)) => failure.hint(format!("the job has //NAME {own} but is sent as {stem}: use the same name")),
+        Some((own, stem)) => {
+            failure.hint(format!("use the same name: the job has //NAME {own}, but armctl sends it as {stem}"))
+        }
         None => failure,
     }
 }
@@ -158,19 +168,22 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
         comparer.take(block)
     })
     .await
-    .map_err(|failure| Failure { message: format!("sent, but not read back: {}", failure.message), ..failure })?;
+    .map_err(|failure| Failure {
+        message: format!("the file was sent, but could not be read back: {}", failure.message),
+        ..failure
+    })?;
     match comparer.finish()?.0 {
         Comparison { first_difference: None, .. } => Ok(()),
         Comparison { controller_bytes, local_bytes, first_difference: Some(at), .. } => Err(Failure::new(
             Kind::Malformed,
             format!(
-                "the controller returned other bytes than were sent: {controller_bytes} bytes instead of \
+                "the controller returned other bytes than armctl sent: {controller_bytes} bytes instead of \
                  {local_bytes}, first difference at byte {at}"
             ),
         )
         .hint(format!(
-            "`yerc file diff {name} {path} --exact` shows the differences; --ignore-header ignores the line ///DATE, \
-             which a controller may rewrite"
+            "use `yerc file diff {name} {path} --exact` to see the differences; add --ignore-header to ignore the \
+             line ///DATE, which a controller may rewrite"
         ))),
     }
 }
@@ -256,7 +269,7 @@ impl Drop for OldCopy {
                 self.screen.note(&format!("the old job is saved in {}", self.path.display()));
             }
         } else if let Err(error) = fs::remove_file(&self.path) {
-            self.screen.note(&format!("{} is left: {error}", self.path.display()));
+            self.screen.note(&format!("{} could not be deleted: {error}", self.path.display()));
         }
     }
 }

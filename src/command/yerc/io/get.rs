@@ -20,9 +20,9 @@ use crate::failure::Failure;
 /// Reads signals.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight signals of \
-                  group 2001. Numbers that end in 8 or 9 do not exist; a range skips them. For names, see `armctl \
-                  names list`."
+    after_help = "The signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight signals \
+                  of group 2001. Numbers that end in 8 or 9 do not exist; a range skips them. `armctl names list` \
+                  shows the names of signals."
 )]
 pub struct Get {
     /// Signals, such as 20010, #20010 or 20010..20027, or a name

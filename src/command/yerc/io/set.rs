@@ -27,10 +27,10 @@ use crate::failure::Failure;
 /// Switches network inputs.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Only network inputs can be written from a PC: #27010 to #29567 on a DX200, #25010 to #26287 on an \
-                  FS100. The protocol writes eight signals at a time: armctl reads the group, changes the named \
-                  signals, and writes the others back unchanged. A change of these others in the meantime is lost. \
-                  --group writes all eight signals without a read."
+    after_help = "A PC can write only network inputs: #27010 to #29567 on a DX200, #25010 to #26287 on an FS100. The \
+                  protocol writes eight signals at a time. armctl reads the group, changes the signals that you type, \
+                  and writes the other signals back unchanged. If another signal of the group changes between the \
+                  read and the write, that change is lost. --group writes all eight signals without a read."
 )]
 pub struct Set {
     /// 27010=on, #27011=off, or clamp=on for a name
@@ -148,7 +148,7 @@ impl Set {
             if known.mask & change.mask != 0 {
                 let bit = u8::try_from((known.mask & change.mask).trailing_zeros()).unwrap_or_default();
                 return Err(Failure::usage(format!("{} appears twice", signal::name(group, bit)))
-                    .hint("give each signal one state"));
+                    .hint("type one state for each signal"));
             }
             *known = Change { mask: known.mask | change.mask, value: known.value | change.value };
         }
@@ -172,7 +172,7 @@ fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, 
             link.plan(&one, &format!("writes group {groups}"));
         } else {
             let about = format!("writes group {groups}; the other signals keep the values that were read");
-            link.plan_depending(&one, &other, Reason::about(&about).depending_on("the values that were read"));
+            link.plan_depending(&one, &other, Reason::about(&about).depending_on("the signals that were read"));
         }
     }
     Ok(unknown())

@@ -63,8 +63,12 @@ pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
         return Ok(span);
     }
     let (first, meaning) = (name(group, 0), span.meaning);
-    Err(Failure::usage(format!("group {group} ({first}) is {meaning}, which can only be read on a {model}"))
-        .hint(format!("a PC can write {}; transfer them with the ladder program", listed(model, |span| span.writable))))
+    Err(Failure::usage(format!("group {group} ({first}) is {meaning}, which a PC can only read on a {model}")).hint(
+        format!(
+            "use signals that a PC can write ({}), and transfer them with the ladder program",
+            listed(model, |span| span.writable)
+        ),
+    ))
 }
 
 /// All groups of a model.

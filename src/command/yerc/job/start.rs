@@ -32,9 +32,9 @@ use crate::settings::duration;
 #[derive(Debug, Args)]
 #[command(
     after_help = "You confirm the job name once; then armctl selects and starts the job. --wait and --repeat read the \
-                  status until the job reaches END or is stopped. --repeat starts the job again only after a reported \
-                  end, with the same job at the same line. Any other event ends the command. After a lost answer, \
-                  armctl never starts the job."
+                  status until the job reaches END or is stopped. --repeat starts the same job again at the same \
+                  line, but only after the controller reported the end. Any other event ends the command. After a \
+                  lost answer, armctl does not start the job again."
 )]
 pub struct Start {
     /// Job name, without .JBI; default: the selected job
@@ -149,7 +149,7 @@ impl Start {
         plan_alarm(link)?;
         if let Some(count) = self.repeat.repeat {
             link.then(&format!(
-                "after each reported end the job is checked and started again, {count} starts in total"
+                "after each reported end, armctl checks the job and starts it again, {count} starts in total"
             ));
         }
         Ok(unknown())
@@ -162,9 +162,9 @@ async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
         return Ok(());
     };
     let why = if status.has(StatusBit::Continuous) {
-        "the cycle is continuous: the job does not end"
+        "the cycle mode is continuous, so the job does not end"
     } else if status.has(StatusBit::Step) {
-        "the cycle is step: each start runs a line"
+        "the cycle mode is step, so each start runs one line"
     } else {
         return Ok(());
     };
@@ -184,7 +184,7 @@ fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &Selected
     }
     match (before.speed_override(), now.speed_override()) {
         (Some(before), Some(now)) if before != now => {
-            Err(data_changed("the speed override has changed since the question; no job was started"))
+            Err(data_changed("the speed override changed after the confirmation; no job was started"))
         }
         _ => Ok(()),
     }
@@ -217,7 +217,7 @@ async fn wait(
             Look::Timeout(limit) => {
                 let message = format!("the job is still running after {}", duration::display(limit));
                 return Err(Failure::new(Kind::ConditionNotMet, message)
-                    .hint("it continues; see `yerc status` and `yerc job show` for the progress"));
+                    .hint("see `yerc status` and `yerc job show` for the progress; the job continues"));
             }
         }
         if let Some(line) = line(link, screen.can_redraw()).await? {
@@ -253,11 +253,12 @@ async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure>
 
 fn never_started() -> Failure {
     let message = format!(
-        "the start was accepted, but no running job was reported within {}: it may have ended at once or not started",
+        "the start was accepted, but the controller reported no running job within {}: the job ended at once, or did \
+         not start",
         duration::display(START_TIMEOUT)
     );
     Failure::new(Kind::ConditionNotMet, message)
-        .hint("`yerc job show` shows the line, `yerc status` shows what holds the robot")
+        .hint("use `yerc job show` to see the line, and `yerc status` to see what holds the robot")
 }
 
 /// Watcher of a job from its start to its end.

@@ -40,7 +40,7 @@ impl Mover {
 
 fn mover(text: &str) -> Result<Group, String> {
     match text.parse()? {
-        group @ Group::Base(_) => Err(format!("{group} moves with its robot: select the robot and give --base-axes")),
+        group @ Group::Base(_) => Err(format!("{group} moves with its robot: select the robot and use --base-axes")),
         group => Ok(group),
     }
 }
@@ -378,7 +378,7 @@ impl Speed {
         let word = unit.parse(number.trim_end()).map_err(|error| error.to_string())?;
         match u32::try_from(word) {
             Ok(word @ 1..) => Ok(Self { class, word }),
-            _ => Err(format!("'{text}' is not a valid speed: it must be more than 0")),
+            _ => Err(format!("'{text}' is not a valid speed: a speed must be more than 0")),
         }
     }
 }
@@ -471,7 +471,10 @@ pub(super) fn split<'a, T>(
     station: Option<&'a Values>,
 ) -> Result<Part<'a, T>, Failure> {
     let wrong = |message: String| {
-        Err(Failure::usage(message).hint("a robot and a station cannot move in one command (FS and DX 3.3.39)"))
+        Err(Failure::usage(message).hint(
+            "use one command for the robot and one command for the station: they cannot move in one command (FS and \
+             DX 3.3.39)",
+        ))
     };
     match (group, robot, station) {
         (Group::Station(_), Some(_), _) => wrong(format!("{group} is a station: use --station-axes, not {flag}")),

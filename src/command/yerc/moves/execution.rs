@@ -197,9 +197,9 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
                 Progress::Ended if is_at_target == Some(false) => {
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
-                        format!("{outcome}, but it ended before its target; position: {place}"),
+                        format!("{outcome}, but the motion ended before its target; position: {place}"),
                     )
-                    .hint("it was stopped without an alarm: check the pendant before you continue"));
+                    .hint("check the pendant before you continue; the motion was stopped without an alarm"));
                 }
                 Progress::Ended => {
                     let motion = &mut moved.motion;
@@ -215,9 +215,12 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
                     let within = duration::display(START_TIMEOUT);
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
-                        format!("{outcome}, but it has not started within {within}; position: {place}"),
+                        format!("{outcome}, but the motion has not started within {within}; position: {place}"),
                     )
-                    .hint("it may still start: keep clear, and check `yerc status` and the pendant"));
+                    .hint(
+                        "keep clear of the robot, because the motion may still start; check `yerc status` and the \
+                         pendant",
+                    ));
                 }
             }
             tokio::time::sleep(POLL_INTERVAL).await;
@@ -266,7 +269,7 @@ async fn refuse_implicit_zeros(link: &mut Link, group: Group, named: usize, flag
     }
     let question = link.by_model(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
     let Some(answer) =
-        link.for_purpose("current position of the unnamed axes").ask_optional(&question).await.known()?
+        link.for_purpose("current position of the axes without a target").ask_optional(&question).await.known()?
     else {
         link.plan_existing_axes(group, Coordinates::Pulse);
         return Ok(());
@@ -283,8 +286,8 @@ async fn refuse_implicit_zeros(link: &mut Link, group: Group, named: usize, flag
             let failure = Failure::from(refusal);
             let message = format!("the axes of {group} that are not in {flag} could not be read: {}", failure.message);
             Err(Failure { message, ..failure }.hint(format!(
-                "nothing was sent, because they might move to 0; repeat the command, or give {} axes with {flag}, 0 \
-                 for axes that are not fitted",
+                "repeat the command, or type {} axes with {flag}, with 0 for axes that are not fitted; nothing was \
+                 sent, because axes without a target could move to 0",
                 words(group)
             )))
         }
@@ -303,7 +306,7 @@ const fn words(group: Group) -> usize {
 fn implicit_zero(group: Group, position: &Position, named: usize, flag: &str) -> Option<Failure> {
     let (axis, value) = position.axes.as_slice().iter().enumerate().skip(named).find(|(_, value)| **value != 0)?;
     let message = format!("axis {} of {group} is at {value} pulses and has no target, so it would move to 0", axis + 1);
-    Some(Failure::usage(message).hint(format!("nothing was sent; give every axis of {group} with {flag}")))
+    Some(Failure::usage(message).hint(format!("type every axis of {group} with {flag}; nothing was sent")))
 }
 
 /// Watcher of a motion from its acceptance to its end.

@@ -127,5 +127,5 @@ fn describe_distance(start: &Position, target: &[i32], axis: usize) -> f64 {
 /// Failure: the robot has moved since the question.
 pub(in crate::command::yerc) fn moved_during_question(group: Group, now: &Position) -> Failure {
     let place = in_a_line(now.kind, now.axes.as_slice(), matches!(group, Group::Robot(_)));
-    data_changed(format!("{group} has moved since the question, to {place}; nothing was sent"))
+    data_changed(format!("{group} moved after the confirmation, to {place}; nothing was sent"))
 }

@@ -130,12 +130,20 @@ impl Motion<'_> {
             Value::External(external) if external.kind == PositionKind::Pulse => {
                 let [first @ .., seventh, eighth] = external.axes.padded();
                 if (seventh, eighth) != (0, 0) {
-                    return Err(unsuitable_target(name, "it has more axes than a move of a station supports"));
+                    return Err(unsuitable_target(
+                        name,
+                        "the position has more axes than a move of a station supports",
+                    ));
                 }
                 order.station_axes = first;
                 (external.axes, Vec::new())
             }
-            _ => return Err(unsuitable_target(name, "its type is neither pulses nor coordinates of the manual")),
+            _ => {
+                return Err(unsuitable_target(
+                    name,
+                    "the type of the position is neither pulses nor coordinates of the manual",
+                ));
+            }
         };
         let order = link.by_model(|model| MovePulse::new(model, self.kind, order)).await?;
         let goal = Goal::Pulses(axes.as_slice().to_vec());
@@ -151,8 +159,11 @@ impl Motion<'_> {
         let group = self.target.mover.group;
         let [x, y, z, rx, ry, rz, re, eighth] = position.axes.padded();
         if (re, eighth) != (0, 0) {
-            return Err(unsuitable_target(name, "a move to coordinates does not support its seventh axis")
-                .hint("teach it in pulses, which support all axes"));
+            return Err(unsuitable_target(
+                name,
+                "a move to coordinates does not support the seventh axis of the position",
+            )
+            .hint("teach the position in pulses, which support all axes"));
         }
         let target = [x, y, z, rx, ry, rz];
         let mut order = cartesian_move(link, &self.target.mover, self.speed, &self.target.frame);
@@ -163,8 +174,8 @@ impl Motion<'_> {
         let model = link.model_for(|model| MoveCartesian::new(model, self.kind, order)).await?;
         let order = MoveCartesian::new(model, self.kind, order).map_err(|error| {
             let why = error.to_string();
-            unsuitable_target(name, &format!("a move does not support it: {why}"))
-                .hint("teach it in pulses, which support all axes")
+            unsuitable_target(name, &format!("a move does not support the position: {why}"))
+                .hint("teach the position in pulses, which support all axes")
         })?;
         let goal = match position.kind {
             PositionKind::Base => Goal::Base(target, position.tool),
@@ -214,7 +225,7 @@ impl Motion<'_> {
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         if let Group::Robot(number) = group {
             let base = ReadPosition::new(model, Group::Base(number), Coordinates::Pulse).map_err(usage)?;
-            link.plan(&base.request(), "current position of the unnamed axes");
+            link.plan(&base.request(), "current position of the axes without a target");
         }
         let reason = Reason::about("current position").depending_on("whether the variable contains pulses");
         let pulse = ReadPosition::new(model, group, Coordinates::Pulse).map_err(usage)?;
@@ -267,7 +278,7 @@ async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
         Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => {
             let message = format!("{variable} was never taught; no motion command was sent");
             Err(Failure { message, ..Failure::from(refusal) }
-                .hint(format!("`yerc teach {variable}` stores the current position")))
+                .hint(format!("use `yerc teach {variable}` to store the current position")))
         }
         Err(refusal) => Err(refusal.into()),
     }

@@ -136,7 +136,7 @@ const UNITS: [Unit; 3] = [units::PULSE, units::MILLIMETRE, units::DEGREE];
 /// # Errors
 /// Which column is missing or wrong.
 pub fn from_fields(kind: VariableKind, fields: &BTreeMap<String, String>) -> Result<Value, String> {
-    let name = fields.get(TYPE).ok_or("type is missing; give type and all axes")?;
+    let name = fields.get(TYPE).ok_or("type is missing; fill in type and all axes")?;
     let (mut parts, mut given) = (Vec::new(), Vec::new());
     for (column, text) in fields.iter().filter(|(column, _)| *column != TYPE) {
         match column.as_str() {
@@ -144,7 +144,8 @@ pub fn from_fields(kind: VariableKind, fields: &BTreeMap<String, String>) -> Res
             "form_code" if kind == VariableKind::P => parts.extend(flags("form", column, text)?),
             "extended_form_code" if kind == VariableKind::P => parts.extend(flags("ext", column, text)?),
             _ => {
-                let axis = axis_of(column).ok_or_else(|| format!("{column} is not of a position of this kind"))?;
+                let axis =
+                    axis_of(column).ok_or_else(|| format!("{column} is not a column of a position of this kind"))?;
                 parts.push(format!("{axis}={text}"));
                 given.push(column);
             }

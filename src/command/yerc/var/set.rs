@@ -24,13 +24,14 @@ use crate::gate::Confirmation;
 /// Writes variables.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "All values are checked before the first is sent; consecutive numbers are sent in one request. What a \
-                  variable holds already is not written. A position is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or \
+    after_help = "armctl checks all values before it sends the first value. It sends consecutive numbers in one \
+                  request, and does not write equal values. A position is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or \
                   base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with tool=, user=, form=back+lower+noflip. @FILE \
-                  reads the output of `var get P1 --json` or `position --json` (its pulses, if it has both; @- is \
-                  stdin). P1=here is the same as `teach P1`. BP accepts base: or pulse:, EX pulse:1=…. P1.tool=2, \
-                  P1.user=1 and BP5.axis1=-1 change only that word (a P is read, changed and written back \
-                  completely). Axis words are in protocol steps (pulses, or 0.001 mm and 0.0001 degree)."
+                  reads the output of `var get P1 --json` or `position --json` (the pulses, if the output has pulses \
+                  and coordinates; @- is stdin). P1=here is the same as `teach P1`. BP accepts base: or pulse:, EX \
+                  accepts pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change only that word: armctl reads the P, \
+                  changes the word and writes the whole P back. Axis words are in protocol steps (pulses, or 0.001 mm \
+                  and 0.0001 degree)."
 )]
 pub struct Set {
     /// B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
@@ -138,8 +139,10 @@ fn word(reference: Reference, field: &str, value: &str) -> Result<Word, String> 
             })?;
             Ok(Word::Axis(axis - 1, steps))
         }
-        _ if is_robot => Err(format!("'{field}' is not a valid part to write; there are tool, user, axis1 to axis8")),
-        _ => Err(format!("'{field}' is not a valid part to write; there are axis1 to axis8")),
+        _ if is_robot => {
+            Err(format!("'{field}' is not a valid part to write; the parts are tool, user, axis1 to axis8"))
+        }
+        _ => Err(format!("'{field}' is not a valid part to write; the parts are axis1 to axis8")),
     }
 }
 
@@ -175,7 +178,7 @@ impl Set {
     /// The new content of each variable. Words of a position that is written completely are merged into it.
     fn rows(&self, table: &Variables) -> Result<Vec<Row<Variables>>, Failure> {
         let mut rows: Vec<Row<Variables>> = Vec::new();
-        let repeated = |key| Failure::usage(format!("{key} appears twice")).hint("give each variable one value");
+        let repeated = |key| Failure::usage(format!("{key} appears twice")).hint("type one value for each variable");
         for Assignment { reference, input } in &self.assignments {
             let row = rows.iter_mut().find(|(key, _)| key == reference).map(|(_, draft)| draft);
             match (input, row) {
@@ -206,11 +209,14 @@ fn value_of(table: &Variables, reference: Reference, input: &Input) -> Result<Va
     match input {
         Input::Ready(value) => Ok(value.clone()),
         Input::Text(text) => table.parse(reference, text).map_err(|error| {
-            wrong(error).hint("full-width characters take two bytes each; --encoding sets the encoding of the robot")
+            wrong(error).hint(
+                "check the length: full-width characters take two bytes each; use --encoding to set the encoding of \
+                 the robot",
+            )
         }),
         Input::File(path) => table.parse(reference, &parse_printed_position(path)?).map_err(|error| {
             Failure::usage(format!("{}: {error}", path.display()))
-                .hint(format!("it must be a position of {}", reference.kind.letters()))
+                .hint(format!("use a file with a position of {}", reference.kind.letters()))
         }),
         Input::Word(_) => Err(wrong("a part is not a value".to_owned())),
     }

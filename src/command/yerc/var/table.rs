@@ -133,12 +133,12 @@ impl Variables {
             }
         };
         let Some([one, other]) = both else {
-            return Err(Failure::usage(format!("{key}: {about} are not of one type of position"))
-                .hint("give the type in column type, and its axes"));
+            return Err(Failure::usage(format!("{key}: the values {about} do not belong to one type of position"))
+                .hint("fill in the column type and the columns of the axes"));
         };
         let about = match about.as_str() {
             "" => format!("writes {key}"),
-            about => format!("writes {key} with {about}; the other words keep the values that were read"),
+            about => format!("writes {key} with {about}; the other values stay as they were read"),
         };
         let write = |value| WriteVariable::new(key.number, value).map_err(usage);
         let reason = Reason::about(&about).depending_on("the values that were read");
@@ -160,9 +160,10 @@ impl Store for Variables {
         placeholder: "REF",
         range: "B0, I1..I20, D5, R3, S2, P10, BP1, EX1, a kind such as P, or a name",
         reading: Some(
-            "A position that was never taught is null in JSON. Each variable has its own result. The exit code is 9 if \
-             some were refused, and 3 if all were refused or none has a value. armctl reads many variables with few \
-             requests. The standard numbers are 0-99 (positions 0-127); the controller's parameters can define more.",
+            "In JSON, a position that was never taught is null. Each variable has its own result. The exit code is 9 \
+             if the controller refused some variables. The exit code is 3 if it refused all variables or none has a \
+             value. armctl reads many variables with few requests. The standard numbers are 0-99 (positions 0-127); \
+             the controller's parameters can define more.",
         ),
         writing: None,
     };
@@ -320,7 +321,8 @@ impl Writable for Variables {
     }
 
     fn complete_draft(&self, key: Reference, draft: &Draft, old: Option<&Value>) -> Result<Value, Failure> {
-        let wrong = |why: String| Failure::usage(format!("{key}: {why}")).hint("nothing was written");
+        let wrong =
+            |why: String| Failure::usage(format!("{key}: {why}")).hint("correct the value; nothing was written");
         match (draft, old) {
             (Draft::Whole(value), _) => Ok(value.clone()),
             (Draft::Fields(cells), old) => cells::merge_over(cells, key.kind, old).map_err(wrong),
@@ -333,7 +335,8 @@ impl Writable for Variables {
             }
             (Draft::Words(_), None) => {
                 let message = format!("{key}: the position is undefined; nothing was written");
-                Err(Failure::new(FailureKind::Refused, message).hint(format!("write all of it: {key}=pulse:…")))
+                Err(Failure::new(FailureKind::Refused, message)
+                    .hint(format!("write the whole position: {key}=pulse:…")))
             }
         }
     }

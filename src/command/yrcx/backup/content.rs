@@ -92,7 +92,7 @@ impl Controller {
         for robot in 1..=4_u8 {
             link.plan(&of_robot(Command::ServoStatus, robot).build()?, &format!("axes of robot {robot}"));
             let (order, about) = (of_robot(Command::System, robot).build()?, format!("type of robot {robot}"));
-            plan_if(link, &order, &about, &format!("the axes: it is read if there is a robot {robot}"));
+            plan_if(link, &order, &about, &format!("the axes: read only if there is a robot {robot}"));
         }
         Ok(())
     }
@@ -277,7 +277,8 @@ pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Resu
             let certain = || (0..).take(GAP).collect();
             let numbers = points.map_or_else(certain, |points| points.iter().copied().collect::<Vec<_>>());
             plan_records(link, records, numbers)?;
-            let others = if points.is_some() { "" } else { "the other points until 100 in a row are not defined, " };
+            let others =
+                if points.is_some() { "" } else { "the other points, until 100 consecutive points are not defined, " };
             link.then(&format!("{others}the points of pallets, then the comments of the points that are defined"));
             Ok(())
         }
@@ -290,7 +291,7 @@ pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Resu
                     (Command::ArmDesignation, "hand system"),
                 ] {
                     let (order, about) = (of_robot(command, robot).build()?, format!("{about} of robot {robot}"));
-                    plan_if(link, &order, &about, &format!("its axes: it is read if there is a robot {robot}"));
+                    plan_if(link, &order, &about, &format!("the axes: read only if there is a robot {robot}"));
                 }
             }
             Ok(())
@@ -300,7 +301,7 @@ pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Resu
                 let table = Parameters { robot };
                 for key in Parameters::all() {
                     let (order, about) = (table.read_order(key)?, of_its_robot(&Parameters::name(key), robot));
-                    plan_if(link, &order, &about, "its axes: they are read if the robot has them");
+                    plan_if(link, &order, &about, "the axes: read only if the robot has the axes");
                 }
             }
             Ok(())
@@ -371,7 +372,7 @@ pub async fn read_records(
 fn keep_writable(rows: &mut Vec<Row>, left_out: &mut Vec<LeftOut>, store: impl Fn(&Row) -> Result<Store, Failure>) {
     rows.retain(|row| {
         let Err(failure) = store(row) else { return true };
-        let why = format!("it cannot be written back: {}", failure.message);
+        let why = format!("the value cannot be written back: {}", failure.message);
         left_out.push(LeftOut { key: row.join(" "), why });
         false
     });

@@ -75,7 +75,7 @@ fn plan_items<'m>(link: &mut Link, saved: impl Iterator<Item = &'m str>, jobs: &
     for name in saved {
         let part = parts.iter().find(|part| part.to_string() == name);
         let why = match part {
-            None | Some(Part::Info) => "information about the controller; it is not written",
+            None | Some(Part::Info) => "information about the controller, which a restore does not write",
             Some(part) if part.is_machine() && !machine => NOT_MACHINE,
             Some(_) => NOT_CHOSEN,
         };
@@ -90,14 +90,18 @@ fn plan_items<'m>(link: &mut Link, saved: impl Iterator<Item = &'m str>, jobs: &
 async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Result<(), Failure> {
     let image = link.look().await?;
     if output::PROGRAM_RUNNING.is_on(&image) {
-        return Err(Failure::new(Kind::Rejected, "the robot program is running and may use the data to be written")
-            .hint("stop the program (`yrcx stop`), then restore"));
+        return Err(Failure::new(
+            Kind::Rejected,
+            "the robot program is running, and may use the data that the restore writes",
+        )
+        .hint("stop the program (`yrcx stop`), then restore"));
     }
     let found = Controller::ask(link).await?;
     if found.robots != backup.robots && !force {
-        let message = format!("the backup is of robot type {}, the controller has {}", backup.types(), found.types());
+        let message =
+            format!("the backup is from robot type {}, but the controller has {}", backup.types(), found.types());
         return Err(Failure::new(Kind::Rejected, message)
-            .hint("use a backup of this controller, or add --force to write it anyway"));
+            .hint("use a backup of this controller, or add --force to write this backup anyway"));
     }
     Ok(())
 }
@@ -151,7 +155,7 @@ impl Comparison {
             1 => "1 value".to_owned(),
             many => format!("{many} values"),
         };
-        let change = Change::new(format!("overwrite {count} with those of {folder}"));
+        let change = Change::new(format!("overwrite {count} with the values of {folder}"));
         let change = self.replaced.iter().fold(change, |change, (what, old, new)| change.replaces(what, old, new));
         match self.added {
             0 => change,

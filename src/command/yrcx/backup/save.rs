@@ -24,10 +24,10 @@ use crate::settings::Robot;
 /// Saves points, pallets, shifts, hands, variables and parameters in a folder of text files.
 #[derive(Debug, Args)]
 #[command(after_help = "Remote commands cannot read programs. Save programs with the controller's own tools.\n\nEach \
-                        point takes one remote command: 60 ms or more at an RPI of 20 ms. Without --points, points are \
-                        read from 0 until 100 in a row are not defined. The points of pallets are always read. \
-                        manifest.json lists the points that were read. A controller refuses undefined points and may \
-                        record this in its alarm history.")]
+                        point takes one remote command: 60 ms or more at an RPI of 20 ms. Without --points, armctl \
+                        reads points from 0 until 100 consecutive points are not defined. armctl always reads the \
+                        points of pallets. manifest.json lists the points that were read. A controller refuses \
+                        undefined points, and may record the refusal in its alarm history.")]
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,

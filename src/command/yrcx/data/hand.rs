@@ -14,8 +14,9 @@ table_commands! {
 }
 
 /// Note on data 1, the only number without a unit.
-const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about its unit. Its \
-                      example for a Cartesian robot uses 10000 for 10.000 mm, its text uses a whole number.";
+const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about the unit. The \
+                      example of the manual for a Cartesian robot uses 10000 for 10.000 mm. The text of the manual \
+                      uses a whole number.";
 
 /// The hands of the controller.
 #[derive(Debug)]

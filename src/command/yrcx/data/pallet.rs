@@ -25,8 +25,8 @@ impl Kind for Pallets {
         range: "Pallets, 0 to 39: 10, 0..39 or 1,5",
         reading: None,
         writing: Some(
-            "The controller stores the corners of a pallet in five points, starting with the first point. Set them with \
-             `yrcx point set` or `yrcx teach`.",
+            "The controller stores the corners of a pallet in five points, starting with the first point. Set these \
+             points with `yrcx point set` or `yrcx teach`.",
         ),
     };
     const IDS: Ids = ids!("yrcx.pallet-data");

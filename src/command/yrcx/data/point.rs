@@ -82,7 +82,7 @@ impl Kind for Points {
 /// Defines a point.
 #[derive(Debug, clap::Args)]
 #[command(group = ArgGroup::new("coordinates").required(true),
-    after_help = "Give 0 for an axis that the robot does not have. `yrcx teach 19` (or `yrcx point set 19 here`) \
+    after_help = "Type 0 for an axis that the robot does not have. `yrcx teach 19` (or `yrcx point set 19 here`) \
                   stores the current position. `yrcx point set 19 @FILE` stores the output of `yrcx position --json` \
                   from FILE; @- reads stdin.")]
 pub struct Set {
@@ -146,7 +146,7 @@ type Four = [String; 4];
 fn four(text: &str) -> Result<Four, String> {
     let numbers: Vec<String> = text.split(',').map(|number| number.trim().to_owned()).collect();
     let count = numbers.len();
-    numbers.try_into().map_err(|_| format!("expected four numbers, one per axis, as in 10,-20,5,-18; {count} given"))
+    numbers.try_into().map_err(|_| format!("expected four numbers, one per axis, such as 10,-20,5,-18; {count} given"))
 }
 
 /// Point in the output of `position --json` or `point get --json`.
@@ -162,7 +162,7 @@ fn printed_point(file: &Path) -> Result<Given, Failure> {
                 .hint("write the file with `yrcx position --json` or `yrcx point get --json`"));
         }
     };
-    let four = four(axes).map_err(|error| Failure::usage(error).hint("give four numbers separated by commas"))?;
+    let four = four(axes).map_err(|error| Failure::usage(error).hint("type four numbers separated by commas"))?;
     Ok(Given { unit, four, hand })
 }
 

@@ -45,7 +45,11 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     layers.ok("MAC ID", format!("MAC {} is on line", node.mac));
     let identity = match board.identity().await {
         Err(failure) if failure.kind == Kind::Refused => {
-            layers.warn("owner", "another master, such as a PLC or a session, has its connections", OWNED);
+            layers.warn(
+                "owner",
+                "another master, such as a PLC or a session, uses the connections of the controller",
+                OWNED,
+            );
             return overheard(board, layers).await;
         }
         Err(failure) => {
@@ -58,7 +62,12 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     let name = identity.name.as_deref().unwrap_or("without a name");
     let vendor = identity.vendor.map_or_else(|| "?".to_owned(), |vendor| vendor.to_string());
     let told = format!("{name}, vendor {vendor}");
-    layers.judge("identity", identity.vendor == Some(MAKER), (&told, &told), "the vendor id of a YRCX is 636");
+    layers.judge(
+        "identity",
+        identity.vendor == Some(MAKER),
+        (&told, &told),
+        "check the node: the vendor id of a YRCX is 636",
+    );
     match board.sizes().await {
         Err(failure) => layers.fail("sizes", &failure),
         Ok(sizes) => match profile(sizes) {
@@ -72,7 +81,11 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     board.release().await;
     match image {
         Err(failure) => layers.fail("inputs", &failure),
-        Ok(None) => layers.warn("inputs", "sent only in polls", "`armctl session open` polls it"),
+        Ok(None) => layers.warn(
+            "inputs",
+            "the controller sends its inputs only in answers to a poll",
+            "use `armctl session open` to poll the controller",
+        ),
         Ok(Some(image)) => {
             layers.ok("inputs", "readable");
             return Some(image);
@@ -81,7 +94,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     None
 }
 
-const OWNED: &str = "to send commands, stop the scan of that master; read-only commands work in parallel";
+const OWNED: &str = "stop the scan of that master to send commands; read-only commands work in parallel";
 
 /// With another master on the bus, only listening is possible.
 async fn overheard(board: &mut Board, layers: &mut Layers) -> Option<Image> {
@@ -89,7 +102,7 @@ async fn overheard(board: &mut Board, layers: &mut Layers) -> Option<Image> {
         Err(failure) => layers.fail("inputs", &failure),
         Ok(None) => layers.warn("inputs", "the master does not poll the controller", "check the PLC"),
         Ok(Some(image)) => {
-            layers.ok("inputs", "received from its answers to the master");
+            layers.ok("inputs", "received from the answers of the controller to the master");
             return Some(image);
         }
     }

@@ -60,8 +60,8 @@ async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
     }
 }
 
-const NOT_SHOWN: &str = "no master polls the controller, and it sends its signals only to its master: open a session \
-                         with `armctl session open`, then read through that session";
+const NOT_SHOWN: &str = "open a session with `armctl session open`, then read through that session: no master polls \
+                         the controller, and the controller sends its signals only to its master";
 
 /// The adapter, with this program as master.
 pub(super) fn adapter(node: &DeviceNet) -> Adapter {

@@ -41,7 +41,7 @@ fn listen(text: &str) -> Result<SocketAddr, String> {
 
 fn bitrate(text: &str) -> Result<Bitrate, String> {
     let found = Bitrate::ALL.into_iter().find(|bitrate| bitrate.name() == text);
-    found.ok_or_else(|| format!("there are {}, not '{text}'", Bitrate::ALL.map(Bitrate::name).join(", ")))
+    found.ok_or_else(|| format!("the bit rates are {}, not '{text}'", Bitrate::ALL.map(Bitrate::name).join(", ")))
 }
 
 impl Serve for ServeArgs {

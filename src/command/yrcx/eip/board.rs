@@ -95,7 +95,7 @@ impl Board {
                 return Err(self.failure(error));
             }
             Err(error) => {
-                let message = format!("{}: sent once; the result is unknown: {error}", self.label);
+                let message = format!("{}: the request was sent once, and the result is unknown: {error}", self.label);
                 return Err(Failure::new(Kind::OutcomeUnknown, message)
                     .hint(format!("read the value with `yrcx eip get {}`", object.arguments())));
             }
@@ -110,7 +110,8 @@ impl Board {
         let image = bytes.get(..Image::BYTES).and_then(Image::from_bytes);
         image.ok_or_else(|| {
             let message = format!("assembly {} has {} bytes, fewer than an image", self.eip.input, bytes.len());
-            Failure::new(Kind::Malformed, message).hint("check in of the URL: `yrcx eip probe` finds the assemblies")
+            Failure::new(Kind::Malformed, message)
+                .hint("check in of the URL; use `yrcx eip probe` to find the assemblies")
         })
     }
 

@@ -65,7 +65,7 @@ impl fieldbus::Search for Search {
             }
             let found = asked.map_err(|error| {
                 Failure::new(Kind::NoAnswer, format!("the network cannot be searched: {}", plain(&error)))
-                    .hint("select the network card with --bind or the network with --broadcast, as in 192.168.0.255")
+                    .hint("select the network card with --bind, or the network with --broadcast, such as 192.168.0.255")
             })?;
             found.into_iter().map(found_board).collect()
         }

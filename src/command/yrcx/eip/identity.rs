@@ -28,7 +28,7 @@ impl Command for Identify {
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {
             return Err(Failure::new(Kind::Malformed, format!("{}: the board has no identity", context.robot.label()))
-                .hint("check that the address is that of an EtherNet/IP board"));
+                .hint("check that the address belongs to an EtherNet/IP board"));
         };
         Ok(Identified { address, identity, services: board.services().await? })
     }

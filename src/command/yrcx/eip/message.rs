@@ -20,9 +20,9 @@ use crate::output::view::{Cell, Section, View};
 /// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Class 1 is the identity, 4 the assemblies (attribute 3 the data, 4 the size), 0xF5 the TCP/IP \
-                  interface, 0xF6 the Ethernet link. Instance 0 is the class itself. The objects depend on the board; \
-                  the manuals of the controller do not list them."
+    after_help = "Class 1 is the identity, class 4 the assemblies (attribute 3 is the data, attribute 4 the size), \
+                  class 0xF5 the TCP/IP interface, class 0xF6 the Ethernet link. Instance 0 is the class itself. The \
+                  objects depend on the board; the manuals of the controller do not list them."
 )]
 pub struct Get {
     /// Number of the class, as in 4 or 0xF5
@@ -57,8 +57,9 @@ impl Command for Get {
 /// Writes an attribute of an object (Set_Attribute_Single).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The bytes are sent unchanged: low byte first, and a text after its length. The output assembly \
-                  contains the inputs of the controller. Writing it can move the robot and needs a confirmation."
+    after_help = "armctl sends the bytes unchanged: low byte first, and a text after its length. The output assembly \
+                  contains the inputs of the controller. A write to the output assembly can move the robot, and needs \
+                  a confirmation."
 )]
 pub struct Set {
     /// Number of the class, as in 4 or 0xF5
@@ -131,7 +132,7 @@ fn bytes(text: &str) -> Result<Bytes, String> {
 fn number(text: &str) -> Result<u32, String> {
     typed::unsigned::<u16>(text)
         .map(u32::from)
-        .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, as in 4 or 0xF5"))
+        .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, such as 4 or 0xF5"))
 }
 
 /// Value of an attribute.

@@ -17,9 +17,9 @@ use crate::output::view::{Cell, Section, Table, View};
 #[derive(Debug, Args)]
 #[command(
     after_help = "Use the resulting target with -t or `armctl robots add`.\n\nWith --try, armctl also requests owner \
-                  connections with invalid sizes, starting with the instances of the URL. The board refuses them with \
-                  a reason that identifies instances and sizes. If the board accepts one, armctl commands the \
-                  controller until the connection closes, and the close stops the robot."
+                  connections with invalid sizes, starting with the instances of the URL. The board refuses these \
+                  connections with a reason that identifies instances and sizes. If the board accepts a connection, \
+                  armctl commands the controller until the connection closes. The close stops the robot."
 )]
 pub struct Probe {
     /// Request connections to find fitting parameters
@@ -31,8 +31,9 @@ impl Command for Probe {
     type Family = Yrcx;
     type Report = ProbeReport;
     const ID: &'static str = "yrcx.eip.probe";
-    const INTENT: &'static str = "request owner connections that the board should refuse; if the board accepts one, \
-                                  armctl commands the controller, and the end of the connection stops the robot";
+    const INTENT: &'static str = "request owner connections that the board should refuse; if the board accepts a \
+                                  connection, armctl commands the controller, and the end of the connection stops the \
+                                  robot";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
@@ -104,7 +105,8 @@ impl Report for ProbeReport {
             if self.has_tried {
                 failure.hint("find the instances in the board's EDS file and set in, out and config in the URL")
             } else {
-                failure.hint("when the cell is clear of people, add --try to request connections from the board")
+                failure
+                    .hint("add --try to request connections from the board, but only when the cell is clear of people")
             }
         })
     }

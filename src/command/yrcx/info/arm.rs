@@ -17,7 +17,8 @@ use crate::output::view::{Cell, View};
 
 /// Reads the selected and the current hand system.
 #[derive(Debug, Args)]
-#[command(after_help = "A robot without axes reports `right` for both. `yrcx arm select` changes the selection.")]
+#[command(after_help = "A robot without axes reports `right` for both hand systems. `yrcx arm select` changes the \
+                        selection.")]
 pub struct Arm {}
 
 impl Command for Arm {

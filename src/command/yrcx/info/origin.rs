@@ -29,7 +29,9 @@ impl Command for Origin {
         let link = context.link;
         let draft = link.draft(table::Command::OriginStatus)?.with_some(Key::MotorType, self.motor.clone());
         let order = draft.build().map_err(|error| match error.place.key {
-            Some(Key::MotorType) => Failure::usage("--motor needs one robot").hint("select the robot, as in --unit 1"),
+            Some(Key::MotorType) => {
+                Failure::usage("--motor needs one robot").hint("select the robot, such as --unit 1")
+            }
             _ => error.into(),
         })?;
         let values = link.ask(&order).await?.values;

@@ -14,8 +14,8 @@ use crate::output::view::{Cell, Table, View};
 /// Prints the address table.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without start addresses, they count from m (read by the master) and n (written by the master), as in \
-                  the manual. Use -o csv or --json to save the table."
+    after_help = "Without start addresses, the addresses count from m (read by the master) and n (written by the \
+                  master), as in the manual. Use -o csv or --json to save the table."
 )]
 pub struct Map {
     /// Fieldbus: devicenet, devicenet-compact, ethernet-ip, profibus, profinet

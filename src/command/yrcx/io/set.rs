@@ -199,7 +199,7 @@ impl Command for Pulse {
 fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
     procedure.ok_or_else(|| {
         Failure::usage("only the controller switches its outputs")
-            .hint("`yrcx io get` reads them; `yrcx port set` switches DO, MO and SO")
+            .hint("use `yrcx io get` to read the outputs; use `yrcx port set` to switch DO, MO and SO")
     })
 }
 

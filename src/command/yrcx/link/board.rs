@@ -27,7 +27,7 @@ impl Link {
         let board: &mut dyn Any = self.any_board()?;
         board.downcast_mut().ok_or_else(|| {
             Failure::usage(format!("{label} is not on {fieldbus}"))
-                .hint("`armctl yrcx --help` lists the commands of each fieldbus")
+                .hint("use `armctl yrcx --help` to list the commands of each fieldbus")
         })
     }
 

@@ -17,9 +17,9 @@ use crate::gate::Confirmation;
 /// Resets the absolute position of an axis of the mark type.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "First use `--move +` or `--move -` to move to the nearest reset position. There are four per motor \
-                  turn. Check the marks: a reset at the wrong position shifts the origin. Then run the command without \
-                  --move."
+    after_help = "First use `--move +` or `--move -` to move to the nearest reset position. There are four reset \
+                  positions per motor turn. Check the marks: a reset at the wrong position shifts the origin. Then \
+                  run the command without --move."
 )]
 pub struct AbsReset {
     /// The axis, 1 to 4

@@ -160,13 +160,16 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
         let one = draft.clone();
         let keys: Vec<Key> = axes.iter().filter_map(|axis| Key::AXES.get(axis - 1).copied()).collect();
         let other = keys.into_iter().fold(one, |draft, key| draft.with(key, -1)).build()?;
-        let kept = format!("current position of the unnamed axis: {names}");
+        let kept = format!("current position of the axes without a target: {names}");
         link.plan_depending(&order, &other, Reason::default().depending_on(&kept));
         return Err(unknown());
     }
     let not_moved = |failure: Failure| Failure {
-        message: format!("not moved: the current position of the unnamed axes is unknown: {}", failure.message),
-        ..failure.hint("name axes 1 and 2 as well, or use `yrcx drive`")
+        message: format!(
+            "the robot did not move: the current position of the axes without a target is unknown: {}",
+            failure.message
+        ),
+        ..failure.hint("type axes 1 and 2 as well, or use `yrcx drive`")
     };
     let place = link.ask(&present).await.map_err(not_moved)?.values.axes();
     let place = place.ok_or_else(|| not_moved(Failure::new(Kind::Malformed, "the answer has no position")))?;

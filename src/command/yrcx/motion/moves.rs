@@ -12,9 +12,13 @@ use crate::failure::Failure;
 
 /// Moves to a point, or to coordinates.
 #[derive(Debug, Args)]
-#[command(group = ArgGroup::new("destination").required(true), after_help = "Without --speed the robot moves at the \
-    program speed. A SCARA also moves axes 1 and 2 if only other axes are named (4.2.1). With --to, armctl reads their \
-    current position first and sends it, so that they do not move. With --point, they may move to the point.")]
+#[command(
+    group = ArgGroup::new("destination").required(true),
+    after_help = "Without --speed the robot moves at the program speed. A SCARA also moves axes 1 and 2 if you type \
+                  only other axes (4.2.1). With --to, armctl first reads the current position of axes 1 and 2 and \
+                  sends that position, so that these axes do not move. With --point, axes 1 and 2 may move to the \
+                  point."
+)]
 pub struct Move {
     /// Target point; two points with --circular, as in 100,101
     #[arg(long, value_name = "POINT", group = "destination", value_delimiter = ',')]
@@ -68,10 +72,14 @@ impl Motion for Move {
             ([first, second], true) => draft.with(Key::Point, first.as_str()).with(Key::Point2, second.as_str()),
             (_, true) => {
                 return Err(
-                    Failure::usage("an arc needs two points").hint("give both points: --point 100,101 --circular")
+                    Failure::usage("an arc needs two points").hint("type both points: --point 100,101 --circular")
                 );
             }
-            (_, false) => return Err(Failure::usage("this move needs one point").hint("for an arc, add --circular")),
+            (_, false) => {
+                return Err(
+                    Failure::usage("this move needs one point").hint("type one point, or add --circular for an arc")
+                );
+            }
         };
         let draft = if self.linear || self.circular { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
         let draft = self.arch.put(self.ramps.put(draft, self.command())?);

@@ -94,8 +94,8 @@ pub struct Pushed {
 impl Report for Pushed {
     fn view(&self) -> View {
         self.moved.view_with(match self.push_completed {
-            Some(true) => "; it pushed for the whole time",
-            Some(false) => "; it ended before the push time was over",
+            Some(true) => "; the axis pushed for the whole push time",
+            Some(false) => "; the push ended before the push time was over",
             None => "",
         })
     }

@@ -37,7 +37,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
     authority.confirm(&goal.clone().from(here).describe(change, here)).await?;
     match self::goal(link, order).await? {
         Some(now) if now == goal => Ok(()),
-        _ => Err(data_changed("the point changed after the question; not moved")),
+        _ => Err(data_changed("the point changed after the confirmation; the robot did not move")),
     }
 }
 

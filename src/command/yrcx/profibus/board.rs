@@ -88,17 +88,17 @@ impl Board {
             Unknown::NoAnswer => self.silent(),
             Unknown::NotAsked => {
                 Failure::new(Kind::Malformed, format!("{}: it is a {}", self.name(), kind(found.kind)))
-                    .hint("check station of the URL; `yrcx profibus scan` lists the slaves")
+                    .hint("check station of the URL; use `yrcx profibus scan` to list the slaves")
             }
             why => Failure::new(Kind::Malformed, format!("{}: Slave_Diag: {}", self.name(), unknown(&why)))
-                .hint("check that this is a slave of PROFIBUS DP"),
+                .hint("check that the station is a PROFIBUS DP slave"),
         })
     }
 
     /// Failure: the station of the URL does not answer.
     pub fn silent(&self) -> Failure {
         Failure::new(Kind::NoAnswer, format!("{} does not answer", self.name()))
-            .hint("`yrcx profibus scan` lists the stations that answer")
+            .hint("use `yrcx profibus scan` to list the stations that answer")
     }
 
     fn name(&self) -> String {

@@ -115,7 +115,7 @@ fn about(frame: &Frame, service: Option<u8>) -> Option<String> {
         sap::GLOBAL_CONTROL => GlobalControl::parse(&frame.data).map_or_else(unread, |control| control.to_string()),
         sap::GET_CFG | sap::CHK_CFG => Configuration::parse(&frame.data).map_or_else(unread, |configuration| {
             let (input, output) = (configuration.input(), configuration.output());
-            format!("{}, {input} bytes from the slave, {output} to it", hex(configuration.bytes()))
+            format!("{}, {input} bytes from the slave, {output} bytes to the slave", hex(configuration.bytes()))
         }),
         sap::SET_PRM => Parameters::parse(&frame.data).map_or_else(unread, |parameters| {
             let lock = match parameters.lock {

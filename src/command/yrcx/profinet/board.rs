@@ -109,12 +109,12 @@ impl Board {
             Ok(found) => Ok(found),
             Err(error @ ProfinetError::Dcp { .. }) => {
                 let failure = Failure::new(Kind::Refused, format!("{}: {error}", self.label));
-                Err(failure.hint("nothing was changed; `yrcx profinet identify` shows the current settings"))
+                Err(failure.hint("use `yrcx profinet identify` to see the current settings; nothing was changed"))
             }
             Err(error) => {
-                let message = format!("{}: sent; the result is unknown: {error}", self.label);
+                let message = format!("{}: the request was sent, and the result is unknown: {error}", self.label);
                 Err(Failure::new(Kind::OutcomeUnknown, message)
-                    .hint("`yrcx profinet identify` shows the current settings"))
+                    .hint("use `yrcx profinet identify` to see the current settings"))
             }
         }
     }

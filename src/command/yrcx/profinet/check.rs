@@ -53,7 +53,11 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
         (has, Some(wanted)) if has != Some(wanted.address) => {
             let has = has.map_or_else(|| "none".to_owned(), |address| address.to_string());
             let found = format!("the device has {has}, the target has {}", wanted.address);
-            layers.warn("IP", found, "a connection sets this address until the device is switched off");
+            layers.warn(
+                "IP",
+                found,
+                "check ip= of the target: a connection sets this address until the device is switched off",
+            );
             return Ok(None);
         }
         (None, Some(wanted)) => wanted.address,
@@ -71,7 +75,7 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
     layers.warn(
         "data",
         "a device sends its data only to the controller that owns the connection",
-        "connect with `armctl session open`; then `yrcx status` shows the signals",
+        "connect with `armctl session open`, then use `yrcx status` to see the signals",
     );
     Ok(None)
 }
@@ -111,12 +115,17 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
                         "equal to the target, except {left_out} of the access point, which only the device has: \
                          {layout}"
                     ),
-                    "a device can require all submodules of its access point: `yrcx profinet probe` lists them",
+                    "use `yrcx profinet probe` to list the submodules of the access point; a device can require all \
+                     of them",
                 ),
             }
         }
         Err(error) => {
-            layers.warn("modules", format!("not reported: {error}"), "a connection shows whether they fit");
+            layers.warn(
+                "modules",
+                format!("the device does not report its modules: {error}"),
+                "open a connection to see whether the modules fit",
+            );
         }
     }
     Ok(())

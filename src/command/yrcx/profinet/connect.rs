@@ -70,11 +70,11 @@ pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, 
     if !fits {
         let (input, output) = sizes;
         let cause = Cause::new(format!(
-            "the modules have {input} bytes from the controller and {output} bytes to it, not {} each way",
+            "the modules have {input} bytes from the controller and {output} bytes to the controller, not {} each way",
             Image::BYTES
         ));
         return Err(LinkError::Settings(
-            cause.advice("correct layout= in the URL; `yrcx profinet probe` finds the layout"),
+            cause.advice("correct layout= in the URL; use `yrcx profinet probe` to find the layout"),
         ));
     }
     if profinet.cycle < shortest {
@@ -154,14 +154,14 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
     }
     let size = Image::BYTES;
     let cause = wrong(format!("there is no unique selection of modules with {size} bytes each way"));
-    let advice = "set layout= in the URL instead; `yrcx profinet gsdml FILE` lists the modules";
+    let advice = "set layout= in the URL instead; use `yrcx profinet gsdml FILE` to list the modules";
     Err(LinkError::Settings(cause.advice(advice)))
 }
 
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
     let bytes = files::read(path, MOST_BYTES).map_err(|error| {
-        LinkError::Local(wrong(plain(&error)).advice("give the manufacturer's GSDML file: gsdml= in the URL, or FILE"))
+        LinkError::Local(wrong(plain(&error)).advice("use the manufacturer's GSDML file: gsdml= in the URL, or FILE"))
     })?;
     Gsdml::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
 }

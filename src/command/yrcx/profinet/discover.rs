@@ -54,7 +54,7 @@ impl fieldbus::Search for Search {
 
 fn found_station(station: &Station, interface: &str) -> Result<Device, Failure> {
     // A duplicate name does not identify a station, so use the MAC address.
-    let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has its name too"));
+    let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has the same name"));
     let place = if station.station.is_empty() || is_twice { &station.mac } else { &station.station };
     let name = if station.station.is_empty() { "no name" } else { &station.station };
     Ok(Device {

@@ -18,9 +18,9 @@ use crate::transport::profinet::layout::Direction;
 /// Reads a device's GSDML file: its modules, and the layout for a target. Needs no robot.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "An error in the file is reported with its line and element (exit 2). The layout uses the modules \
-                  with 48 bytes each way, as on a YRCX. If several layouts are possible, write the layout into the \
-                  target yourself; see `armctl help profinet`."
+    after_help = "armctl reports an error in the file with its line and element (exit code 2). The layout uses the \
+                  modules with 48 bytes each way, as on a YRCX. If several layouts are possible, write the layout \
+                  into the target yourself; see `armctl help profinet`."
 )]
 pub struct ReadFile {
     /// GSDML file, such as GSDML-V2.35-….xml
@@ -36,7 +36,7 @@ impl OfflineCommand for ReadFile {
         let shown = self.file.display();
         let bytes = files::read(&self.file, gsdml::MOST_BYTES).map_err(|error| Failure::io(&shown, &error))?;
         let read = Gsdml::parse(&bytes).map_err(|error| {
-            Failure::usage(format!("{shown}: {error}")).hint("check that it is the GSDML file of the device")
+            Failure::usage(format!("{shown}: {error}")).hint("check that the file is the GSDML file of the device")
         })?;
         Ok(Described::from(&read))
     }

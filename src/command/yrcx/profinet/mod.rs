@@ -41,7 +41,7 @@ const NO_UNIT: &str = "the station belongs to the whole controller";
 fn station_of(robot: &Robot) -> Result<Station, Failure> {
     let other = || {
         Failure::usage(format!("{} is not on {}", robot.label(), SCHEME.bus))
-            .hint("give a station: -t profinet://NAME@INTERFACE")
+            .hint("select a station: -t profinet://NAME@INTERFACE")
     };
     match endpoint(robot)? {
         Endpoint::Bus(bus, _) => {

@@ -27,8 +27,9 @@ use crate::transport::profinet::wire::record::{Im0, RealModule};
 #[derive(Debug, Args)]
 #[command(
     after_help = "With --try, armctl connects with the layout of the target, then with the layouts that its modules \
-                  allow, until data flows. Each connection sends the resting image to the controller, and its end \
-                  stops the robot. If another controller owns the station, it refuses and nothing changes."
+                  allow, until data flows. Each connection sends the resting image to the controller. The end of each \
+                  connection stops the robot. If another controller owns the station, the station refuses the \
+                  connection, and nothing changes."
 )]
 pub struct Probe {
     /// Try layouts until one fits

@@ -46,7 +46,7 @@ impl Serve for ServeArgs {
     ) -> Result<Served, Failure> {
         let Some(interface) = &self.interface else {
             return Err(Failure::usage("a PROFINET device needs an Ethernet interface")
-                .hint("add --interface IFACE; `ip link` lists the interfaces"));
+                .hint("add --interface IFACE; use `ip link` to list the interfaces"));
         };
         let faults: SimulatorFaults<FaultSpec, Fault> = faults_of_option(faults, &DEVICE_FAULTS)?;
         let layout = self.layout.clone().unwrap_or_else(layout);

@@ -28,8 +28,8 @@ pub struct Blink {}
 /// Sets the station name (DCP Set). The station keeps the name after power-off, unless --temporary is used.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A name can have lowercase letters, digits, - and dots, with up to 63 characters between dots. A name \
-                  that another station has is rejected. The new target is profinet://NAME@eth0."
+    after_help = "A name can have lowercase letters, digits, - and dots, with up to 63 characters between dots. \
+                  armctl rejects a name that another station has. The new target is profinet://NAME@eth0."
 )]
 pub struct SetName {
     /// The new name, as in robot-7
@@ -44,8 +44,8 @@ pub struct SetName {
 /// used.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "An address that another device has (ARP check) is rejected. A target with ip= sets the address at \
-                  each connection and needs no set-ip."
+    after_help = "armctl rejects an address that another device has (ARP check). A target with ip= sets the address \
+                  at each connection and needs no set-ip."
 )]
 pub struct SetIp {
     /// New address with the mask length: 192.168.0.10/24
@@ -62,13 +62,13 @@ pub struct SetIp {
 /// Deletes the name and the IP address of the station (DCP Reset to factory, communication parameters).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The station then has no name: use its MAC address, as in profinet://02:00:00:00:00:01@eth0. Data and \
-                  programs of the robot do not change."
+    after_help = "The station then has no name: use its MAC address, such as profinet://02:00:00:00:00:01@eth0. Data \
+                  and programs of the robot do not change."
 )]
 pub struct Reset {}
 
 fn suite(text: &str) -> Result<IpSuite, String> {
-    let short = || format!("the mask length is missing, as in {text}/24");
+    let short = || format!("the mask length is missing; type {text}/24, for example");
     text.contains('/').then_some(()).ok_or_else(short)?;
     profinet::suite(text).map_err(|why| why.trim_start_matches("ip: ").to_owned())
 }
@@ -113,7 +113,7 @@ const fn risk(temporary: bool) -> Risk {
 }
 
 const fn kept(temporary: bool) -> &'static str {
-    if temporary { " until it is switched off" } else { "" }
+    if temporary { " until the station is switched off" } else { "" }
 }
 
 impl Command for Blink {
@@ -233,7 +233,7 @@ impl Command for SetIp {
 /// Failure: another station has the name or address.
 fn taken(what: &str, other: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("{what} is in use by {other}"))
-        .hint("nothing was set; `armctl robots discover --interface IFACE` lists names and addresses")
+        .hint("use `armctl robots discover --interface IFACE` to list names and addresses; nothing was set")
 }
 
 impl Command for Reset {

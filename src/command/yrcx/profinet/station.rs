@@ -73,7 +73,7 @@ impl Station {
             let address = others().find(|other| one.ip.is_some() && other.ip == one.ip);
             let remarks: Vec<String> = [(name, "name"), (address, "address")]
                 .into_iter()
-                .filter_map(|(other, what)| Some(format!("{} has its {what} too", other?.mac)))
+                .filter_map(|(other, what)| Some(format!("{} has the same {what}", other?.mac)))
                 .collect();
             all[at].remarks.extend(remarks);
         }

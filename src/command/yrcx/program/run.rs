@@ -28,7 +28,8 @@ use crate::settings::duration;
 #[derive(Debug, Args)]
 #[command(
     after_help = "--wait waits until no program runs (SO(13), as in `yrcx io get program-running`). `yrcx stop` stops \
-                  programs, and so does the end of the connection. A program must be in a task: `yrcx program select`."
+                  programs. The end of the connection also stops programs. A program must be in a task: use `yrcx \
+                  program select`."
 )]
 pub struct Run {
     #[command(flatten)]
@@ -102,10 +103,11 @@ impl Run {
     /// Notes in a dry run what follows a start.
     fn plan(&self, link: &mut Link) -> Failure {
         link.then(
-            "the signals are read until SO(13) shows that no program is running, then the latest alarm is read again",
+            "armctl reads the signals until SO(13) shows that no program is running, then reads the latest alarm \
+             again",
         );
         if let Some(count) = self.repeat.repeat {
-            link.then(&format!("after each end the program is started again, {count} starts in total"));
+            link.then(&format!("after each end, armctl starts the program again, {count} starts in total"));
         }
         unknown()
     }
@@ -114,7 +116,8 @@ impl Run {
 fn not_seen(what: &str) -> Failure {
     let limit = duration::display(BEGIN_WITHIN);
     let message = format!(
-        "{what} was started but did not report running within {limit}: it may have ended at once or not started"
+        "{what} was started, but the controller reported no running program within {limit}: the program ended at \
+         once, or did not start"
     );
     Failure::new(Kind::ConditionNotMet, message).hint("check the program with `yrcx info tasks` and `yrcx info line`")
 }
@@ -122,9 +125,11 @@ fn not_seen(what: &str) -> Failure {
 /// Waits until no program runs. Returns whether one was seen running.
 async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool, Failure> {
     let lost = |failure: Failure| {
-        let message = format!("{what} was started, but its end was not reported: {}", failure.message);
-        Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-            .hint("do not send it again; `yrcx status` shows the result. A controller stops when the connection ends")
+        let message = format!("{what} was started, but armctl could not read its end: {}", failure.message);
+        Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(
+            "do not send the command again; use `yrcx status` to see the result. A controller stops when the \
+             connection ends",
+        )
     };
     let is_over = |image: &_| output::ALARM.is_on(image) || output::EMERGENCY_STOP.is_on(image);
     let begins = link.look_until(|image| output::PROGRAM_RUNNING.is_on(image) || is_over(image));
@@ -139,7 +144,7 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
         Some(rest) => timeout(rest, ends).await.map_err(|_| {
             let limit = duration::display(limit.unwrap_or_default());
             Failure::new(Kind::ConditionNotMet, format!("{what} is still running after {limit}"))
-                .hint("`yrcx info line` shows the current line; the end of this connection stops the program")
+                .hint("use `yrcx info line` to see the current line; the end of this connection stops the program")
         })?,
     };
     image.map_err(lost).map(|_| seen)
@@ -152,13 +157,13 @@ async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>)
     let latest = alarm::latest(link).await?;
     let is_new = latest.as_ref().is_some_and(|latest| before != Some(latest));
     let (why, hint) = if output::EMERGENCY_STOP.is_on(&image) {
-        ("the emergency stop was triggered".to_owned(), "release it, then `yrcx recover`")
+        ("the emergency stop was triggered".to_owned(), "release the emergency stop, then use `yrcx recover`")
     } else if output::ALARM.is_on(&image) || is_new {
         let alarm = latest.as_ref().and_then(|latest| Some((latest.alarm.code.as_ref()?, latest.alarm.text.as_ref()?)));
         let why = alarm.map_or_else(|| "an alarm".to_owned(), |(code, text)| format!("alarm {code} ({text})"));
         (
             format!("{why} occurred"),
-            "`yrcx alarm history` shows the alarm; remove the cause, then use `yrcx alarm reset`",
+            "use `yrcx alarm history` to see the alarm; remove the cause, then use `yrcx alarm reset`",
         )
     } else {
         return Ok(());

@@ -38,7 +38,7 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
     }
     let unknown: Vec<_> = steps().filter(|(row, _)| has_computed_target(row.op)).collect();
     if let Some((row, at)) = unknown.first() {
-        let more = if unknown.len() > 1 { format!("; {} steps are like this", unknown.len()) } else { String::new() };
+        let more = if unknown.len() > 1 { format!("; this applies to {} steps", unknown.len()) } else { String::new() };
         findings
             .note(*at, format!("the target of {} depends on counters and inputs, and is not checked{more}", row.word));
     }

@@ -72,7 +72,7 @@ impl Finder<'_> {
                 self.warn(
                     index,
                     format!("point {point} is not in the given points"),
-                    "teach it, or write it with `toyo point set`",
+                    "teach the point, or write it with `toyo point set`",
                 );
             }
         }
@@ -103,7 +103,8 @@ impl Finder<'_> {
                 } else {
                     self.warn(
                         index,
-                        "an arc needs two steps, a point on the arc and its end, but the next step is not MVC or MVCP",
+                        "an arc needs two steps (a point on the arc, and its end), but the next step is not MVC or \
+                         MVCP",
                         "a controller stops with error A5",
                     );
                 }

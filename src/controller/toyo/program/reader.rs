@@ -48,7 +48,7 @@ pub(super) fn read(
         if before <= room && room < after {
             let at = reader.read.steps[room].at;
             let message =
-                format!("step {} does not fit: the task has at most {} steps", start + room, start + room - 1);
+                format!("step {} does not fit: the task can have at most {} steps", start + room, start + room - 1);
             reader.findings.error(
                 at,
                 message,

@@ -119,7 +119,7 @@ impl Tags<'_> {
                 continue;
             }
             if self.outside_tags().is_some_and(|tags| tags.contains(&tag)) {
-                let message = format!("tag {tag:03} already exists in a step before or after these");
+                let message = format!("tag {tag:03} already exists in a step before or after the steps of this file");
                 findings.error(used.at, message, Some("a controller stops with error A2".to_owned()));
             }
             let Some(place) = usize::try_from(tag).ok().and_then(|tag| self.defined.get_mut(tag)) else { continue };
@@ -196,7 +196,7 @@ impl Tags<'_> {
     /// Reports unused labels. A label with an explicit number may be used from elsewhere.
     fn report_unused(&self, findings: &mut Findings) {
         for label in self.list.iter().filter(|label| !label.used && !label.has_explicit_tag) {
-            let hint = format!("if another program uses its tag, write the tag: {}=10:", label.name);
+            let hint = format!("if another program uses the tag of this label, write the tag: {}=10:", label.name);
             findings.warning(label.at, format!("no step jumps to label {}", label.name), Some(hint));
         }
     }

@@ -23,7 +23,7 @@ const HELP: &[(&str, &str)] = &[
     ("estop [off]", "press or release the emergency stop"),
     ("error CODE", "raise an error: error 28"),
     ("power cycle", "switch the controller off and on"),
-    ("card in|out", "insert or take out the memory card"),
+    ("card in|out", "insert or remove the memory card"),
     ("obstacle AXIS PLACE|off", "block an axis at a position in mm, or free it"),
     ("slave on|off", "set whether slave units are ready"),
     ("battery low|ok", "set the battery state"),
@@ -151,7 +151,7 @@ fn input(place: &str, value: &str) -> Result<ConsoleLine, String> {
         }
         [station, port] => {
             let bits = u8::from_str_radix(value, 2).ok().filter(|_| value.len() == 8);
-            let bits = bits.ok_or_else(|| expected(value, "eight of 0 and 1"))?;
+            let bits = bits.ok_or_else(|| expected(value, "eight digits, each 0 or 1"))?;
             Ok(ConsoleLine::Input(existing(station, port)?, Mask::all(bits)))
         }
         _ => Err(expected(place, "an address such as 0/01/3 or 0/01")),

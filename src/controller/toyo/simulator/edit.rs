@@ -43,7 +43,7 @@ pub(super) fn execute(world: &mut World, request: &Request) -> Result<Reply, Str
             world.memory.set_easy(fields.index("to"), easy).map_err(no_room)?;
         }
         Command::Sstg => world.search_tag(fields.index("tag"))?,
-        other => return Err(format!("{other:?} changes nothing that is stored")),
+        other => return Err(format!("{other:?} does not change stored data")),
     }
     world.apply_memory_changes();
     Ok(Reply::Done)
@@ -52,7 +52,7 @@ pub(super) fn execute(world: &mut World, request: &Request) -> Result<Reply, Str
 /// The parameter, instruction or record of a request.
 fn content(request: &Request) -> Result<Record, String> {
     let content = request.content().map_err(|error| error.to_string())?;
-    content.ok_or_else(|| "it has no data to store".to_owned())
+    content.ok_or_else(|| "the request has no data to store".to_owned())
 }
 
 fn write_parameter(world: &mut World, request: &Request) -> Result<(), String> {

@@ -80,7 +80,7 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Reply, String> 
             bus(world, form)
         }
         Command::Ehtr => history(world, fields.number("number")),
-        other => return Err(format!("{other:?} is not a question")),
+        other => return Err(format!("{other:?} does not read data")),
     };
     Ok(Reply::Data(form, values))
 }
@@ -100,7 +100,7 @@ fn parameter(world: &World, request: &Request) -> Result<Record, String> {
     if !world.supports(parameter.only_on) {
         return Err(format!("a {} does not have {}", world.model, parameter.id));
     }
-    let key = request.content().map_err(|error| error.to_string())?.ok_or("it contains no parameter")?;
+    let key = request.content().map_err(|error| error.to_string())?.ok_or("the request contains no parameter")?;
     world.memory.parameter(parameter, &key, world.current).ok_or_else(|| "no such row".to_owned())
 }
 

@@ -144,7 +144,7 @@ impl World {
         self.check_startable()?;
         self.powered_axes()?;
         if !self.machine.driver.contains(&Some(drive)) {
-            return Err("that axis has no driven axis (E26)");
+            return Err("this axis has no driven axis (E26)");
         }
         self.reset_program();
         self.jog_ready = false;
@@ -175,7 +175,7 @@ impl World {
             return Err("JOG was not reset (RS)");
         }
         if axis >= self.axes {
-            return Err("that axis is not fitted");
+            return Err("this axis is not fitted");
         }
         if !self.switches.servo[axis] {
             return Err("servo power is off");

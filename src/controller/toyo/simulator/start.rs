@@ -269,7 +269,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         return Err(source.error(&entries.axes, "axes must be from 1 to 4"));
     }
     let version = source.read(&entries.version, |version| {
-        hundredths(version).ok_or_else(|| "write a version as in \"4.00\"".to_owned())
+        hundredths(version).ok_or_else(|| "write a version, for example \"4.00\"".to_owned())
     })?;
     let types = entries.robot_types.get_ref();
     if types.is_empty() || types.iter().any(|number| !(0..=999_999).contains(number)) {
@@ -427,11 +427,11 @@ fn errors(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
             }
             _ => None,
         };
-        world.errors.record(entry.ok_or("an entry has a code from 01 to FF, or power_cut")?);
+        world.errors.record(entry.ok_or("an entry must have a code from 01 to FF, or power_cut")?);
         Ok(())
     })?;
     source.each(&entries.error, |error| {
-        world.fail(code(error).ok_or("an error has a code from 01 to FF")?);
+        world.fail(code(error).ok_or("an error must have a code from 01 to FF")?);
         Ok(())
     })
 }
@@ -441,7 +441,7 @@ fn port(name: &str, bits: &str) -> Result<(Port, Mask), String> {
     let parts = name.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
     let (station, port) = parts.ok_or_else(|| format!("'{name}' is not a valid port, such as 0/01"))?;
     let eight = u8::from_str_radix(bits, 2).ok().filter(|_| bits.len() == 8);
-    Ok((Port { station, port }, Mask::all(eight.ok_or("a port must have eight digits of 0 and 1")?)))
+    Ok((Port { station, port }, Mask::all(eight.ok_or("a port must have eight digits, each 0 or 1")?)))
 }
 
 /// Parses a version such as `4.00` to hundredths.

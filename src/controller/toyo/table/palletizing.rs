@@ -34,8 +34,8 @@ impl Pallet {
 pub const MODE: Field = words(
     "mode",
     &[
-        word("M-1", "from a matrix to one place"),
-        word("1-M", "from one place to a matrix"),
+        word("M-1", "from a matrix to one position"),
+        word("1-M", "from one position to a matrix"),
         word("M-M", "matrix to matrix"),
     ],
     "which side is a matrix",

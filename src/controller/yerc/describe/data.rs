@@ -82,7 +82,7 @@ fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> String {
             _ => word.to_string(),
         },
         Kind::Reserved => "reserved, 0".to_owned(),
-        Kind::FileName if is_backup(bytes) => format!("{} (makes or fetches the batch backup)", text(bytes)),
+        Kind::FileName if is_backup(bytes) => format!("{} (creates or reads the batch backup)", text(bytes)),
         Kind::Text(_) | Kind::FileName | Kind::Filter => text(bytes),
     }
 }

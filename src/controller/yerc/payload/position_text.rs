@@ -34,7 +34,7 @@ pub struct NamedAxis {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PositionTextError {
     /// Without kind and colon.
-    #[error("a position must begin with its type and a colon, e.g. 'base:x=...' or 'pulse:s=...'")]
+    #[error("a position must begin with its type and a colon, for example 'base:x=...' or 'pulse:s=...'")]
     NoKind,
     /// A kind that this variable does not have.
     #[error("'{found}' is not a valid position type here; use {allowed}")]

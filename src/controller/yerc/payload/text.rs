@@ -12,7 +12,7 @@ pub struct Text<const N: usize>(Vec<u8>);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum TextError {
     /// Longer than the field.
-    #[error("the text has {len} bytes in the controller's encoding; at most {most} fit")]
+    #[error("the text has {len} bytes in the controller's encoding; it can have at most {most}")]
     TooLong {
         /// Length in bytes.
         len: usize,

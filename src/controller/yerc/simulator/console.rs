@@ -10,9 +10,9 @@ use crate::yerc::payload::CycleMode;
 const HELP: &[(&str, &str)] = &[
     ("alarm CODE [DATA [TYPE]] [NAME]", "raise an alarm: alarm 4315 1 2 COLLISION DETECT"),
     ("alarm clear", "remove all alarms"),
-    ("error on|off", "show an error, or none"),
+    ("error on|off", "show an error, or clear it"),
     ("mode teach|play", "turn the mode key"),
-    ("remote on|off", "accept remote commands, or not (CMD REMOTE)"),
+    ("remote on|off", "accept remote commands, or reject them (CMD REMOTE)"),
     ("servo on|off", "switch servo power"),
     ("cycle step|once|continuous", "select how jobs run"),
     ("hold pendant|external on|off", "press or release a HOLD"),

@@ -490,10 +490,12 @@ fn position(kind: Kind, entry: &PositionEntry) -> Result<Vec<u8>, String> {
         _ => known == PositionKind::Pulse,
     };
     let Some((word, ..)) = named.filter(|(known, ..)| allowed(*known)) else {
-        return Err(format!("a type '{}' is not possible here", entry.kind));
+        return Err(format!("the type '{}' is not possible here", entry.kind));
     };
     if entry.axes.len() > AXES || entry.tool > 63 || entry.user > 63 || entry.extended_form > 0x1F {
-        return Err("at most 8 axes, tool and user 0 to 63, extended_form 0 to 31".into());
+        return Err(
+            "a position can have at most 8 axes, tool and user from 0 to 63, and extended_form from 0 to 31".into()
+        );
     }
     let mut values = [0; AXES];
     values.iter_mut().zip(&entry.axes).for_each(|(value, axis)| *value = *axis);
@@ -537,7 +539,7 @@ fn file(
     world.files.install(&name, content);
     let stem = name.strip_suffix(b".JBI");
     if stem.is_some_and(|stem| world.files.program(stem).is_none()) {
-        return Err(format!("'{}' does not contain a job of that name", entry.name));
+        return Err(format!("'{}' does not contain a job with this name", entry.name));
     }
     Ok(())
 }

@@ -38,16 +38,16 @@ static STATUSES: [StatusRow; 5] = [
         code: 0x00,
         models: added::BOTH,
         name: "done",
-        cause: "The controller carried the request out.",
+        cause: "The controller carried out the request.",
         remedy: "Nothing to do.",
     },
     StatusRow {
         code: 0x08,
         models: added::DX200,
         name: "command not defined",
-        cause: "The controller does not know this command number.",
-        remedy: "Check the model (fs100 or dx200) and the software version (`armctl yerc info`): some commands are newer, \
-                 some exist on one model only.",
+        cause: "The controller does not support this command number.",
+        remedy: "Check the model (fs100 or dx200) and the software version (`armctl yerc info`): some commands need \
+                 newer software, and some exist on only one model.",
     },
     StatusRow {
         code: 0x09,
@@ -61,8 +61,8 @@ static STATUSES: [StatusRow; 5] = [
         models: added::DX200,
         name: "refused, see the added status",
         cause: "The controller refused; the added status gives the reason.",
-        remedy: "Look up the added status: `armctl explain yerc CODE`. Without an added status, read the pendant and \
-                 `armctl yerc alarm list`.",
+        remedy: "Look up the added status: `armctl explain yerc CODE`. Without an added status, read the display of \
+                 the pendant and `armctl yerc alarm list`.",
     },
     StatusRow {
         code: 0x28,
@@ -121,7 +121,8 @@ pub fn explain(result: Status) -> Explanation {
 /// An invalid code.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
-    "'{text}' is not a valid code: status codes have one or two hexadecimal digits, added status codes four, as in 0x2060"
+    "'{text}' is not a valid code: status codes have one or two hexadecimal digits, added status codes have four, for \
+     example 0x2060"
 )]
 pub struct NoCode {
     /// The invalid text.
@@ -140,7 +141,7 @@ pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
     if found.is_empty() {
         let mut unknown = short.map_or_else(|| unknown_added(code), unknown_status);
         if let Some(row) = trimmed.parse().ok().and_then(added) {
-            let hint = format!(" If {trimmed} was meant as a decimal number, it is 0x{:04X}: {}.", row.code, row.name);
+            let hint = format!(" If {trimmed} is a decimal number, the code is 0x{:04X}: {}.", row.code, row.name);
             unknown.remedy.to_mut().push_str(&hint);
         }
         found.push(unknown);
@@ -180,11 +181,11 @@ fn unknown_status(code: u8) -> Explanation {
         known: false,
         name: "unknown status code".into(),
         cause: "No source lists this status. Any status other than 0x00 means that the request was not carried out as \
-                asked."
+                requested."
             .into(),
         remedy:
-            "Look for a message on the pendant and in `armctl yerc alarm list`. Record the exchange with --trace if \
-                 it comes again."
+            "Look for a message on the pendant and in `armctl yerc alarm list`. If the status comes again, record the \
+             exchange with --trace."
                 .into(),
     }
 }

@@ -92,7 +92,8 @@ macro_rules! read_step {
                 let elements = self.query.decode_all(data)?;
                 let number: fn(&$item) -> u16 = $number;
                 let value = |item: &$item| {
-                    elements.get(usize::from(number(item) - self.first)).cloned().expect("blocks hold what is wanted")
+                    let element = elements.get(usize::from(number(item) - self.first));
+                    element.cloned().expect("blocks contain the requested elements")
                 };
                 Ok(self.wanted.iter().map(|item| (*item, value(item))).collect())
             }

@@ -72,13 +72,13 @@ impl VariableKind {
     }
 
     /// Limits of the plural command.
-    #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
+    #[expect(clippy::missing_panics_doc, reason = "a property of the table, checked by a test")]
     pub fn plural(self) -> Plural {
         Row::from_number(self.plural_command()).and_then(|row| row.plural).expect("every variable has a plural command")
     }
 
     /// Last number in factory state: 99, or 127 for positions.
-    #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
+    #[expect(clippy::missing_panics_doc, reason = "a property of the table, checked by a test")]
     pub fn last_standard(self) -> u16 {
         let spans = self.row().instances.dx200;
         spans.iter().find(|span| !span.extended).map(|span| span.last).expect("every variable has standard numbers")
@@ -117,7 +117,7 @@ pub struct Reference {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ReferenceError {
     /// Unknown letters.
-    #[error("'{found}' is not a variable; use B, I, D, R, S, P, BP or EX with a number, e.g. B0 or B0..B99")]
+    #[error("'{found}' is not a variable; use B, I, D, R, S, P, BP or EX with a number, for example B0 or B0..B99")]
     Kind {
         /// The invalid text.
         found: String,
@@ -129,7 +129,7 @@ pub enum ReferenceError {
         found: String,
     },
     /// A range with two different kinds.
-    #[error("'{found}' is not a valid range; both ends must have the same type, the lower one first")]
+    #[error("'{found}' is not a valid range; both ends must have the same type, and the lower end must be first")]
     Range {
         /// The invalid text.
         found: String,

@@ -83,7 +83,7 @@ impl fmt::Display for NotSentReason {
         match self {
             Self::NoImage => f.write_str("the controller sends no data"),
             Self::LinkLost => f.write_str("the connection is down"),
-            Self::NotReady(status) => write!(f, "the controller is not ready for a command, its status is: {status}"),
+            Self::NotReady(status) => write!(f, "the controller is not ready for a command: its status is {status}"),
             Self::Interrupted => f.write_str("interrupted"),
         }
     }
@@ -93,11 +93,11 @@ impl fmt::Display for Silence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::LinkLost => f.write_str("the connection was lost"),
-            Self::NotTaken => f.write_str("the controller did not start it"),
-            Self::TooLong => f.write_str("it still ran at the end of the wait"),
+            Self::NotTaken => f.write_str("the controller did not start the command"),
+            Self::TooLong => f.write_str("the command still ran at the end of the wait"),
             Self::Vanished => f.write_str("the controller ended the run status without a result"),
             Self::Undocumented(word) => write!(f, "the controller reports the undocumented status {word:#06x}"),
-            Self::Interrupted => f.write_str("its end was not confirmed in the time for a stop"),
+            Self::Interrupted => f.write_str("the end of the command was not confirmed in the time for a stop"),
         }
     }
 }

@@ -302,7 +302,7 @@ fn too_large() -> Fault {
 
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "real variables have single precision; what is too large is infinite"
+    reason = "real variables have single precision; a value that is too large becomes infinite"
 )]
 fn single(number: f64) -> f32 {
     number as f32

@@ -206,7 +206,11 @@ impl World {
         robot.check_limits(number, to)?;
         let arm = geometry.arm(&from);
         if arm != geometry.arm(to) {
-            return Err(Fault::new(NO_PATH, AlarmSource::Robot(number), "the hand system cannot change on a line"));
+            return Err(Fault::new(
+                NO_PATH,
+                AlarmSource::Robot(number),
+                "the hand system cannot change during a linear move",
+            ));
         }
         let (start, end) = (geometry.pose(&from), geometry.pose(to));
         let way = start.iter().zip(&end).take(3).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();

@@ -127,7 +127,7 @@ fn set_parameter(world: &mut World, request: &Request) -> Result<(), Fault> {
     let most = world.robot(number)?.max_payload_g;
     let grams = if parameter == WEIGHT_G { value } else { value.saturating_mul(GRAMS) };
     if matches!(parameter, WEIGHT | WEIGHT_G | AXIS_WEIGHT) && grams > most {
-        let why = format!("robot {} carries {most} g at most", number + 1);
+        let why = format!("robot {} can carry at most {most} g", number + 1);
         return Err(Fault::new(PAYLOAD, AlarmSource::Robot(number), why));
     }
     if request.int(Key::Axes) == 0 {

@@ -99,7 +99,7 @@ impl Request {
                 if (1..=32_767).contains(&places) {
                     return Ok(());
                 }
-                Err(Fault::of_words(format!("a pallet of {places} positions")))
+                Err(Fault::of_words(format!("a pallet cannot have {places} positions")))
             }
             Command::ParamSet | Command::ParamGet => {
                 let parameter = Parameter::from_number(self.int(Key::Parameter));

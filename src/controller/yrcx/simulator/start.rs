@@ -489,7 +489,7 @@ fn versions(entry: &Versions, source: Source<'_>) -> Result<[u16; 7], String> {
 fn word(command: Command, key: Key, text: &str) -> Result<u16, String> {
     let field = command.row().answer().find(|field| field.key == key);
     match field.map(|field| field.parse(text)) {
-        Some(Ok(Value::Int(number))) => u16::try_from(number).map_err(|_| format!("'{text}' does not fit")),
+        Some(Ok(Value::Int(number))) => u16::try_from(number).map_err(|_| format!("'{text}' is out of range")),
         Some(Err(what)) => Err(what),
         _ => Err(format!("'{text}' is not a valid value")),
     }

@@ -169,7 +169,9 @@ impl World {
                     self.set_servos(Servo::On);
                 }
             }
-            Action::MotorOff => self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "motor power went off")),
+            Action::MotorOff => {
+                self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "motor power was switched off"))
+            }
             Action::PowerLoss => self.power_off(&Fault::emergency()),
             Action::Servo(robot, axes, state) => self.set_servo(robot, axes, state)?,
             Action::AlarmReset => {
@@ -379,7 +381,7 @@ impl World {
         }
         let robot = self.robot_mut(number)?;
         if state != Servo::On {
-            robot.halt(&Fault::new(NO_POWER, AlarmSource::Robot(number), "a servo went off"));
+            robot.halt(&Fault::new(NO_POWER, AlarmSource::Robot(number), "a servo was switched off"));
         }
         let chosen = robot.axes.iter_mut().enumerate().filter(|(at, _)| axes == 0 || axes >> at & 1 == 1);
         for (_, axis) in chosen {

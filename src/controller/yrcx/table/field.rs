@@ -274,10 +274,13 @@ impl Field {
                     _ => *number,
                 };
                 let raw = u16::try_from(raw).ok().filter(|raw| *raw <= self.mask() >> low);
-                put(0, raw.ok_or_else(|| format!("{number} does not fit"))? << low);
+                put(0, raw.ok_or_else(|| format!("{number} does not fit in the field"))? << low);
             }
             (Form::Short(_), Value::Int(number)) => {
-                put(0, i16::try_from(*number).map_err(|_| format!("{number} does not fit"))?.cast_unsigned());
+                put(
+                    0,
+                    i16::try_from(*number).map_err(|_| format!("{number} does not fit in the field"))?.cast_unsigned(),
+                );
             }
             (Form::Long(_), Value::Int(number)) => {
                 for (at, bits) in low_word_first(number.cast_unsigned()).into_iter().enumerate() {
@@ -321,7 +324,7 @@ impl Field {
                         _ => Ok(()),
                     },
                     Form::Bits { show: Show::Fixed(fixed), .. } if i32::from(fixed) != *number => {
-                        Err(format!("{number} instead of the fixed value {fixed}"))
+                        Err(format!("the value must be {fixed}, not {number}"))
                     }
                     _ => Ok(()),
                 }
@@ -467,7 +470,7 @@ impl Charset {
     const fn allowed(self) -> &'static str {
         match self {
             Self::Comment => "allowed: up to 16 ASCII characters",
-            Self::Program => "allowed: 1 to 16 of A-Z, 0-9 and _",
+            Self::Program => "allowed: 1 to 16 characters from A-Z, 0-9 and _",
         }
     }
 
@@ -481,7 +484,7 @@ impl Charset {
         if fits && text.len() <= TEXT_CHARS {
             Ok(())
         } else {
-            Err(format!("'{}' does not fit; {}", text.chars().take(40).collect::<String>(), self.allowed()))
+            Err(format!("'{}' is not allowed; {}", text.chars().take(40).collect::<String>(), self.allowed()))
         }
     }
 }
@@ -492,7 +495,9 @@ fn plain(error: &UnitError) -> String {
         UnitError::Malformed { text, .. } | UnitError::TooFine { text, .. } => {
             format!("'{text}' is not a whole number")
         }
-        UnitError::Range { text, lowest, highest, .. } => format!("{text} is out of range; {lowest} to {highest} fit"),
+        UnitError::Range { text, lowest, highest, .. } => {
+            format!("{text} is out of range; the range is {lowest} to {highest}")
+        }
     }
 }
 

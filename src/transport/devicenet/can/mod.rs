@@ -265,7 +265,7 @@ pub enum PortError {
         why: String,
     },
     /// The adapter sends more than a bus can carry.
-    #[error("{path} sends without end; it is not a CAN adapter")]
+    #[error("{path} sends data without a pause; it is not a CAN adapter")]
     Flooded {
         /// Path of the adapter.
         path: String,

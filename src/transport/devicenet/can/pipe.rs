@@ -102,7 +102,7 @@ impl Pipe {
             while !arrived.is_closed() {
                 let mut bytes = vec![0; PIECE];
                 let read = match reader.read(&mut bytes) {
-                    Ok(0) => Err(vanished("it has ended")),
+                    Ok(0) => Err(vanished("the port was closed")),
                     Ok(len) => {
                         bytes.truncate(len);
                         Ok(bytes)
@@ -141,7 +141,7 @@ impl Pipe {
     /// # Errors
     /// The other end has closed the stream.
     pub async fn read(&mut self) -> io::Result<Vec<u8>> {
-        self.arriving.recv().await.unwrap_or_else(|| Err(vanished("it was closed")))
+        self.arriving.recv().await.unwrap_or_else(|| Err(vanished("the connection was closed")))
     }
 }
 

@@ -82,7 +82,7 @@ impl SlcanPort {
         let opened = port.ask(open, |said| *said == Said::Done).await?;
         match (about, rate, opened) {
             (_, _, Some(Said::No)) => {
-                let what = if listens { "listen only" } else { "go on the bus" };
+                let what = if listens { "listen only" } else { "connect to the bus" };
                 return Err(port.wrong(&format!("the adapter refuses to {what}")));
             }
             (None, None, None) if port.hears => {

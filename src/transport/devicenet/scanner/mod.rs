@@ -140,7 +140,7 @@ impl Scanner {
         }
         if self.connections.values().any(|connection| connection.slave() == settings.slave) {
             let mac = settings.slave;
-            return Err(Error::Settings(format!("this process has a connection with MAC {mac} already")));
+            return Err(Error::Settings(format!("this process already has a connection with MAC {mac}")));
         }
         self.connections.insert(number, Connection::new(self.identity.mac, settings));
         Ok(())

@@ -155,7 +155,7 @@ impl Requester {
             self.answered(answer)
         } else {
             self.current = None;
-            Some(Outcome::Senseless("it is not an answer"))
+            Some(Outcome::Senseless("it cannot be decoded"))
         }
     }
 
@@ -175,7 +175,7 @@ impl Requester {
         let index = current.sending.filter(|index| Fragment::of(*index, index + 2).count == count)?;
         if status != TAKEN {
             self.current = None;
-            return Some(Outcome::Senseless("the request is too long for it"));
+            return Some(Outcome::Senseless("the request is too long for this device"));
         }
         (current.tries, current.deadline) = (TRIES, now + self.patience);
         let next = index + 1;

@@ -79,11 +79,11 @@ pub mod general {
     pub const fn meaning(code: u8) -> &'static str {
         match code {
             NO_RESOURCE => "no resource left",
-            0x04 | NO_PATH => "no such object",
+            0x04 | NO_PATH => "the device has no such object",
             NO_SERVICE => "no such service",
             INVALID_VALUE => "invalid value",
             ALREADY => "it is already in that state",
-            CONFLICT => "not in its present state",
+            CONFLICT => "not possible in its present state",
             NOT_SETTABLE => "not settable",
             0x0F => "no permission",
             0x10 => "its state does not allow this",

@@ -93,7 +93,7 @@ fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
     };
     let present = bytes.len().saturating_sub(at + len);
     if present < makers {
-        return Err(WireError::short("maker's bytes of an identifier", at + len, makers, present));
+        return Err(WireError::short("manufacturer data of an identifier", at + len, makers, present));
     }
     Ok((Module { input, output }, len + makers))
 }

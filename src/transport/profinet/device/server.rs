@@ -48,8 +48,9 @@ impl<A: Application + Send + 'static> Server<A> {
         });
         let runs = Arc::clone(&inner);
         let thread = std::thread::Builder::new().name("profinet-device".to_owned());
-        let thread =
-            thread.spawn(move || runs.run()).map_err(|error| LocalError::new("thread of the device", &error))?;
+        let thread = thread
+            .spawn(move || runs.run())
+            .map_err(|error| LocalError::new("cannot start the thread of the device", &error))?;
         Ok(Self { inner, thread: Some(thread) })
     }
 

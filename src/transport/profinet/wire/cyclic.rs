@@ -61,12 +61,12 @@ impl<'a> Cyclic<'a> {
 /// Reason why a data status does not allow to use the data.
 pub fn describe_status(status: u8, transfer: u8) -> &'static str {
     match status {
-        _ if transfer != 0 => "a switch marked it as damaged",
-        _ if status & 0x80 != 0 => "it is marked to be ignored",
-        _ if status & 0x04 == 0 => "its data is not valid",
-        _ if status & 0x10 == 0 => "the device is in stop",
+        _ if transfer != 0 => "a switch marked the data as damaged",
+        _ if status & 0x80 != 0 => "the data is marked to be ignored",
+        _ if status & 0x04 == 0 => "the data is not valid",
+        _ if status & 0x10 == 0 => "the device is in the stop state",
         _ if status & 0x01 == 0 => "the device is a backup",
-        _ => "it is good",
+        _ => "the data is good",
     }
 }
 

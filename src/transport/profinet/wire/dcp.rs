@@ -375,10 +375,10 @@ pub fn describe_error(error: u8) -> &'static str {
         0 => "done",
         1 => "the station does not have this option",
         2 => "the station does not have this setting, or no value for it",
-        3 => "the station did not take the value",
+        3 => "the station did not accept the value",
         4 => "the station is out of resources",
         5 => "not possible at the moment, for a reason in the station",
-        6 => "not while a controller is connected to the station",
+        6 => "not possible while a controller is connected to the station",
         _ => "an unknown error",
     }
 }
@@ -405,7 +405,7 @@ pub fn check_name(name: &str) -> Result<(), String> {
         return Err(format!("'{first}' is reserved for port names"));
     }
     if name.split('.').count() == 4 && name.split('.').all(|label| label.parse::<u16>().is_ok()) {
-        return Err("it looks like an IP address".to_owned());
+        return Err("it has the form of an IP address".to_owned());
     }
     Ok(())
 }

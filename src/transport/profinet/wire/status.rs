@@ -102,9 +102,9 @@ const BLOCKS: [(u8, &str, Fields); 8] = [
             (0x07, "the timeout"),
             (0x08, "the retries"),
             (0x09, "the reference"),
-            (0x0A, "the longest alarm"),
-            (0x0B, "the tag of high priority"),
-            (0x0C, "the tag of low priority"),
+            (0x0A, "the maximum length of an alarm"),
+            (0x0B, "the VLAN tag for high priority"),
+            (0x0C, "the VLAN tag for low priority"),
         ],
     ),
     (0x14, "the control block", &[(0x00, "its type"), (0x04, "ARUUID"), (0x05, "SessionKey"), (0x08, "the command")]),
@@ -120,10 +120,10 @@ const RPC: [(u8, &str); 10] = [
     (0x02, "the cyclic data of one direction is missing"),
     (0x03, "wrong number of alarm channels"),
     (0x04, "no free connection: another controller uses the device, or the last connection has not timed out yet"),
-    (0x05, "unknown connection: it has ended"),
+    (0x05, "the connection is unknown or has ended"),
     (0x06, "the state does not allow this call"),
-    (0x07, "it could not start: not enough memory or timers"),
-    (0x08, "it has no free resources"),
+    (0x07, "the connection could not start: not enough memory or timers"),
+    (0x08, "the device has no free resources"),
     (0x09, "another connection uses its ports"),
 ];
 
@@ -140,7 +140,7 @@ const RECORDS: [(u8, &str); 18] = [
     (0xB2, "no such slot or subslot"),
     (0xB3, "the type does not match"),
     (0xB4, "no such area"),
-    (0xB5, "not in this state"),
+    (0xB5, "not possible in this state"),
     (0xB6, "access is denied"),
     (0xB7, "a value is out of its range"),
     (0xB8, "a parameter is invalid"),
@@ -174,12 +174,16 @@ const REASONS: [(u8, &str); 32] = [
     (0x15, "Connect failed"),
     (0x16, "Read failed"),
     (0x17, "Write failed"),
-    (0x18, "a control call failed: mostly ApplicationReady was not answered (is UDP 34964 open on this machine?)"),
+    (
+        0x18,
+        "a control call failed. Usually, ApplicationReady was not answered: check that UDP port 34964 is open on this \
+         computer",
+    ),
     (0x19, "the device asked for a pull or plug of a module"),
     (0x1A, "the application of the device has ended"),
     (0x1B, "the link is down"),
     (0x1C, "a MAC address could not be resolved"),
-    (0x1D, "synchronisation was lost"),
+    (0x1D, "synchronization was lost"),
     (0x1E, "the ports of the device do not match"),
     (0x1F, "the name or the address of the station was changed"),
     (0x20, "the device was reset to factory settings"),
@@ -230,7 +234,7 @@ impl Status {
         match self.parts() {
             [_, 0x81, 0x40, 0x04] => &["end the other controller's connection, or wait until its watchdog ends it"],
             [_, 0x81, 0x01 | 0x40, _] => &["connect again"],
-            [_, 0x81, 0x02, 0x07] => &["try startup=legacy in the target"],
+            [_, 0x81, 0x02, 0x07] => &["set startup=legacy in the target"],
             [_, 0x81, 0x02, 0x08 | 0x16..=0x1C] | [_, 0x81, 0x03, _] => {
                 &["compare layout= or gsdml= of the target with the modules of the device"]
             }

@@ -462,14 +462,14 @@ impl Host {
         if died {
             let mut events = vec![format!("client {} has died ({})", by.pid, by.command)];
             if self.motion == Some(id) {
-                events.push("it moved the robot".to_owned());
+                events.push("the client moved the robot".to_owned());
             }
             if leaves_command && !leaves_motion {
-                events.push("its command stays active".to_owned());
+                events.push("the command of the client stays active".to_owned());
             }
             let will = client.will.clone().filter(|will| self.is_change_allowed(will));
             if let Some(will) = will.and_then(|will| self.link.images()?.change(will, false)) {
-                events.push("armctl sends its stop signals".to_owned());
+                events.push("armctl sends the stop signals of the client".to_owned());
                 leaves_motion = false;
                 self.others(id).for_each(|other| other.send(Frame::Show(will.clone())));
             }
@@ -570,7 +570,7 @@ impl Host {
                 self.was_lost_in_motion |=
                     mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion) && self.link.images().is_none();
                 if self.leftover.take().is_some() {
-                    (self.log)("the command that a client left active has ended too");
+                    (self.log)("the command that a client left active has also ended");
                 }
                 self.broadcast(|| Frame::Control(Control::Lost(why.clone())));
             }

@@ -292,7 +292,7 @@ impl Node {
             return ignored("an unreadable state of the host");
         };
         if self.host.is_some_and(|(known, _)| state.timestamp < known) {
-            return ignored("a state of the host that is older than the last one");
+            return ignored("a state of the host that is older than the last state");
         }
         self.host = Some((state.timestamp, state.online));
         let name = self.names.host.clone().unwrap_or_default();
@@ -309,7 +309,7 @@ impl Node {
                     messages: vec![self.death(now_ms)],
                     note: Some((
                         Level::Notice,
-                        format!("the primary host {name} is offline: armctl stores the data for it"),
+                        format!("the primary host {name} is offline: armctl stores the data for the host"),
                     )),
                     reconnects: true,
                 }

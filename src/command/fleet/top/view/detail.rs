@@ -119,7 +119,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     let line = &sample.line;
     if sample.alarms.is_empty() {
         let (text, style) = match line.fault_text() {
-            Some(what) => (format!(" {what}; the controller does not report which one here"), bad),
+            Some(what) => (format!(" {what}; the controller does not report which alarm"), bad),
             None => (" no alarm".to_owned(), painter.palette.quiet()),
         };
         painter.draw_left(line_of(area, 0), &text, style);
