@@ -5,11 +5,11 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The class of a failure; it decides the exit code.
+/// Class of a failure. The class determines the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// The reader of stdout has closed the pipe; not a failure.
+    /// The reader of stdout has closed the pipe. This is not a failure.
     PipeClosed,
     /// Internal error, or a failure of a local file or disk.
     Local,
@@ -17,30 +17,31 @@ pub enum Kind {
     Usage,
     /// The controller refused the request.
     Refused,
-    /// No answer, or the port is absent or busy.
+    /// The controller did not answer, or the port is absent or busy.
     NoAnswer,
     /// Malformed or unexpected answer.
     Malformed,
-    /// A state-changing request was sent, and its answer was lost.
+    /// A request that changes something was sent, and its answer was lost.
     OutcomeUnknown,
     /// Rejected by armctl before anything was sent.
     Rejected,
     /// The condition of `--until` or `--check` was not met.
     ConditionNotMet,
-    /// Some robots or items failed, others succeeded.
+    /// Some robots or items failed, and others succeeded.
     Mixed,
-    /// Ctrl-C.
+    /// The user pressed Ctrl-C.
     Interrupted,
     /// A filter ended with this exit code (`halt_error` of jq).
     #[serde(skip)]
     Halted(u8),
-    /// A dry run has no answer to continue with. It ends the command and is never printed.
+    /// A dry run has no answer with which the command could continue. This failure ends the command and is never
+    /// printed.
     #[serde(skip)]
     DryRun,
 }
 
 impl Kind {
-    /// Every kind with its exit code and what the code means, in the order of `armctl help exit-codes`.
+    /// Every kind with its exit code and the meaning of the code, in the order of `armctl help exit-codes`.
     pub const TABLE: [(Self, u8, &'static str); 11] = [
         (Self::PipeClosed, 0, "done (also when the reader of stdout closed the pipe)"),
         (Self::Local, 1, "internal error, or a local file or disk"),
@@ -59,12 +60,12 @@ impl Kind {
         (Self::Interrupted, 130, "interrupted"),
     ];
 
-    /// The process exit code.
+    /// Exit code of the process.
     pub fn exit(self) -> u8 {
         if let Self::Halted(code) = self {
             return code;
         }
-        // Every other kind has a row: a test counts them.
+        // All other kinds have a row in the table: a test checks that.
         Self::TABLE.iter().find(|(kind, ..)| *kind == self).map_or(1, |row| row.1)
     }
 }
@@ -75,41 +76,41 @@ pub fn exit_process(kind: Kind) -> ! {
     std::process::exit(kind.exit().into())
 }
 
-/// Failure of a command, with a message and a hint.
+/// Failure of a command, with a message and an optional hint.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {
     /// The class.
     pub kind: Kind,
-    /// Code from the controller, such as `0x2060`.
+    /// Error code of the controller, for example `0x2060`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub code: Option<String>,
-    /// What happened, in a sentence without a full stop.
+    /// What happened, as a sentence without a period at its end.
     pub message: String,
-    /// What to do.
+    /// What the user can do.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub hint: Option<String>,
 }
 
 impl Failure {
-    /// A failure of `kind` without code or hint.
+    /// Creates a failure of this kind without code and hint.
     pub fn new(kind: Kind, message: impl Into<String>) -> Self {
         Self { kind, code: None, message: message.into(), hint: None }
     }
 
-    /// A mistake on the command line or in a settings file.
+    /// Creates a failure for a mistake on the command line or in a settings file.
     pub fn usage(message: impl Into<String>) -> Self {
         let message = message.into();
         Self { hint: decimal_point(&message), ..Self::new(Kind::Usage, message) }
     }
 
-    /// An internal error, or a failure of the local machine.
+    /// Creates a failure for an internal error, or for an error of the local machine.
     pub fn local(message: impl Into<String>) -> Self {
         Self::new(Kind::Local, message)
     }
 
-    /// A failed operation on a local file: exit 1, or 0 when it is a closed pipe.
+    /// Creates a failure for a failed operation on a local file. The exit code is 1, or 0 if a pipe was closed.
     pub fn io(what: impl fmt::Display, error: &std::io::Error) -> Self {
         use std::io::ErrorKind;
 
@@ -139,7 +140,7 @@ impl Failure {
         self
     }
 
-    /// Adds the controller's code.
+    /// Adds the error code of the controller.
     #[must_use]
     pub fn code(mut self, code: impl Into<String>) -> Self {
         self.code = Some(code.into());
@@ -147,7 +148,7 @@ impl Failure {
     }
 }
 
-/// Hint for a message that refuses a number with a decimal comma: `'2,5' is not a number`.
+/// Returns the hint for a message that refuses a number with a decimal comma, for example `'2,5' is not a number`.
 pub fn decimal_point(message: &str) -> Option<String> {
     let quoted = message.split('\'').zip(message.split('\'').skip(1)).skip(1).step_by(2);
     let refused = quoted.filter(|(_, after)| after.starts_with(" is no") && !after.contains("whole"));
@@ -174,8 +175,8 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// Converts an error with contexts. The contexts precede the message of the inner [`Failure`] or I/O error; its kind and
-/// hint stay the same. Any other error is a local failure.
+/// Converts an error with contexts. If the inner error is a [`Failure`] or an I/O error, the contexts precede its
+/// message, and its kind and hint stay the same. Any other error becomes a local failure.
 impl From<anyhow::Error> for Failure {
     fn from(error: anyhow::Error) -> Self {
         let mut context = String::new();

@@ -1,7 +1,7 @@
 //! `armctl batch`: runs the commands of a file over links that stay open.
 //!
-//! The whole file is checked before anything is sent: words, flags, robots, and the gate. Then the lines run in order,
-//! up to the first failure.
+//! The whole file is checked before anything is sent: words, flags, robots, and the gate. The lines then run in order
+//! until the first failure.
 
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -51,7 +51,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     done
 }
 
-/// Rejects repetition options, because they belong to a line and not to the file.
+/// Rejects the options for repetition, because they belong to a single line and not to the file.
 pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
         return Err(Failure::usage("--watch, --count and --until cannot apply to a batch")
@@ -86,7 +86,7 @@ struct Planned {
 }
 
 impl Plan<'_> {
-    /// Prepares all lines, or returns all their errors.
+    /// Prepares all lines. If there are errors, returns the errors of all lines.
     fn lines(&self, text: &str) -> Result<Vec<Planned>, Failure> {
         let file: Arc<str> = self.batch.file.display().to_string().into();
         let mut parser = Parser::default();

@@ -2,15 +2,16 @@
 
 use crate::command::frame::batch::is_name;
 
-/// Splits a line: quotes, backslashes and `#` as in a shell. Empty for an empty line or a comment.
+/// Splits a line into words, with quotes, backslashes and `#` as in a shell. The result is empty for an empty line or a
+/// comment.
 pub fn split(line: &str) -> Result<Vec<String>, String> {
     let words = shlex::split(line).ok_or("a closing quote, or the character after a backslash, is missing")?;
-    // For lines copied from the documentation.
+    // A line copied from the documentation starts with the program name.
     let has_program_name = words.first().is_some_and(|word| word == "armctl");
     Ok(words.into_iter().skip(usize::from(has_program_name)).collect())
 }
 
-/// Replaces `${NAME}` in a word by its value; `$${` means `${`.
+/// Replaces `${NAME}` in a word by the value of the variable. `$${` stands for `${`.
 pub fn expand_variables<'a>(word: &str, value: impl Fn(&str) -> Option<&'a str>) -> Result<String, String> {
     let mut expanded = String::new();
     let mut rest = word;

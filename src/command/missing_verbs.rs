@@ -1,8 +1,8 @@
-//! The nouns and verbs that all families share, and what a family says that lacks one.
+//! Nouns and verbs that all families share, and explanations for the families that lack one.
 
 use crate::failure::Failure;
 
-/// Verbs of every family. Where a controller cannot do one, [`MISSING`] has a sentence for it.
+/// Verbs of every family. If a controller does not support a verb, [`MISSING`] explains that.
 pub const SHARED: &[&str] = &[
     "status",
     "position",
@@ -78,7 +78,7 @@ pub const SHARED: &[&str] = &[
     "explain",
 ];
 
-/// What a family lacks: its words behind `armctl`, what it says, and what to use instead.
+/// Commands that a family lacks: words after `armctl`, reason, and what to use instead.
 #[rustfmt::skip]
 pub const MISSING: &[(&str, &str, &str)] = &[
     ("yerc counter", "a Yaskawa controller has no counters",
@@ -143,8 +143,8 @@ pub const MISSING: &[(&str, &str, &str)] = &[
     ("toyo hold", "the protocol has no hold", "use `armctl toyo stop` to stop programs and motions"),
 ];
 
-/// What is said of a line whose words lead to what a family lacks. `path` are those that lead to a command, by its own
-/// names.
+/// Failure for a line with a command that the family lacks. `path` has the words that lead to a command, by its own
+/// name and not by an alias.
 pub fn missing(path: &[&str], rest: &[&str]) -> Option<Failure> {
     let typed: Vec<&str> = path.iter().chain(rest).copied().collect();
     let is_meant = |(words, ..): &&(&str, &str, &str)| {
@@ -163,13 +163,13 @@ mod tests {
     use crate::cli::Cli;
     use crate::settings::target::Family;
 
-    /// Whether words lead to a command, by its own name or another.
+    /// Whether the words lead to a command, by its own name or by an alias.
     fn exists(line: &str) -> bool {
         let root = Cli::command();
         line.split(' ').try_fold(&root, |command, word| command.find_subcommand(word)).is_some()
     }
 
-    /// The line by the commands' own names, as far as it leads.
+    /// The line with aliases replaced by the commands' own names, as far as the words lead to a command.
     fn own_names(line: &str) -> String {
         let root = Cli::command();
         let mut command = Some(&root);

@@ -39,7 +39,7 @@ pub trait Serve: Sized {
 pub struct Started<S: Serve> {
     /// Report.
     pub report: S::Report,
-    /// Command line that reaches it.
+    /// Command line that connects to the simulator.
     pub reach: String,
     /// Simulator.
     pub server: S::Server,
@@ -52,7 +52,7 @@ pub struct Started<S: Serve> {
 /// A simulator with its server.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Server {
-    /// Serves until something arrives or is due, and handles it. The future may be dropped.
+    /// Serves until an event arrives or is due, and handles the event. The future may be dropped.
     async fn run_until_change(&mut self) -> io::Result<()>;
     /// Executes a console line and returns the result or the reason for a failure.
     fn console(&mut self, line: &str) -> Result<String, String>;
@@ -87,7 +87,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     if address.is_some_and(|address| !address.ip().is_loopback()) {
         run.screen.note("warning: other computers on the network can reach this simulator");
     }
-    // Programs read the report and know how to end the process.
+    // A program reads the address from the report, and needs no instructions.
     if !run.screen.is_json() {
         let console = if with_console { " or `quit`; `help` lists the console commands" } else { "" };
         run.screen.note(&format!("reach it: {reach}\nend it:   Ctrl-C{console}"));
@@ -118,7 +118,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     }
 }
 
-/// Executes a console line: `fault` is common to all simulators, the other lines are those of the family.
+/// Executes a console line: `fault` is common to all simulators, the other lines belong to the family.
 fn console_line(server: &mut impl Server, line: &str) -> Result<String, String> {
     let line = line.trim();
     if line == "help" {
@@ -136,7 +136,8 @@ fn console_line(server: &mut impl Server, line: &str) -> Result<String, String> 
 /// Console lines of a simulator.
 struct Console<R> {
     input: BufReader<R>,
-    /// Bytes of the next line so far, so that a turn of the simulator does not lose them.
+    /// Received bytes of the next line. They are kept here, so that they are not lost while the simulator handles an
+    /// event.
     buffered: Vec<u8>,
 }
 
@@ -169,7 +170,7 @@ async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Re
     }
 }
 
-/// Command line that reaches a simulator of a family at a URL.
+/// Command line that connects to a simulator of a family at a URL.
 pub fn connect_hint(family: &str, target: &str) -> String {
     format!("armctl -t '{target}' {family} status")
 }

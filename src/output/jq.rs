@@ -10,14 +10,14 @@ use crate::failure::{Failure, Kind};
 
 use self::worker::FilterError;
 
-/// A filter that has been compiled successfully.
+/// A compiled filter.
 #[derive(Debug)]
 pub struct Filter {
     text: String,
 }
 
 impl Filter {
-    /// Compiles a filter; an error in it is a usage failure.
+    /// Compiles a filter. A syntax error in the filter is a usage failure.
     pub fn new(text: &str) -> Result<Self, Failure> {
         let filter = Self { text: text.to_owned() };
         filter.ask(None, |_| Ok(())).map(|()| filter)
@@ -56,11 +56,11 @@ impl Filter {
     }
 }
 
-/// Runs in the worker process.
+/// Filters run in the worker process.
 #[cfg(not(test))]
 use worker::ask;
 
-/// Runs in this process, because the test binary is not armctl.
+/// In tests, filters run in this process, because the test binary is not armctl.
 #[cfg(test)]
 fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> Result<(), FilterError> {
     let program = program::Program::new(filter).map_err(FilterError::Mistake)?;
@@ -74,7 +74,8 @@ fn answers() -> std::io::Stdout {
     std::io::stdout()
 }
 
-/// Marks a report failure after a change, so that the user does not correct the line and repeat the change.
+/// Marks a report failure that occurred after a change. The user must not correct the command line and repeat the
+/// change.
 #[must_use]
 pub fn failure_after_change(failure: Failure) -> Failure {
     if failure.kind == Kind::PipeClosed {

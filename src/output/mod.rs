@@ -1,6 +1,6 @@
-//! Output: the only writer to stdout and stderr.
+//! Output: the only module that writes to stdout and stderr.
 //!
-//! stdout has only data; prompts, progress, hints and logs go to stderr.
+//! stdout contains only data. Prompts, progress, hints and logs are written to stderr.
 
 pub mod busy_work;
 pub mod csv;
@@ -34,27 +34,27 @@ use crate::failure::{Failure, Kind};
 pub enum Format {
     /// Tables for people.
     Table,
-    /// One envelope, or an array of them.
+    /// One envelope, or an array of envelopes.
     Json,
     /// One envelope per line, with the time.
     Jsonl,
     /// Comma-separated values.
     Csv,
-    /// Only values, with tabs between them, for a shell.
+    /// Only values, separated by tabs, for a shell.
     Value,
 }
 
 impl Format {
-    /// Whether a report is written as rows with columns from its schema.
+    /// Whether the format writes a report as rows, with columns from the schema of the report.
     pub fn is_rows(self) -> bool {
         matches!(self, Self::Csv | Self::Value)
     }
 }
 
-/// When to use colour.
+/// Use of color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum ColorChoice {
-    /// On a terminal with colours, or if `CLICOLOR_FORCE` is set, but not if `NO_COLOR` is set.
+    /// On a terminal with colors, or if `CLICOLOR_FORCE` is set, but not if `NO_COLOR` is set.
     Auto,
     /// Always, also in a file.
     Always,
@@ -68,9 +68,9 @@ pub enum ColorChoice {
 pub struct Screen {
     /// Format of data.
     pub format: Format,
-    /// Only errors and questions on stderr.
+    /// Whether only errors and questions are printed on stderr.
     pub quiet: bool,
-    /// `-v` is 1: summary, `-vv` is 2: frames, `-vvv` is 3: bytes.
+    /// Verbosity: 1 (`-v`) summary, 2 (`-vv`) frames, 3 (`-vvv`) bytes.
     pub verbosity: u8,
     color: ColorChoice,
     pager: bool,
@@ -79,12 +79,12 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Settings of flags and environment.
+    /// Creates the output settings from flags and environment.
     pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
         Self { format, quiet, verbosity, color, pager: false, plain_errors: false, questions: true }
     }
 
-    /// Sets whether errors are plain text even if data is JSON; only for `--jq`.
+    /// Sets whether errors are printed as plain text even if the data is JSON. Only `--jq` uses this.
     #[must_use]
     pub fn with_plain_errors(self, plain_errors: bool) -> Self {
         Self { plain_errors, ..self }
@@ -102,7 +102,7 @@ impl Screen {
         Self { pager, ..self }
     }
 
-    /// Only errors, as JSON; for tests.
+    /// Returns output settings that print only errors, as JSON. For tests.
     #[cfg(test)]
     pub const fn silent() -> Self {
         Self {
@@ -116,13 +116,13 @@ impl Screen {
         }
     }
 
-    /// The same, but only with errors.
+    /// Returns the same settings, but only errors are printed.
     #[must_use]
     pub fn silenced(self) -> Self {
         Self { quiet: true, verbosity: 0, ..self }
     }
 
-    /// Whether errors are JSON too.
+    /// Whether errors are printed as JSON.
     pub fn is_json(&self) -> bool {
         matches!(self.format, Format::Json | Format::Jsonl) && !self.plain_errors
     }
@@ -137,8 +137,8 @@ impl Screen {
         io::stdin().is_terminal()
     }
 
-    /// Whether the user can choose something that is missing in the line: questions are allowed, and the output is not
-    /// for a program.
+    /// Whether the user can select something that is missing in the command line. Questions must be allowed, and the
+    /// output must not be for a program.
     pub fn can_choose(&self) -> bool {
         self.can_ask() && !self.is_json() && std::env::var_os("CI").is_none_or(|value| value.is_empty())
     }
@@ -192,7 +192,7 @@ impl Screen {
         Ok(stdout.write_all(bytes).and_then(|()| stdout.flush()).context("stdout")?)
     }
 
-    /// Writes a value as JSON: one line in a pipe or with `jsonl`, indented on a terminal.
+    /// Writes a value as JSON. In a pipe or with `jsonl`, this is one line; on a terminal, the JSON is indented.
     pub fn json(&self, value: &impl Serialize) -> Result<(), Failure> {
         let _busy = busy_work::register();
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
@@ -202,7 +202,7 @@ impl Screen {
         self.data(&text)
     }
 
-    /// Writes a value as JSON without building the text in memory.
+    /// Writes a value as JSON. The text is not built in memory first.
     pub fn json_as_it_comes(&self, value: &impl Serialize) -> Result<(), Failure> {
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
         let mut stdout = io::BufWriter::new(io::stdout().lock());
@@ -218,8 +218,8 @@ impl Screen {
         }
     }
 
-    /// Prints a command line under its description on stderr, unless `--quiet`. The line is not wrapped, because a line
-    /// feed in it would end a pasted command early.
+    /// Prints a description and a command line below it on stderr, unless `--quiet`. The command line is not wrapped: a
+    /// line feed in a pasted command would end the command early.
     pub fn note_command(&self, description: &str, command: &str) {
         self.note(description);
         if !self.quiet {
@@ -227,7 +227,7 @@ impl Screen {
         }
     }
 
-    /// Prints once on a terminal that the output is from a simulator.
+    /// Prints a note that the output is from a simulator, once, and only on a terminal.
     pub fn note_simulator(&self) {
         static IS_TOLD: AtomicBool = AtomicBool::new(false);
 
@@ -236,21 +236,22 @@ impl Screen {
         }
     }
 
-    /// Prints progress of long work where no bar is possible, unless stderr is for a program.
+    /// Prints progress of long work where a progress bar is not possible. Nothing is printed if stderr is for a
+    /// program.
     pub fn step(&self, text: &str) {
         if !self.can_redraw() && !self.is_json() {
             self.note(text);
         }
     }
 
-    /// Prints a message on stderr, from verbosity `level` on.
+    /// Prints a message on stderr if the verbosity is at least `level`.
     pub fn detail(&self, level: u8, text: &str) {
         if self.verbosity >= level {
             Self::prose(&format!("{}\n", escape::lines(text)));
         }
     }
 
-    /// Prints a failure on stderr: `error:`, then `hint:` after an empty line.
+    /// Prints a failure on stderr: `error:`, then an empty line and `hint:`.
     pub fn failure(&self, failure: &Failure) {
         if failure.kind == Kind::PipeClosed {
             return;
@@ -268,7 +269,7 @@ impl Screen {
         Self::prose(&format!("{} {message}{code}\n{}", self.paint_stderr("1;31", label), hint.unwrap_or_default()));
     }
 
-    /// A word for stderr, with color if possible.
+    /// Formats a word for stderr, with color if possible.
     fn paint_stderr(&self, code: &str, word: &str) -> String {
         let color = self.wants_color(io::stderr().is_terminal());
         if color { format!("\x1b[{code}m{word}\x1b[0m") } else { word.to_owned() }
@@ -288,7 +289,7 @@ impl Screen {
         }
     }
 
-    /// Prints text for people, with line breaks between words on a terminal.
+    /// Prints text for people. On a terminal, lines are broken between words.
     fn prose(text: &str) {
         if io::stderr().is_terminal() {
             let (_, columns) = dialoguer::console::Term::stderr().size();
@@ -298,7 +299,7 @@ impl Screen {
         }
     }
 
-    /// An error here cannot be reported; the exit code remains.
+    /// An error is ignored, because it cannot be reported. The exit code still shows the result.
     fn stderr(text: &str) {
         let _ = io::stderr().lock().write_all(text.as_bytes());
     }

@@ -36,7 +36,7 @@ impl Document {
         let at = list.iter().position(|entry| is_called(entry, name)).ok_or(NO_ENTRY)?;
         let removed_lines = list.remove(at);
         let above = removed_lines.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
-        // A comment separated by an empty line is about something else, such as the file.
+        // A comment above an empty line is not about the entry. It may be about the file, for example, so it is kept.
         let kept = above.rfind("\n\n").map_or("", |end| &above[..=end]);
         if kept.contains('#') {
             self.insert_before_table(removed_lines.position(), kept);
@@ -47,7 +47,7 @@ impl Document {
         Ok(())
     }
 
-    /// Renames an entry, and the default if it names the entry.
+    /// Renames an entry. If the entry is the default robot, the default gets the new name.
     pub fn rename(&mut self, old: &str, new: &str) -> Result<(), DocumentError> {
         insert(self.entry(old)?, "name", new.into());
         if self.default() == Some(old) {
@@ -93,7 +93,7 @@ impl Document {
         self.0.get("default").and_then(Item::as_str)
     }
 
-    /// Removes the default, but keeps the comment above it, which can be that of the file.
+    /// Removes the default robot, but keeps the comment above it. The comment may be the header comment of the file.
     fn remove_default(&mut self) {
         let Some((key, _)) = self.0.as_table_mut().remove_entry("default") else { return };
         let above = key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
@@ -118,7 +118,7 @@ impl Document {
         })
     }
 
-    /// Inserts comments before the table that follows a position, or at the end.
+    /// Inserts comments before the table that follows a position. If no table follows, inserts them at the end.
     fn insert_before_table(&mut self, place: Option<isize>, text: &str) {
         let next = self.tables().filter(|table| table.position() > place).min_by_key(|table| table.position());
         if let Some(next) = next {
@@ -166,7 +166,8 @@ fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<
     Ok(None)
 }
 
-/// Replaces a value and keeps the comment after it, or adds it at the end of the table. Returns the old value.
+/// Replaces a value, and keeps the comment after it. If the key is missing, adds it at the end of the table. Returns
+/// the old value.
 fn insert(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
     if let Some(Item::Value(old)) = table.get_mut(key) {
         *new.decor_mut() = old.decor().clone();
@@ -180,7 +181,7 @@ fn insert(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
 mod tests {
     use super::*;
 
-    /// With a comment in every usual place.
+    /// A file with a comment in every usual place.
     const TEXT: &str = "\
 # Hall 3, kept by Ann
 
@@ -211,7 +212,7 @@ name = \"b\"
         document.to_string()
     }
 
-    /// Removed and added lines in order.
+    /// Returns the removed lines and the added lines, in their order.
     fn difference(text: &str) -> (Vec<&str>, Vec<&str>) {
         let (old, new): (Vec<&str>, Vec<&str>) = (TEXT.lines().collect(), text.lines().collect());
         let gone = old.iter().filter(|line| !new.contains(line)).copied().collect();

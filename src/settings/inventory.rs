@@ -42,7 +42,7 @@ use crate::files;
 /// File name in the platform's configuration folder, below `armctl/`.
 const FILE_NAME: &str = "robots.toml";
 
-/// Settings that a robot, the `[defaults]` of the file, a flag or the environment can have.
+/// Settings that can come from a robot, from the `[defaults]` of the file, from a flag or from the environment.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// Time limit of one attempt.
@@ -53,7 +53,7 @@ pub struct Options {
     pub encoding: Option<Encoding>,
     /// Whether only reads and stops are accepted.
     pub read_only: Option<bool>,
-    /// Whether the first command that needs a control connection opens a session (yrcx).
+    /// Whether the first command that requires a control connection opens a session (yrcx).
     pub hold: Option<bool>,
     /// Controller model (yerc).
     pub model: Option<ModelSetting>,
@@ -74,7 +74,7 @@ pub struct Entry {
     pub pulses_per_degree: Vec<f64>,
     /// Tags.
     pub tags: Vec<String>,
-    /// Names of its signals, variables and registers.
+    /// Names of the robot's signals, variables and registers.
     pub names: Arc<[Name]>,
 }
 
@@ -91,19 +91,19 @@ pub struct Inventory {
     pub robots: Vec<Entry>,
 }
 
-/// Path of the inventory: from flag or environment, or in the platform's folder.
+/// Path of the inventory. It comes from a flag or the environment, or is in the configuration folder of the platform.
 #[derive(Debug, Clone)]
 pub enum Location {
-    /// Named by the user; it must exist.
+    /// Path that the user named. The file must exist.
     Named(PathBuf),
-    /// In the platform's folder; it can be missing.
+    /// Path in the configuration folder of the platform. The file may be missing.
     Default(PathBuf),
     /// There is no home folder.
     Nowhere,
 }
 
 impl Location {
-    /// Selects the location; `named` is from flag or environment.
+    /// Selects the location. `named` is the path from a flag or the environment.
     pub fn find(named: Option<PathBuf>) -> Self {
         match (named, etcetera::choose_base_strategy()) {
             (Some(path), _) => Self::Named(path),
@@ -122,7 +122,7 @@ impl Location {
 }
 
 impl Inventory {
-    /// Reads the file. A missing file in the platform's folder counts as empty.
+    /// Reads the file. If the file in the configuration folder is missing, the inventory is empty.
     pub fn load(location: &Location) -> Result<Self, Failure> {
         let Some(path) = location.path() else { return Ok(Self::default()) };
         let text = match files::text(path, files::SETTINGS) {
@@ -140,7 +140,7 @@ impl Inventory {
         Ok(inventory)
     }
 
-    /// Parses the text of a file; `name` is for messages.
+    /// Parses the text of a file. `name` is the file name for error messages.
     pub fn parse(text: &str, name: &str) -> Result<Self, Failure> {
         let at = |span: std::ops::Range<usize>, what: &str| {
             let (line, column) = line_and_column(text, span.start);
@@ -237,7 +237,7 @@ impl Inventory {
         })
     }
 
-    /// Robots whose name matches a pattern with `*` and `?`.
+    /// Returns the robots whose name matches a pattern with `*` and `?`.
     pub fn matching<'a>(&'a self, pattern: &'a str) -> impl Iterator<Item = &'a Entry> {
         self.robots.iter().filter(move |robot| matches_pattern(pattern, &robot.name))
     }
@@ -249,7 +249,7 @@ pub fn is_name(name: &str) -> bool {
     !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
 }
 
-/// Pattern match with `*` and `?`.
+/// Whether a name matches a pattern with `*` and `?`.
 pub fn matches_pattern(pattern: &str, name: &str) -> bool {
     let mut pattern_chars = pattern.chars();
     match pattern_chars.next() {
@@ -267,7 +267,7 @@ pub fn matches_pattern(pattern: &str, name: &str) -> bool {
     }
 }
 
-/// Parses a value of the file; an error has its position.
+/// Parses a value of the file. An error contains the position of the value.
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
     raw: Option<Spanned<String>>,
     at: &dyn Fn(std::ops::Range<usize>, &str) -> Failure,
@@ -293,7 +293,7 @@ fn named_address(
     })
 }
 
-/// Checks a name and the address it stands for.
+/// Checks a name and its address.
 pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure> {
     let examples = match family {
         Family::Yerc => "examples: clamp = 27010, parts = \"B5\", speed = \"M10\"",
@@ -319,7 +319,7 @@ pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }
 
-/// Most similar word in serde's "unknown field `x`, expected one of `a`, `b`".
+/// Returns the most similar word in a message of serde such as "unknown field `x`, expected one of `a`, `b`".
 pub(super) fn suggestion(message: &str) -> Option<String> {
     let (_, rest) = message.split_once("unknown field `")?;
     let (word, rest) = rest.split_once('`')?;

@@ -1,8 +1,8 @@
 //! Completion protocol of the shells.
 //!
 //! The scripts in `completions/` set `ARMCTL_COMPLETE` to the name of the shell, and pass `--` and the words up to the
-//! cursor. Bash also splits words at `=` and `:`. It therefore passes the whole line and the part at the cursor. The
-//! variable then also contains the type of display and the width.
+//! cursor. Bash also splits words at `=` and `:`. The bash script therefore passes the whole line and the part at the
+//! cursor. The variable then also contains the type of display and the width.
 
 use std::ffi::OsString;
 
@@ -15,7 +15,7 @@ use crate::command::about::completions::Shell;
 /// Variable that requests a completion.
 const SHELL_VARIABLE: &str = "ARMCTL_COMPLETE";
 
-/// Completion answer; `None` if this process was not started for one.
+/// Returns the answer to a completion request; `None` if this process was not started for a completion.
 pub fn answer(args: &[OsString]) -> Option<String> {
     let shell_name = std::env::var(SHELL_VARIABLE).ok()?;
     let mut asked = shell_name.split_whitespace();
@@ -45,7 +45,7 @@ pub fn answer(args: &[OsString]) -> Option<String> {
     })
 }
 
-/// Values of `COMP_TYPE` with which bash shows a list; only a list can have descriptions.
+/// Values of `COMP_TYPE` for which bash shows a list. Only a list can contain descriptions.
 const LISTING: [usize; 2] = ['?' as usize, '!' as usize];
 
 fn lines(found: &[Candidate], line: impl Fn(&Candidate) -> String) -> String {
@@ -59,12 +59,12 @@ fn with_description(found: &Candidate) -> String {
     }
 }
 
-/// Whether a blank follows the candidate.
+/// Returns the character that follows a candidate: a blank, unless the user must type more text.
 fn separator(found: &Candidate) -> char {
     if found.is_incomplete { '-' } else { '+' }
 }
 
-/// Candidates at the end of `line`, in the form that bash puts in place of `piece`.
+/// Returns the candidates at the end of `line`, in the form with which bash replaces `piece`.
 fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
     let Split { words, quote } = Split::of(line);
     let index = words.len() - 1;
@@ -107,7 +107,7 @@ fn escape(value: &str) -> String {
 struct Split {
     /// Words; the last one is at the cursor and can be empty.
     words: Vec<OsString>,
-    /// Open quote at the end.
+    /// Quote that is still open at the end.
     quote: Option<char>,
 }
 

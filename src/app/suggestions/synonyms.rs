@@ -1,6 +1,6 @@
 //! Tables of synonyms and other word orders.
 
-/// Typed words without the family, and the commands for them.
+/// Words that users type without the family, and the commands that they mean.
 #[rustfmt::skip]
 pub const LINES: &[(&str, &[&str])] = &[
     ("add", &["setup", "robots add"]),
@@ -57,7 +57,7 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("where", &["yerc position", "yrcx position", "toyo position"]),
 ];
 
-/// Missing features of a family that others have: preceding words, synonyms, alternative.
+/// Features that a family does not have but others have: preceding words, synonyms, alternative.
 #[rustfmt::skip]
 pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc", &["homing", "origin"],
@@ -74,7 +74,7 @@ pub const ABSENT: &[(&str, &[&str], &str)] = &[
         "the speed override scales all speeds: see `armctl toyo override -h`"),
 ];
 
-/// Synonyms of verbs, with the verbs that a noun can have.
+/// Synonyms of verbs, each with the verbs that a noun can have instead.
 pub const VERBS: &[(&str, &[&str])] = &[
     ("clear", &["reset", "cancel", "delete"]),
     ("del", &["delete", "remove"]),

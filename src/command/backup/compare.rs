@@ -108,7 +108,7 @@ pub enum State {
     OnlyOld,
     /// Only in the new backup.
     OnlyNew,
-    /// Unknown: one of them was not saved, or was changed since then.
+    /// Unknown: one of the files was not saved, or was changed since the backup.
     Unknown,
 }
 
@@ -218,7 +218,7 @@ fn compare_files(
     manner: CompareOptions,
 ) -> Difference {
     let name = entry.or(partner).map(|entry| entry.name.clone()).unwrap_or_default();
-    // The file of the old side, or of the only one.
+    // The file of the old side, or of the only side that has the file.
     let (side, saved) = if entry.is_some() { (old, entry) } else { (new, partner) };
     let described = |file: Difference| match saved.and_then(|entry| entry.copy.as_ref()) {
         Some(copy) if side.is_controller => Difference { path: None, ..file.from_copy(&side.folder, copy) },
@@ -246,8 +246,8 @@ fn compare_files(
     described(FileItem::new(name, Compared::new(state), Ok(())))
 }
 
-/// Whether a file that is missing in a backup was missing on the controller, because the backup would have included
-/// it.
+/// Whether a file that is missing in a backup was also missing on the controller. This is the case if the backup would
+/// have included the file.
 fn is_in_scope(backup: &Manifest, other: &Manifest, name: &str) -> bool {
     let is_common = |word: &String| Only::of_scope(std::slice::from_ref(word)) != Only::default();
     backup.complete

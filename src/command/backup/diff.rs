@@ -44,7 +44,7 @@ impl DiffOptions {
         })
     }
 
-    /// Whether one of the names is that of a folder or a file.
+    /// Whether one of the names is an existing folder or file.
     pub fn names_folder(&self) -> bool {
         [&self.old, &self.new].into_iter().flatten().any(|path| path.exists())
     }
@@ -103,7 +103,7 @@ impl DiffOptions {
         Differences::of(old, new, &Only(self.only.clone()), options)
     }
 
-    /// Scope of the controller read: that of the backup, or the selection within it.
+    /// Scope of the controller read: the scope of the backup, or the selection within it.
     fn scope(&self, old: &BackupSide) -> Vec<String> {
         let scope = &old.manifest.scope;
         let only = Only(self.only.clone());

@@ -25,10 +25,10 @@ pub trait Backups: Family {
     /// Names of `backup`, `restore` and `diff` in envelopes and schemas.
     const IDS: [&'static str; 3];
 
-    /// Maximum risk of reading all of a robot.
+    /// Maximum risk of reading all data of a robot.
     const BACKUP_RISK: Risk = Risk::Read;
 
-    /// Risk of reading all of this robot.
+    /// Risk of reading all data of this robot.
     fn backup_risk(_robot: &Robot) -> Risk {
         Self::BACKUP_RISK
     }

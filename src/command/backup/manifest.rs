@@ -263,8 +263,8 @@ pub fn inspect_folder<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Fa
     }
 }
 
-/// Earlier backup in a folder that a new one continues, if any: with `resume`, one of the same target and scope;
-/// `scope` is the new selection, `None` if not given. With `force`, the new backup replaces it.
+/// Earlier backup in a folder that a new backup continues, if there is one. With `resume`, it must have the same target
+/// and scope; `scope` is the new selection, `None` if not given. With `force`, the new backup replaces it.
 pub fn find_earlier_backup<C: About>(
     folder: &Path,
     robot: &Robot,
@@ -317,9 +317,9 @@ pub fn check_origin(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(
 pub struct Saved {
     /// Name in the folder.
     pub file: String,
-    /// Its size.
+    /// Size of the file.
     pub bytes: u64,
-    /// Its SHA-256 in hexadecimal.
+    /// SHA-256 of the file in hexadecimal.
     pub sha256: String,
 }
 

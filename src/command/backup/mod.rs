@@ -99,7 +99,7 @@ pub fn continues_after(failure: &Failure) -> bool {
     matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::Rejected)
 }
 
-/// Severity of a failure kind: first that an action may have been executed, then that the work ended early.
+/// Severity of a failure kind. The highest is an unknown outcome; next are failures that ended the work early.
 pub fn severity(kind: Kind) -> u8 {
     match kind {
         Kind::OutcomeUnknown => 4,
@@ -125,7 +125,7 @@ pub const NOT_CHOSEN: &str = "not selected";
 /// Reason for an item that changes the machine itself.
 pub const NOT_MACHINE: &str = "changes the machine itself; armctl writes it only with --machine";
 
-/// Adds the way to continue to the hint of a failure.
+/// Adds the way to continue the work to the hint of a failure.
 pub fn add_hint(failure: Failure, again: &str) -> Failure {
     let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
     failure.hint(hint)

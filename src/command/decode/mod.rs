@@ -58,7 +58,7 @@ pub fn schemas<D: Decode>() -> [SchemaEntry; 2] {
     [SchemaEntry::of::<D::Report>(D::ID), SchemaEntry::of::<capture::Capture<Field<D>>>(D::CAPTURE_ID)]
 }
 
-/// Text on stdin; invalid bytes are replaced and then reported as such.
+/// Text on stdin; invalid bytes are replaced and then reported as invalid.
 pub fn stdin() -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&stdin_bytes()?).into_owned())
 }

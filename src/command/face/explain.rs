@@ -87,7 +87,7 @@ impl<T: ExtraColumns + Serialize + JsonSchema> Report for Codes<T> {
     }
 }
 
-/// Report of present or past alarms.
+/// Report of active or past alarms.
 pub trait RecordedAlarm {
     /// Each alarm with its data; `what` is the name of the list.
     fn recorded(&self, what: &str) -> Vec<Occurrence>;
@@ -108,7 +108,7 @@ impl<T: ExtraColumns, S> RecordedAlarm for Alarms<T, S> {
     }
 }
 
-/// Name of the list of present alarms.
+/// Name of the list of active alarms.
 const PRESENT: &str = "present";
 
 /// An alarm that a controller has or had.
@@ -137,7 +137,7 @@ pub struct Explained<R> {
 #[derive(Debug, Serialize, JsonSchema)]
 struct Told {
     robot: String,
-    /// Occurrences in its alarm list and history, the latest first.
+    /// Occurrences in the robot's alarm list and history, the latest first.
     alarms: Vec<Occurrence>,
     /// Lists that were not read, and the reason.
     errors: Vec<String>,
@@ -196,7 +196,7 @@ impl<F: Declaration> ToolTask for Explaining<F> {
     }
 }
 
-/// Occurrences of an alarm on a controller, present and past, and the lists that were not read.
+/// Occurrences of an alarm on a controller, active and past, and the lists that were not read.
 async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<Occurrence>, Vec<String>) {
     let mut link = match connect::<F>(run, robot).await {
         Ok(link) => link,

@@ -91,7 +91,7 @@ impl Layers {
         self.add(layer, State::Failed, message.to_owned(), failure.hint.clone());
     }
 
-    /// Adds an ok layer or a warning.
+    /// Adds an ok layer if `is_well` is true, otherwise a warning.
     pub fn judge(&mut self, layer: &'static str, is_well: bool, (well, ill): (&str, &str), advice: &str) {
         if is_well { self.ok(layer, well) } else { self.warn(layer, ill, advice) }
     }

@@ -129,7 +129,7 @@ async fn ask_address(run: &Run) -> Result<FoundTarget, Failure> {
     ask_missing_parts(run, &input.parse()?, None).await
 }
 
-/// Searches for controllers, and lets the user choose one; `None` if it is not listed.
+/// Searches for controllers, and lets the user select one; `None` if the wanted controller is not in the list.
 async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, Failure> {
     let found = interruptible(Discover::default_arguments()?.find(run)).await??;
     let mut targets = found.places();
@@ -150,7 +150,7 @@ async fn simulator(run: &Run) -> Result<FoundTarget, Failure> {
     ask_missing_parts(run, &input.parse()?, Some(family)).await
 }
 
-/// Asks for what the address does not contain.
+/// Asks for the parts that the address does not contain.
 async fn ask_missing_parts(run: &Run, given: &TargetArgument, known: Option<Family>) -> Result<FoundTarget, Failure> {
     let hint = match given {
         TargetArgument::Url(target) => target.family(),

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::settings::duration;
 
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);
-/// Nouns whose values have names, in the order in which a name is looked for.
+/// Nouns whose values can have names, in search order.
 const NOUNS: [&str; 7] = ["io", "var", "counter", "timer", "register", "port", "param"];
 
 /// Wait until a condition is true for all selected robots, and print their state
@@ -36,7 +36,7 @@ impl Wait {
     /// Command that reads what the condition needs: the status, or a signal or variable.
     ///
     /// # Errors
-    /// If no family has a value of this name.
+    /// If no family has a value with this name.
     pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
         Ok(match self.item()? {
             Some(comparison) => Box::new(SharedLine::reading("wait", &NOUNS, comparison.name)?),
@@ -58,7 +58,7 @@ impl Wait {
         Ok(Repeat { every, count: given.count, until, within: self.within, is_quiet: true, ..Repeat::default() })
     }
 
-    /// Comparison of a signal or variable; `None` if the status has all that the condition needs.
+    /// Comparison of a signal or variable; `None` if the condition needs only the status.
     fn item(&self) -> Result<Option<Comparison<'_>>, Failure> {
         let keys = as_value(&OverviewReport::default())?;
         Ok(Comparison::parse(&self.condition).filter(|comparison| keys.get(comparison.name).is_none()))

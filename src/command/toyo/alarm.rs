@@ -38,7 +38,7 @@ commands! {
         /// Reset the alarm
         #[command(alias = "cancel")]
         Reset(Reset),
-        /// The point of the alarm
+        /// Show the point of the alarm
         Point(Point),
     }
 }
@@ -71,7 +71,7 @@ impl Watchable for List {
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
-/// Code of the present error; code 00 if the controller does not report the code.
+/// Code of the present error. It is 00 if the controller does not report the code.
 async fn read_error_code(link: &mut Link) -> Result<Option<u8>, Failure> {
     let status = link.status_of(&[0, 1]).await?;
     Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
@@ -82,21 +82,21 @@ pub(super) async fn present_alarms(link: &mut Link) -> Result<Vec<Told>, Failure
     Ok(read_error_code(link).await?.map(alarm_from_code).into_iter().collect())
 }
 
-/// Additional keys of a toyo alarm.
+/// Fields that toyo adds to an alarm.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Axis {
     /// Axis of the alarm.
     #[serde(rename = "axis_number")]
     axis: Option<u8>,
-    /// History: power-off without alarm and time.
+    /// In the history: a power-off, which has no alarm and no time.
     power_off: bool,
-    /// History: the alarm field as received; normally 00.
+    /// In the history: the alarm field as received; normally 00.
     alarm: Option<String>,
 }
 
 impl ExtraColumns for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
-        // The text already names the cause.
+        // The text already contains the cause.
         Vec::new()
     }
 }
@@ -107,7 +107,7 @@ fn entry(code: u8) -> AlarmEntry<Axis> {
     AlarmEntry { alarm: alarm_from_code(code), own: Axis { axis, power_off: false, alarm: None } }
 }
 
-/// The entry with additions from `alarms.toml`.
+/// Adds the user's texts from `alarms.toml` to the entry.
 fn with_site_texts(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
@@ -144,7 +144,7 @@ impl Command for History {
             progress.print_line(&format!("error history {number} of {} at most", self.limit));
             let record = match link.try_ask(&entry_request(number)).await? {
                 Ok(record) => record,
-                // A controller without history refuses the first entry; a controller with a short history refuses an
+                // A controller without a history refuses the first entry. A controller with a short history refuses an
                 // entry beyond its end.
                 Err(_) if number > 1 => break,
                 Err(_) => link.ask(&entry_request(number)).await?,
@@ -156,7 +156,7 @@ impl Command for History {
     }
 }
 
-/// Entry of the history; `None` if it is empty.
+/// Entry of the history; `None` if the entry is empty.
 fn history_entry(record: &Record) -> Option<AlarmEntry<Axis>> {
     if record.byte("error") == Some(errors::NONE) {
         return None;
@@ -251,7 +251,7 @@ impl Command for Point {
 /// Point of the alarm.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PointReport {
-    /// Text of the controller; null without a text.
+    /// Text from the controller; null if it sent none.
     point: Option<String>,
 }
 

@@ -95,9 +95,10 @@ async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool)
 pub struct TransferReport {
     /// Whether the controller accepted the command.
     accepted: bool,
-    /// Time from acceptance to end; null without a wait, or if the transfer ended before the first read.
+    /// Time from acceptance to end. Null if the command did not wait, or if the transfer ended before the first read.
     elapsed_ms: Option<u64>,
-    /// Whether parameter 2 changed, so that the controller executes nothing before a restart; null without a wait.
+    /// Whether parameter 2 changed, so that the controller executes nothing before a restart. Null if the command did
+    /// not wait.
     needs_power_cycle: Option<bool>,
 }
 

@@ -1,4 +1,4 @@
-//! Layers of a controller for `armctl robots check`.
+//! Checks of `armctl robots check` that are specific to the controller.
 
 use super::info;
 use super::link::Link;
@@ -16,7 +16,7 @@ use crate::settings::Robot;
 const LAYERS: &[&str] =
     &["line", "answer", "version", "teach pendant", "mode", "slaves", "power cycle", "error", "servo", "origin"];
 
-/// Checks the layers with read requests.
+/// Checks the layers. It sends only read requests.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
     match Toyo::connect(robot, access, screen).await {
@@ -69,7 +69,7 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         layers.ok("error", "none");
     }
     layers.leftover_drafts(&left_over(status));
-    // Servo power without use is only a remark, not a failure.
+    // Servo power without motion is only a remark, and not a failure.
     let is_idle = !status.executing() && !status.homing() && !is_held(robot);
     let on = if is_idle {
         "on, but no program runs and no session is open; use `toyo servo off` to switch servo power off"

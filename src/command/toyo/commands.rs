@@ -1,4 +1,4 @@
-//! The commands of `toyo`, as its help lists them.
+//! Commands of `toyo` in the order of its help.
 
 use super::link::Toyo;
 use super::{
@@ -9,7 +9,7 @@ use crate::command::backup::family_backup::Diff;
 use crate::command::{Offline, Subcommands, commands};
 
 commands! {
-    /// What can be asked of a Toyo controller.
+    /// Commands for a Toyo controller.
     pub enum Commands {
         "Status and diagnosis":
         /// Show all status flags

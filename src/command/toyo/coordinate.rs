@@ -1,4 +1,4 @@
-//! `toyo coordinate set`: coordinates for a program that waits for them.
+//! `toyo coordinate set`: sends coordinates to a program that waits for them.
 
 use clap::Args;
 
@@ -24,7 +24,7 @@ commands! {
     }
 }
 
-/// Send coordinates to a task. Its waiting or next RSMV step moves to them (TO 2-8, MRSS).
+/// Send coordinates to a task. The waiting or next RSMV step of the task moves to them (TO 2-8, MRSS).
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Set {
@@ -55,7 +55,7 @@ fn field(name: &str) -> &'static Field {
 }
 
 impl Set {
-    /// Text for the speed.
+    /// Text about the speed.
     fn pace(&self) -> String {
         match self.speed {
             Value::Number(0) => "the speed of its step".to_owned(),
@@ -63,7 +63,7 @@ impl Set {
         }
     }
 
-    /// Text after "This will …".
+    /// Text that completes "This will …".
     fn in_words(&self, coordinates: &str) -> String {
         format!(
             "move to {coordinates} with the next RSMV step of task {} at {}",

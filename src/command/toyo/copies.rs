@@ -21,23 +21,23 @@ use crate::gate::Change;
 use crate::output::Screen;
 use crate::output::view::View;
 
-/// A program copy, with the requests that read source and target.
+/// A program copy, and the requests that read source and target.
 #[derive(Debug)]
 pub struct Copy {
-    /// Type of program: `easy program`.
+    /// Type of program, such as `easy program`.
     pub what: &'static str,
     /// Number of the source.
     pub from: i32,
     /// Number of the target.
     pub to: i32,
-    /// Copy command.
+    /// Request that copies the program.
     pub order: Request,
-    /// Read requests of source and target.
+    /// Requests that read the source and the target.
     pub reads: [Vec<Request>; 2],
 }
 
 impl Copy {
-    /// Copies if source and target differ, after confirmation. The target is read back.
+    /// Copies the program after a confirmation, if source and target differ. Then reads the target back.
     pub async fn make(self, link: &mut Link, screen: &Screen, authority: &Authority<'_>) -> Result<Copied, Failure> {
         let Self { what, from, to, order, reads: [source, target] } = self;
         if from == to {
@@ -86,7 +86,7 @@ impl Copy {
     }
 }
 
-/// Condition of the copy.
+/// Condition for the copy.
 const DIFFER: &str = "whether source and target differ";
 
 /// Change to confirm.
@@ -124,14 +124,14 @@ fn replacing(
     })
 }
 
-/// Fields that identify a program and are not content.
+/// Fields that identify a program. They are not content.
 const KEYS: [&str; 2] = ["program", "st"];
 
 fn content(record: &Record) -> Vec<Value> {
     record.pairs().filter(|(field, _)| !KEYS.contains(&field.name)).map(|(_, value)| value.clone()).collect()
 }
 
-/// Number of records that differ in content.
+/// Number of records whose content differs.
 fn differences(one: &[Record], other: &[Record]) -> u32 {
     let differing = one.iter().zip(other).filter(|(one, other)| content(one) != content(other)).count();
     u32::try_from(differing).unwrap_or(u32::MAX)

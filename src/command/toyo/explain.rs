@@ -102,14 +102,14 @@ impl face::Explain for Explain {
 /// Axis of a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Axis {
-    /// Null if the code concerns no axis.
+    /// Axis of the code; null if the code does not concern an axis.
     #[serde(rename = "axis_number")]
     axis: Option<u8>,
 }
 
 impl ExtraColumns for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
-        // The text already names the cause.
+        // The text already contains the cause.
         Vec::new()
     }
 }

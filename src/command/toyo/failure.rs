@@ -11,7 +11,8 @@ use crate::controller::toyo::layout::LayoutProblem;
 use crate::controller::toyo::request::{BlockError, Request};
 use crate::failure::{Failure, Kind, plain};
 
-/// Failure for an error of the client of robot `label`. [`refusal::explained`] adds the reason of a refusal.
+/// Failure for an error of the client. `label` is the name of the robot. [`refusal::explained`] adds the reason for a
+/// refusal.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
     match error {
@@ -57,7 +58,8 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::Session(busy) => session_busy(label, &busy),
         Error::Port { path, error } => not_open(label, &path, &error),
         Error::DeviceServer { host, port, error } => not_connected(label, &host, port, &error),
-        // The cause can pass, such as port permissions that the system sets a moment after the port appears.
+        // The cause may pass. For example, the system sets the permissions of a port only a moment after the port
+        // appears.
         Error::NotReopened(cause) => Failure { kind: Kind::NoAnswer, ..failure(label, *cause) },
         Error::Opener(error) => match error.downcast_ref::<Failure>() {
             Some(failure) => failure.clone(),
@@ -80,7 +82,7 @@ fn silence(Unanswered { counters, invalid_answer, .. }: &Unanswered) -> &'static
     }
 }
 
-/// Hint for the command that shows whether a command was executed.
+/// Hint with the command that shows whether a command was executed.
 fn verification_hint(request: Option<&Request>) -> &'static str {
     request.map_or("use `toyo status` to see the state of the controller", |request| {
         refusal::verification_hint(request.command())
@@ -92,7 +94,7 @@ pub fn not_put_back(block: &str) -> String {
     format!("armctl could not restore a temporary change with {block}")
 }
 
-/// Failure for a change that could not be undone, because the controller refused or for another cause.
+/// Failure: a change could not be undone, because the controller refused or for another cause.
 fn not_undone(label: &str, what: &str, cause: Option<Box<Error>>) -> Failure {
     let (kind, why) = match cause.map(|cause| failure(label, *cause)) {
         Some(cause) => (cause.kind, cause.message),
@@ -108,7 +110,7 @@ fn not_stopped(kind: Kind, message: String) -> Failure {
     )
 }
 
-/// Failure for a lost connection.
+/// Failure: the connection was lost.
 fn broken(label: &str, is_shared: bool, error: &io::Error) -> Failure {
     let what = match error.kind() {
         io::ErrorKind::NotConnected if is_shared => format!("the connection is lost: {error}"),
@@ -173,12 +175,12 @@ fn not_connected(label: &str, host: &str, port: u16, error: &ConnectError) -> Fa
     Failure::new(Kind::NoAnswer, format!("{label}: {what}")).hint(hint)
 }
 
-/// Failure for values that cannot be sent, as an error of the command line.
+/// Failure: the values on the command line cannot be sent.
 pub fn wrong(error: &LayoutProblem) -> Failure {
     Failure::usage(error.to_string()).hint("use `--help` to see the valid values")
 }
 
-/// Failure for a request that cannot be sent.
+/// Failure: the request cannot be sent.
 pub fn misuse(error: &BlockError) -> Failure {
     Failure::usage(error.to_string()).hint("use `--help` to see the valid values")
 }

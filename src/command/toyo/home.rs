@@ -79,7 +79,7 @@ impl Command for Home {
     }
 }
 
-/// Adds the present position of each axis. A busy controller can refuse to report it.
+/// Adds the current position of each axis to the change. A busy controller may refuse to report it.
 async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change, Failure> {
     let coordinates = match link.read_position().await {
         Ok(record) => Coordinates::of(&record, letters),

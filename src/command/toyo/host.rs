@@ -36,7 +36,7 @@ impl Command for Host {
         };
         let old = Old::read(context.link.status_before(2).await?.map(Status::host_on));
         let ordered = context.link.ask(&Request::bare(command)).await;
-        // After a lost answer, the status shows the result of the command.
+        // If the answer was lost, the status shows whether the command was executed.
         ordered.map(|_| ()).or_else(
             |failure| {
                 if failure.kind == Kind::OutcomeUnknown { Ok(()) } else { Err(failure) }

@@ -37,7 +37,7 @@ impl Command for Info {
         let versions = STATIONS.map(version);
         let all: Vec<Request> = [&system].into_iter().chain(&versions).chain([&task, &speed]).cloned().collect();
         link.plan_all(&all)?;
-        // Every controller answers this request; each of the others can be refused.
+        // Every controller answers this request. It may refuse each of the other requests.
         let mut about = About::of(&link.ask(&system).await?);
         for request in &all[1..] {
             match link.try_ask(request).await? {
@@ -65,13 +65,13 @@ pub struct About {
     language: String,
     /// Letters of axes 1 to 4.
     axes: Vec<&'static str>,
-    /// End of the answer, which the manual does not explain.
+    /// Last part of the answer. The manual does not explain it.
     tail: String,
     /// Versions of the stations that answered.
     stations: Vec<Station>,
     /// The current task; null if the controller refused to report it.
     task: Option<u8>,
-    /// Null if the controller refused to report it.
+    /// Speed override; null if the controller refused to report it.
     speed_override_percent: Option<u8>,
     /// Requests that the controller refused (`@NG`).
     refused: Vec<String>,
@@ -80,7 +80,7 @@ pub struct About {
 /// A station of the controller.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Station {
-    /// 0 is the controller itself.
+    /// Number of the station; 0 is the controller itself.
     station: u8,
     version: String,
 }

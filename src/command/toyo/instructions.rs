@@ -23,7 +23,7 @@ pub struct InstructionHelp {
     example: &'static str,
     /// Section of the manual.
     section: &'static str,
-    /// Controllers that have it; empty for all.
+    /// Controllers that have the instruction; empty for all controllers.
     only_on: Vec<&'static str>,
     /// Operands in order.
     operands: Vec<Operand>,
@@ -57,7 +57,7 @@ struct OperandWord {
 }
 
 impl InstructionHelp {
-    /// Instruction of a row of the table.
+    /// Creates the description from a row of the instruction table.
     pub fn new(row: &'static Instruction) -> Self {
         Self {
             instruction: row.word,

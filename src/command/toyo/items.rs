@@ -1,4 +1,5 @@
-//! Batch reads: each item has its own result, and one refusal does not hide the other answers.
+//! Reads of several items. Each item has its own result, so that a refusal does not prevent the report of the other
+//! answers.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +23,7 @@ pub enum Item<T> {
     Answered {
         #[serde(flatten)]
         value: T,
-        /// True.
+        /// Always true.
         ok: bool,
     },
     /// Not answered.
@@ -30,14 +31,14 @@ pub enum Item<T> {
         /// Key of the item.
         #[serde(flatten)]
         key: Key,
-        /// False.
+        /// Always false.
         ok: bool,
         /// Reason, with the refused block.
         error: Failure,
     },
 }
 
-/// Key of an item: `counter` 5.
+/// Key of an item, such as `counter` 5.
 pub type Key = BTreeMap<&'static str, i32>;
 
 /// Answer to each request.
@@ -52,7 +53,7 @@ impl<T> Item<T> {
         }
     }
 
-    /// Reason for a missing value.
+    /// Reason why the value is missing.
     pub fn error(&self) -> Option<&Failure> {
         if let Self::Failed { error, .. } = self { Some(error) } else { None }
     }
@@ -67,7 +68,7 @@ pub fn in_a_word(kind: Kind) -> &'static str {
     }
 }
 
-/// Failure of a report: the number of failed items, with the message of the first.
+/// Failure of a report. It has the number of failed items, and the message of the first failed item.
 pub fn failure<'f>(all: usize, errors: impl Iterator<Item = Option<&'f Failure>>) -> Option<Failure> {
     let failed: Vec<&Failure> = errors.flatten().collect();
     let first = *failed.first()?;
@@ -78,8 +79,8 @@ pub fn failure<'f>(all: usize, errors: impl Iterator<Item = Option<&'f Failure>>
     Some(Failure { kind: Kind::Mixed, message, ..first.clone() })
 }
 
-/// Reads items in order, each with its own result. After a lost connection the remaining items are not read. A dry run
-/// records all requests and ends.
+/// Reads items in order. Each item has its own result. After a lost connection, the remaining items are not read. A dry
+/// run records all requests and ends.
 ///
 /// # Errors
 /// The first failure, if no item was answered.
@@ -87,7 +88,7 @@ pub async fn read_each(link: &mut Link, screen: &Screen, what: &str, requests: &
     read(link, screen, what, requests, 1, |_| false).await
 }
 
-/// Like [`read_each`], up to the first answer for which `is_last` holds.
+/// Like [`read_each`], but ends after the first answer for which `is_last` is true.
 ///
 /// # Errors
 /// Like [`read_each`].
@@ -101,7 +102,7 @@ pub async fn read_until(
     read(link, screen, what, requests, 1, is_last).await
 }
 
-/// Like [`read_each`], with a second attempt after a refusal, because a busy controller also refuses.
+/// Like [`read_each`], but a refused request is sent a second time, because a busy controller also refuses.
 ///
 /// # Errors
 /// Like [`read_each`].
@@ -161,7 +162,8 @@ async fn read(
     }
 }
 
-/// Records in a dry run a request with a second attempt after a refusal by a controller without the item.
+/// In a dry run, records a request that is sent a second time after a refusal, which a controller without the item
+/// sends.
 pub fn plan_twice(link: &mut Link, request: &Request) {
     link.plan(request, THERE);
     if request.parameter().is_some_and(|parameter| !parameter.only_on.is_empty()) {
@@ -169,7 +171,7 @@ pub fn plan_twice(link: &mut Link, request: &Request) {
     }
 }
 
-/// Answer to one request, or the reason for a missing answer. A failure ends all the work.
+/// Answer to one request, or the reason why there is none. A failure ends the whole work.
 async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result<Record, Failure>, Failure> {
     for _ in 1..times {
         match link.try_ask(request).await {
@@ -272,7 +274,7 @@ mod tests {
             assert_eq!(odd[0]["raw"], raw, "{entry}");
             let others = data["items"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
             assert!(others.count() > 50);
-            // A value outside the manual is not written back.
+            // A value that is not in the manual is not written back.
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
                 assert!(failure.message.contains("'ax2=+0000.5' is not in the manual"), "{failure}");

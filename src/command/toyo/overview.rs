@@ -18,7 +18,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     Ok(report(status, Some(coordinates)))
 }
 
-/// Report of the answers.
+/// Creates the report from the answers.
 pub(super) fn report(status: Status, coordinates: Option<Coordinates>) -> OverviewReport {
     // The teach pendant gives the axes the letters X, Y and Z.
     let position = coordinates.and_then(|coordinates| {
@@ -29,7 +29,7 @@ pub(super) fn report(status: Status, coordinates: Option<Coordinates>) -> Overvi
     OverviewReport { state, left_over: left_over(status), ..OverviewReport::default() }
 }
 
-/// State from the pages of the status.
+/// State according to the pages of the status.
 pub(super) fn state(status: Status) -> State {
     let mode = status.run_mode();
     State {
@@ -45,7 +45,7 @@ pub(super) fn state(status: Status) -> State {
     }
 }
 
-/// Settings that an ended client left, as far as the status shows them.
+/// Settings that a client left when it ended, if the status shows them.
 pub(super) fn left_over(status: Status) -> Vec<LeftOver> {
     let is_program = status.run_mode() == Some(RunMode::Program);
     [

@@ -11,7 +11,8 @@ use crate::output::Screen;
 use crate::output::view::{Cell, Table, View};
 use crate::transport::ports::{self, PortInfo, PortKind, PortUser};
 
-/// Failure because another program uses the port. An armctl that receives a termination signal first stops its motion.
+/// Failure: another program uses the port. If that program is armctl and receives a termination signal, it first stops
+/// its motion.
 pub fn in_use(label: &str, path: &str) -> Failure {
     let failure = |by: &str| Failure::new(Kind::NoAnswer, format!("{label}: {by} uses {path}"));
     match ports::user(path) {
@@ -55,13 +56,13 @@ pub struct List {
 /// A serial port.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Port {
-    /// `/dev/ttyUSB0`, `COM3`.
+    /// Name, such as `/dev/ttyUSB0` or `COM3`.
     name: String,
-    /// Name that does not depend on other devices (Linux).
+    /// Name that stays the same if other devices are added or removed (Linux).
     stable_name: Option<String>,
     /// URL for `-t`, with the stable name.
     target: String,
-    /// `usb`, `pci`, `bluetooth` or `other`.
+    /// Kind of port: `usb`, `pci`, `bluetooth` or `other`.
     kind: &'static str,
     /// Manufacturer from the USB device.
     maker: Option<String>,

@@ -54,7 +54,7 @@ pub fn heading(index: usize, letter: &str) -> &'static str {
     HEADINGS[index.min(3)][column]
 }
 
-/// Title of an axis (0 to 3): its letter, and its number if the letter is at an unusual place.
+/// Title of an axis (0 to 3): its letter. If the letter is unusual for this axis, also its number.
 pub fn titled(index: usize, letter: &str) -> String {
     match letter {
         _ if ["X", "Y", "Z", "R"].get(index) == Some(&letter) => letter.to_owned(),
@@ -72,8 +72,8 @@ pub struct Coordinates {
     letters: Letters,
 }
 
-/// Coordinates by the letters of the teach pendant (E01). If the machine does not report a letter, or repeats it, the
-/// keys are `ax1_mm` to `ax4_mm`.
+/// Coordinates by the letters on the teach pendant (E01). If the controller does not report a letter, or reports it
+/// twice, the keys are `ax1_mm` to `ax4_mm`.
 #[derive(JsonSchema)]
 #[schemars(rename = "Coordinates")]
 #[expect(dead_code, reason = "the shape of what is written below")]
@@ -115,7 +115,7 @@ impl Coordinates {
         Self { mm: ["x", "y", "z", "r"].map(mm), letters }
     }
 
-    /// Coordinates in mm of a machine with the usual letters, with the two decimals of a controller.
+    /// Coordinates in mm on a machine with the usual letters, with two decimals as a controller has them.
     pub fn at(mm: [f64; 4]) -> Self {
         // Adding 0 turns -0 into 0.
         Self { mm: mm.map(|mm| (mm * 100.0).round() / 100.0 + 0.0), letters: Letters::USUAL }
@@ -138,12 +138,12 @@ impl Coordinates {
         self.mm
     }
 
-    /// Coordinate of the only axis with this letter.
+    /// Coordinate of the axis with this letter; `None` if several axes have it.
     pub fn of_letter(&self, letter: &str) -> Option<f64> {
         self.letters.axis(letter).map(|axis| self.mm[axis])
     }
 
-    /// Coordinates with names in one line.
+    /// Coordinates with their names, in one line.
     pub fn in_a_line(&self) -> String {
         let axes = self.mm.iter().enumerate().map(|(axis, mm)| match self.letters.name(axis) {
             numbered if numbered.starts_with("ax") => format!("{} {mm:.2}", titled(axis, self.letters.of(axis))),

@@ -30,7 +30,7 @@ pub struct Raw {
     block: Block,
 }
 
-/// A block, with its request if the manual has it.
+/// A block, with its parsed request if the manual contains it.
 #[derive(Debug, Clone)]
 enum Block {
     Known(Box<Request>),
@@ -94,7 +94,7 @@ impl Command for Raw {
     }
 }
 
-/// The user chose these settings, so they need no notice.
+/// Records settings that the user chose, so that no notice about them is printed.
 fn record_choice(link: &mut Link, request: &Request) {
     match request.command() {
         table::Command::Hson => link.choose_host(true),

@@ -1,4 +1,4 @@
-//! Explanation of a refusal. `@NG` has no code, so the status must show the reason.
+//! Explanation of a refusal. `@NG` has no code, so the reason must be read from the status.
 
 use super::link::Link;
 use crate::controller::Risk;
@@ -8,7 +8,7 @@ use crate::controller::toyo::status::{ProgramKind, RunMode, Status};
 use crate::controller::toyo::table::commands::{Command, Row};
 use crate::failure::{Failure, Kind};
 
-/// Failure with the reason of a refusal, if the status contains one.
+/// Failure for a refusal. It contains the reason if the status shows one.
 pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     let row = request.row();
     if row.risk == Risk::Read {
@@ -16,7 +16,7 @@ pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     }
     let status = match link.status().await {
         Ok(status) => status,
-        // The controller also answered OK to the same command.
+        // The controller also answered `@OK` to the same command.
         Err(failure) if failure.kind == Kind::OutcomeUnknown => return failure,
         // The refusal is certain, even if the reason cannot be read.
         Err(_) => {
@@ -33,33 +33,33 @@ pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     }
 }
 
-/// Failure for a refused read whose reason the status does not show.
+/// Failure: a read was refused, and the status does not show the reason.
 pub fn of_question(request: &Request) -> Failure {
     refused(request, "the status shows no reason", &unexplained(request.row()))
 }
 
-/// Failure because the teach pendant has control.
+/// Failure: the teach pendant has control.
 pub fn pendant() -> Failure {
     Failure::new(Kind::Refused, "the controller refused: the teach pendant is ON, and the host cannot take over")
         .hint("switch the teach pendant OFF, then repeat the command")
         .code("NG")
 }
 
-/// Failure because the controller refuses to report its status.
+/// Failure: the controller refuses to report its status.
 pub fn mute() -> Failure {
     Failure::new(Kind::Refused, "the controller refused to report its status (@NG)")
         .hint("try again, then check the teach pendant: the controller is busy or is another model")
         .code("NG")
 }
 
-/// Failure with the whole block, which contains the number of the point, counter or step.
+/// Failure with the whole block, because the block contains the number of the point, counter or step.
 fn refused(request: &Request, why: &str, hint: &str) -> Failure {
     let text = request.text();
     let block = text.trim_start_matches('@');
     Failure::new(Kind::Refused, format!("the controller refused {block} (@NG): {why}")).hint(hint).code("NG")
 }
 
-/// The most important reason in the status that prevents a command, with its remedy.
+/// The most important reason in the status why a command is not possible, and its remedy.
 fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     let reason_and_hint = |why: &str, hint: &str| Some((why.to_owned(), hint.to_owned()));
     let moves = row.risk == Risk::Motion;
@@ -130,7 +130,8 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
 }
 
-/// Remedy for an error, in the order that the controller requires: nothing moves before the error is cancelled.
+/// Remedy for an error. The steps are in the order that the controller requires: nothing moves before the error is
+/// cancelled.
 pub fn cure(remedy: &str) -> String {
     match remedy.strip_suffix(" first") {
         Some(motion) => format!("use `toyo alarm reset`, then {motion}"),
@@ -138,7 +139,7 @@ pub fn cure(remedy: &str) -> String {
     }
 }
 
-/// Program kind that a command starts, and the hint to select that kind.
+/// Program kind that a command starts, and a hint how to select this kind.
 fn kind_of(start: Command) -> Option<(ProgramKind, &'static str)> {
     Some(match start {
         Command::Spst => (
@@ -167,7 +168,7 @@ fn unexplained(row: &Row) -> String {
     }
 }
 
-/// Hint for the command that shows whether an unanswered command was executed.
+/// Hint with the command that shows whether a command without an answer was executed.
 pub fn verification_hint(command: Command) -> &'static str {
     match command {
         Command::Home | Command::Sorg => "keep clear of the robot; use `toyo status` to see motion and origin",

@@ -53,7 +53,7 @@ impl Command for RobotType {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
         let Some(answer) = context.link.ask(&order).await.known()? else {
-            // Records the later requests of a dry run, which ends here.
+            // In a dry run, records the later requests and ends here.
             context.link.status_of(&[0]).await?;
             return Err(unknown());
         };
@@ -78,7 +78,7 @@ impl Command for RobotType {
 pub struct RobotTypeReport {
     #[serde(rename = "axis_number")]
     axis: u8,
-    /// Active type: six digits.
+    /// Active type, six digits.
     robot_type: String,
     /// Requested type.
     ordered_type: String,

@@ -44,9 +44,9 @@ table_commands! {
 pub trait Kind: Debug + Send + Sync + 'static {
     /// Values of one row in a report.
     type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Terms for help and messages.
+    /// Names in help and messages.
     const WORDS: TableWords;
-    /// Ids of its reports.
+    /// Report names.
     const IDS: Ids;
     /// Fields of a row, in the order of the protocol.
     const FIELDS: &'static [Field];
@@ -54,7 +54,7 @@ pub trait Kind: Debug + Send + Sync + 'static {
     /// Field of the row number.
     fn key() -> &'static field::Field;
 
-    /// Fields of a row after its number.
+    /// Layout of the fields after the row number.
     fn body() -> Layout;
 
     /// Request that reads a row.
@@ -63,7 +63,7 @@ pub trait Kind: Debug + Send + Sync + 'static {
     /// EEPROM cell of a row with these values.
     fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure>;
 
-    /// Block that writes a row; `?` stands for kept values.
+    /// Block that writes a row. `?` stands for values that are kept.
     fn sketch(row: i32, values: &[Option<Value>]) -> String;
 
     /// The values of a row.
@@ -85,17 +85,17 @@ const fn words(nouns: [&'static str; 2], placeholder: &'static str, range: &'sta
 #[derive(Debug)]
 pub struct Rows<K>(PhantomData<K>);
 
-/// Additional keys of a toyo item.
+/// Fields that toyo adds to an item.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Listed {
-    /// Whether the manual lists the value; null if it was not read.
+    /// Whether the manual lists the value; null if the value was not read.
     pub in_manual: Option<bool>,
-    /// Stored text that the manual does not list; it is not written back.
+    /// Stored text, if the manual does not list it. Such a text is not written back.
     pub raw: Option<String>,
 }
 
 impl Listed {
-    /// Describes what was read.
+    /// Creates the fields for a record that was read.
     pub fn of(record: Option<&Record>) -> Self {
         let is_listed = record.map(Record::is_listed);
         Self { in_manual: is_listed, raw: record.filter(|record| !record.is_listed()).map(Record::written) }
@@ -186,7 +186,7 @@ impl<K: Kind> EepromRow for Rows<K> {
 
 /// A table whose rows are records in the EEPROM.
 pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
-    /// Whether rows have different fields. A file then has one column for all fields: `ax1=100 ax2=0`.
+    /// Whether the rows have different fields. In that case, a file has one column for all fields: `ax1=100 ax2=0`.
     const IS_MIXED: bool = false;
 
     /// Letters of the axes, if rows have coordinates.
@@ -194,12 +194,12 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
         Letters::USUAL
     }
 
-    /// Expands words of a command line, such as the name of a file with values.
+    /// Expands words of a command line. For example, the name of a file is replaced by the values in the file.
     fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
         Ok(words.to_vec())
     }
 
-    /// Fields of a row after its key.
+    /// Layout of the fields after the key.
     fn body(&self, key: Self::Key) -> Layout;
 
     /// Request that reads a row.
@@ -208,7 +208,7 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
     /// EEPROM cell of a row with these values.
     fn cell(&self, key: Self::Key, values: Vec<Value>) -> Result<Cell, Failure>;
 
-    /// Block that writes a row; `?` stands for kept values.
+    /// Block that writes a row. `?` stands for values that are kept.
     fn sketch(&self, key: Self::Key, values: &[Option<Value>]) -> String;
 
     /// Checks that the values fit together.
@@ -328,7 +328,7 @@ impl<T: EepromRow> Writable for T {
     }
 }
 
-/// Values of a record as typed; unchanged protocol text if the manual does not list it.
+/// Values of a record as typed. If the manual does not list a value, its text in the protocol is unchanged.
 pub fn texts(record: &Record, fields: usize) -> Vec<String> {
     if record.layout() == UNLISTED {
         return vec![format!("{} ({NOT_IN_MANUAL})", record.written())];
@@ -337,7 +337,7 @@ pub fn texts(record: &Record, fields: usize) -> Vec<String> {
     record.pairs().skip(keys).map(|(field, value)| plain(field, value)).collect()
 }
 
-/// Reason why a record is not saved: the manual does not list it, so it cannot be written back.
+/// Reason why a record is not saved. If the manual does not list the record, it cannot be written back.
 pub fn unlisted(record: Option<&Record>) -> Option<String> {
     record.filter(|record| !record.is_listed()).map(|record| format!("'{}' is {NOT_IN_MANUAL}", record.written()))
 }
@@ -468,7 +468,7 @@ impl TableOf for Torque {
     }
 }
 
-/// A number in its unit; 0 if the record has no such field.
+/// Number in the unit of its field; 0 if the record has no such field.
 fn decimal(record: &Record, name: &str) -> f64 {
     let mut pairs = record.pairs();
     let found = pairs.find_map(|(field, value)| match (field.form, value) {

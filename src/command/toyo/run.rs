@@ -218,7 +218,7 @@ impl Command for Point {
     }
 }
 
-/// Result of a move to a point. From and to are null if no confirmation was necessary.
+/// Result of a move to a point. `from` and `to` are null if no confirmation was needed.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct PointMoveReport(Motion);
@@ -246,7 +246,7 @@ impl Point {
         Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }
 
-    /// Change to confirm: present position and target of each axis.
+    /// Change to confirm: the current position and the target of each axis.
     async fn change(
         &self,
         link: &mut Link,
@@ -272,7 +272,7 @@ impl Point {
     }
 }
 
-/// Program to start: a step, a number, or the current one.
+/// Program to start: at a step, with a number, or the current program.
 enum Program {
     Sequential(Option<i32>),
     Palletizing(Option<i32>),
@@ -301,7 +301,7 @@ impl Program {
     }
 }
 
-/// Program and step that will start: `selected`, or those of the controller.
+/// Program and step that will start: `selected`, or the program and step that the controller reports.
 async fn progress(
     link: &mut Link,
     question: table::Command,
@@ -320,7 +320,7 @@ async fn progress(
     })
 }
 
-/// Asks for confirmation with number and step of the program, position and speed.
+/// Asks for confirmation. The question has the number and step of the program, the position and the speed.
 async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
     let Context { link, authority, .. } = context;
     let mut change = change;
@@ -349,7 +349,8 @@ async fn select_program(link: &mut Link, command: table::Command, program: Optio
     }
 }
 
-/// Starts, and waits for the end up to a time limit if requested. A repetition begins only after a confirmed end.
+/// Starts the program. If requested, waits for its end up to a time limit. A repetition begins only after the end was
+/// confirmed.
 #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
 async fn start_and_wait(
     context: Context<'_, Toyo>,
@@ -387,7 +388,7 @@ async fn start_and_wait(
     }
 }
 
-/// Waits for the end up to a time limit. The program continues afterwards.
+/// Waits for the end, up to a time limit. After the time limit, the program continues.
 async fn within(
     limit: Option<Duration>,
     end: impl Future<Output = Result<RunReport, Failure>>,
@@ -420,7 +421,7 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: 
     Ok(RunReport::new(robot::Program { step, state, elapsed_ms, more, ..robot::Program::default() }))
 }
 
-/// Records in a dry run the requests at the end.
+/// In a dry run, records the requests at the end of the program.
 fn plan_end(link: &mut Link, order: table::Command) -> Failure {
     let step = |step| Request::of(table::Command::Rstx, [Value::Number(step)]);
     if order != table::Command::Extp {
@@ -434,7 +435,7 @@ fn plan_end(link: &mut Link, order: table::Command) -> Failure {
 
 const DONE: &str = "the start was accepted";
 
-/// Whether a paused program was meant to stop: after a STOP step, or in step mode.
+/// Whether a program is paused as intended: after a STOP step, or in step mode.
 async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool, Failure> {
     if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
         return Ok(true);
@@ -454,13 +455,13 @@ fn stopped(last: Option<&(i32, String)>, coordinates: Option<Coordinates>) -> Fa
     )
 }
 
-/// Failure after a run whose result is unknown.
+/// Failure after a run. The outcome of the run is unknown.
 fn after(failure: &Failure) -> Failure {
     let message = format!("the run has ended, but its result is unknown: {}", failure.message);
     Failure { message, ..failure.clone() }.hint("use `toyo status` and `toyo position` to see the state")
 }
 
-/// Result of a start. A program at a STOP, or after a step in step mode, is held.
+/// Result of a start. A program that is at a STOP, or has run one step in step mode, is held.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct RunReport {
     /// Whether the controller accepted the command.
@@ -469,7 +470,7 @@ pub struct RunReport {
     program: robot::Program<StepReport>,
 }
 
-/// Step of the program; null without a wait.
+/// Step of the program; null if the command did not wait.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 struct StepReport {
     /// Instruction of the step.

@@ -68,7 +68,7 @@ impl serve::Serve for Serve {
         let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
         let speed = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
-        // From here on, Ctrl-C must remove the symbolic link.
+        // From now on, Ctrl-C must remove the symbolic link.
         catch_interrupts();
         let (server, endpoint, address, link) = if self.pty {
             let made = StreamServer::pseudo_terminal(speed, self.fault);
@@ -97,7 +97,7 @@ impl serve::Serve for Serve {
 pub struct Toyo {
     server: StreamServer,
     simulated: Simulated,
-    /// Removed with the server.
+    /// The link is removed together with the server.
     _link: Option<TerminalLink>,
 }
 

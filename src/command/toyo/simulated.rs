@@ -10,7 +10,8 @@ use crate::failure::Failure;
 use crate::files;
 use crate::transport::fault::LineFaultSpec;
 
-/// Start state: from a file, or the built-in one with this number of axes, and the busy rate of the faults.
+/// Start state with the busy rate of the faults. It comes from a file, or is the built-in state with this number of
+/// axes.
 pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpec>) -> Result<Start, Failure> {
     let start = match (file, axes) {
         (None, None) => Start::default(),

@@ -32,7 +32,7 @@ impl Command for Status {
 pub struct StatusReport {
     #[serde(flatten)]
     state: State,
-    /// `sequential`, `palletizing`, `external_point` or `easy`.
+    /// Program type: `sequential`, `palletizing`, `external_point` or `easy`.
     program_kind: &'static str,
     host_on: bool,
     pendant_on: bool,
@@ -48,7 +48,7 @@ pub struct StatusReport {
     pause_input: bool,
     ready_output: bool,
     card: Card,
-    /// Pages as received, hexadecimal, page 0 first.
+    /// Pages as received, in hexadecimal, page 0 first.
     pages: [String; 5],
 }
 

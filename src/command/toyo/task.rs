@@ -1,4 +1,4 @@
-//! `toyo task`: current task, to which programs, tables and positions belong.
+//! `toyo task`: the current task. Programs, tables and positions belong to a task.
 
 use clap::Args;
 use schemars::JsonSchema;

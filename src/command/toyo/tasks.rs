@@ -6,7 +6,8 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Command;
 use crate::failure::{Failure, Kind};
 
-/// Reads the current task, selects `task` temporarily if it differs, and returns the task that is then current.
+/// Reads the current task, and selects `task` temporarily if it is another one. Returns the task that is current after
+/// this.
 pub async fn choose(link: &mut Link, task: Option<u8>) -> Result<u8, Failure> {
     if link.is_dry() {
         link.plan(&Request::bare(Command::Mtsk), "the current task");
@@ -28,7 +29,7 @@ pub async fn choose(link: &mut Link, task: Option<u8>) -> Result<u8, Failure> {
     }
 }
 
-/// Restores temporary changes after success or failure. After Ctrl-C, the end of the link restores them.
+/// Restores temporary changes, after success or failure. After Ctrl-C, they are restored when the link is closed.
 pub async fn done<T>(link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
     if outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted) {
         return outcome;

@@ -1,4 +1,4 @@
-//! Controller layers of `armctl robots check`.
+//! Checks of `armctl robots check` that are specific to the controller.
 
 use super::link::Link;
 use super::link::Yerc;
@@ -17,7 +17,7 @@ use crate::settings::names::CacheFile;
 
 const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
 
-/// Checks the layers; read-only.
+/// Checks the layers. It only reads.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
     match Yerc::connect(robot, access, screen).await {
@@ -69,7 +69,7 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         layers.ok("alarm", "none");
     }
     layers.leftover_drafts(&left_over(status));
-    // Unused servo power may be from an earlier client. It is not a fault.
+    // Servo power without motion may come from an earlier client. It is not a fault.
     let is_idle = !status.running() && !status.held() && !is_held(robot);
     let on = if is_idle {
         "on, but no job is running and no session is open; use `yerc servo off` to switch servo power off"
@@ -79,7 +79,7 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     layers.judge("servo", status.servo_on(), (on, "off"), "use `yerc servo on`: a motion needs servo power");
 }
 
-/// Checks the model, and its source.
+/// Checks the model, and how the model is known.
 fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
     const NAME: &str = "set the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME \
                         model=…`";
@@ -104,7 +104,7 @@ fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
     }
 }
 
-/// Checks whether stored names belong to this controller.
+/// Checks whether the stored names belong to this controller.
 fn names(robot: &Robot, link: &Link, layers: &mut Layers) {
     let Some(Ok(Some(kept))) = robot.names.cache_file().map(CacheFile::read) else { return };
     match link.told_software().map_or(Ok(()), |software| kept.check(&software)) {

@@ -84,7 +84,7 @@ impl Decode {
         if frames.is_empty() { Err(wrong("no bytes to decode".to_owned())) } else { Ok(frames) }
     }
 
-    /// Decodes each frame. An answer is decoded with the earlier request of the same id, or with the options.
+    /// Decodes each frame. An answer is decoded with the earlier request that has the same id, or with the options.
     fn explain_frames(&self, frames: &[Vec<u8>]) -> DecodedFrames {
         let mut asked: Vec<(u8, Request)> = Vec::new();
         let mut explained = Vec::new();
@@ -110,7 +110,7 @@ impl Decode {
         DecodedFrames { frames: explained }
     }
 
-    /// Request from the options; its service is in the answer.
+    /// Request that the options describe. Its service is taken from the answer.
     fn request(&self, answer: &[u8]) -> Option<Request> {
         let service = answer.get(SERVICE_AT)?.wrapping_sub(ANSWER_BIT);
         let attribute = match (self.attribute, service) {
@@ -130,8 +130,8 @@ const SERVICE_AT: usize = 24;
 /// First bytes of every frame.
 pub const IDENTIFIER: &[u8] = b"YERC";
 
-/// Joins arguments that the shell separated at spaces. An argument that starts like a frame, or is as long as a
-/// frame, starts a new frame.
+/// Joins arguments that the shell separated at spaces. A new frame starts with an argument that begins like a frame, or
+/// that is as long as a frame.
 fn join_pieces(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let mut pieces: Vec<Vec<u8>> = Vec::new();
     for bytes in arguments {
@@ -144,7 +144,7 @@ fn join_pieces(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     pieces
 }
 
-/// Splits concatenated frames: each has the length in its header, if another frame starts there.
+/// Splits concatenated frames. A frame has the length in its header, if another frame starts at its end.
 fn split(mut bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut frames = Vec::new();
     while let Some(size) = bytes.get(6..8) {
@@ -168,15 +168,15 @@ pub struct DecodedFrames {
 /// Decoded frame.
 #[derive(Debug, Serialize, JsonSchema)]
 struct DecodedFrame {
-    /// One-line description.
+    /// One-line description of the frame.
     title: String,
-    /// Manual and section, if the command is known.
+    /// Manual and section; null if the command is unknown.
     section: Option<String>,
     /// `client` or `controller`.
     sender: &'static str,
     bytes: usize,
     fields: Vec<FieldNote>,
-    /// Problem found in it.
+    /// Problem found in the frame.
     problem: Option<String>,
 }
 
@@ -195,7 +195,7 @@ impl decode::Field for FieldNote {
     const COLUMNS: &'static [&'static str] = &["offset", "size", "field", "raw", "meaning"];
     const NONE: &'static str = "no data";
 
-    /// Long values are cut; JSON has them in full.
+    /// Long values are cut here. JSON has them in full.
     fn cells(&self) -> Vec<Cell> {
         const LONGEST: usize = 32;
 

@@ -30,8 +30,8 @@ impl face::Explain for Explain {
         })?;
         let number = alarm_number(&self.code);
         if number.is_some() {
-            // A number that is not a status code in the manuals is treated as an alarm number, as shown on the
-            // pendant.
+            // A number that is not a status code in the manuals is treated as an alarm number, in the form that the
+            // pendant shows.
             found.retain(|explanation| explanation.known);
         }
         let mut codes: Vec<_> = found.iter().map(status_code).collect();
@@ -49,7 +49,7 @@ impl face::Explain for Explain {
 /// Models whose manual lists a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listed {
-    /// Models; empty for an alarm number.
+    /// Models whose manual lists the code; empty for an alarm number.
     models: Vec<String>,
 }
 
@@ -59,13 +59,13 @@ impl ExtraColumns for Listed {
     }
 }
 
-/// An alarm number, 1 to 9999 in decimal.
+/// Parses an alarm number, 1 to 9999 in decimal.
 fn alarm_number(text: &str) -> Option<u32> {
     let is_number = (3..=4).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit());
     text.parse().ok().filter(|number| is_number && *number > 0)
 }
 
-/// Meaning of an alarm number from `alarms.toml`, or where to find it.
+/// Meaning of an alarm number from `alarms.toml`, or where the user can find it.
 fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>, Failure> {
     let code = number.to_string();
     let site = alarms.find(origin, &code)?;
@@ -77,7 +77,7 @@ fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Liste
     Ok(Known::new(false, alarm, [&[], remedies], site, Listed { models: Vec::new() }))
 }
 
-/// Meaning of a status code of the manuals.
+/// Meaning of a status code in the manuals.
 fn status_code(found: &status::Explanation) -> Known<Listed> {
     let alarm = Alarm {
         code: Some(found.code_text.clone()),

@@ -10,7 +10,7 @@ use crate::controller::yerc::request::Request;
 use crate::controller::yerc::status;
 use crate::failure::{Failure, Kind, plain};
 
-/// Failure for an error of the client; `label` is the robot.
+/// Failure for an error of the client. `label` is the name of the robot.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
     let error_text = error.to_string();
@@ -85,7 +85,7 @@ fn broken_link(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
     }
 }
 
-/// Command that shows whether a request took effect.
+/// Command with which the user can check whether a request took effect.
 fn verification_hint(request: &Request) -> &'static str {
     match request.command {
         0 => "use `yerc file list` to see the files",
@@ -102,8 +102,9 @@ fn verification_hint(request: &Request) -> &'static str {
     }
 }
 
-/// Failure for a refusal of a request with this risk. A refused motion may still be in progress: the network can
-/// duplicate a request, and the controller then refuses the second copy during the motion of the first.
+/// Failure for a refusal of a request with this risk. A motion may be in progress although the request was refused: the
+/// network can duplicate a request, and the controller then refuses the second copy during the motion of the first
+/// copy.
 pub fn refused(refusal: Refusal, risk: Risk) -> Failure {
     let failure = Failure::from(refusal);
     match &failure.hint {

@@ -1,4 +1,4 @@
-//! Stored model of a controller: used for a day, and dropped if the controller reports a different model.
+//! Stored model of a controller. It is used for a day, and removed if the controller reports a different model.
 
 use crate::client::yerc::Client;
 use crate::output::Screen;
@@ -15,8 +15,8 @@ pub(super) struct CachedModel {
 }
 
 impl CachedModel {
-    /// Passes the stored model to a client, if the user selects no model and the stored one is recent. A dry run,
-    /// which asks no controller, also uses an older one.
+    /// Gives the stored model to a client, if the user selects no model and the stored model is recent. A dry run does
+    /// not ask the controller, so it also uses an older model.
     pub(super) fn recall(robot: &Robot, client: &mut Client) -> Self {
         let target = &robot.target.value;
         let address = target.address();
@@ -29,8 +29,8 @@ impl CachedModel {
         Self { store, address, stored }
     }
 
-    /// Stores the model that the controller reported, unless it is already stored and recent. `news` is `None` if its
-    /// software belongs to no known model: then the stored model is wrong.
+    /// Stores the model that the controller reported, unless it is already stored and recent. `news` is `None` if the
+    /// software of the controller belongs to no known model. In that case the stored model is wrong.
     pub(super) fn store_model(&mut self, news: Option<ReportedModel>, screen: &Screen, label: &str) {
         let Some(store) = &self.store else { return };
         let Some(news) = news else {

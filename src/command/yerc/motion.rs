@@ -12,7 +12,7 @@ use crate::failure::{Failure, Kind};
 
 /// Interval of status reads. A controller answers in 5 to 20 ms, and a shorter interval has no benefit.
 pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(50);
-/// Maximum time for a controller to start an accepted motion or job.
+/// Maximum time until a controller starts an accepted motion or job.
 pub(super) const START_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// A state of the controller in which nothing moves.
@@ -22,7 +22,7 @@ pub(super) enum StandstillCause {
     Alarm,
     /// An error is present.
     Error,
-    /// Held, with the source.
+    /// A HOLD is active. Contains its source.
     Hold(&'static str),
     /// Servo power is off.
     ServoOff,
@@ -38,7 +38,8 @@ const HOLDS: [(StatusBit, &str, &str); 3] = [
 ];
 
 impl StandstillCause {
-    /// Most important standstill cause of a status. The status had none when the controller accepted the request.
+    /// Most important cause of standstill in a status. There was no such cause when the controller accepted the
+    /// request.
     pub(super) fn of(status: ControllerStatus) -> Option<Self> {
         let hold = HOLDS.iter().find(|row| status.has(row.0));
         if status.alarm() {
@@ -56,7 +57,7 @@ impl StandstillCause {
         }
     }
 
-    /// Failure with the result so far (`done`) and the current position.
+    /// Failure that contains the result so far (`done`) and the current position.
     pub(super) async fn failure(self, link: &mut Link, done: &str, place: Option<&str>) -> Failure {
         let (what, code) = match self {
             Self::Alarm => present_alarm(link).await,
@@ -83,7 +84,7 @@ impl StandstillCause {
     }
 }
 
-/// Text and code of the latest alarm. The alarm is reported even if it cannot be read.
+/// Text and code of the latest alarm. If the alarm cannot be read, the text states only that there is an alarm.
 async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
     let question = match ReadAlarm::new(1, false).map_err(usage) {
         Ok(question) => question,
@@ -99,7 +100,7 @@ async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
     }
 }
 
-/// Notes in a dry run the request after an alarm.
+/// In a dry run, records the request that follows an alarm.
 pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
     let question = ReadAlarm::new(1, false).map_err(usage)?;
     let reason = Reason::about("alarm number, after an alarm").depending_on("whether the status shows an alarm");
@@ -107,7 +108,7 @@ pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Failure for a lost connection during a wait. The action continues without supervision, so its outcome is unknown.
+/// Failure: the connection was lost during a wait. The action continues without supervision, so its outcome is unknown.
 pub(super) fn lost_contact(done: &str, failure: Failure) -> Failure {
     let message = format!("{done}, but armctl could not read its end: {failure}");
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }

@@ -19,7 +19,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
         None => plan_latest(link).map(|()| Fault::default())?,
     };
     let query = link.by_model(|model| ReadPosition::new(model, Group::R1, Coordinates::Base)).await?;
-    // A controller without a first robot has no position, which is not a failure.
+    // A controller without a first robot has no position. This is not a failure.
     let position = link.ask_optional(&query).await.known()?.and_then(Result::ok);
     Ok(report(status.ok_or_else(unknown)?, fault, position.as_ref()))
 }
@@ -39,7 +39,7 @@ pub(super) fn state(status: ControllerStatus, fault: Fault, base: Option<&Positi
     let is_play = match (status.has(StatusBit::Teach), status.has(StatusBit::Play)) {
         (true, false) => Some(false),
         (false, true) => Some(true),
-        // The controller reports neither or both.
+        // The controller reports neither of the two modes, or both.
         _ => None,
     };
     State {

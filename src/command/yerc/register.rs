@@ -1,4 +1,4 @@
-//! `yerc register`: 16-bit words that ladder program and PC share.
+//! `yerc register`: 16-bit words that the ladder program and a PC can both use.
 
 use std::collections::HashSet;
 use std::str::FromStr;
@@ -164,7 +164,7 @@ impl WriteOrder for WriteRegisterStep {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Word {
     number: u16,
-    /// `0x03e8`; null if it was not read.
+    /// Value in hexadecimal, such as `0x03e8`; null if the register was not read.
     value_hex: Option<String>,
 }
 

@@ -1,4 +1,5 @@
-//! Job that a start runs: text of the confirmation, and a check that it is unchanged after the answer.
+//! Job that a start runs: the text of the confirmation, and a check after the confirmation that the job is still the
+//! same.
 
 use super::link::Link;
 use crate::controller::text::Encoding;
@@ -11,11 +12,11 @@ use crate::gate::{Change, data_changed};
 /// Job that a start runs, as the controller reports it.
 #[derive(Debug, PartialEq, Eq)]
 pub enum SelectedJob {
-    /// This job, at a line, with a speed override.
+    /// This job. Contains the line and the speed override.
     Job(JobInfo),
-    /// No job.
+    /// No job is selected.
     None,
-    /// Unknown; the reason for the failed read.
+    /// The job is unknown. Contains the reason why it could not be read.
     Unread(String),
 }
 
@@ -42,7 +43,7 @@ impl SelectedJob {
         }
     }
 
-    /// Whether it is the job with this name, in the bytes of the controller.
+    /// Whether the job has this name, in the bytes of the controller.
     pub fn is(&self, name: &[u8]) -> bool {
         matches!(self, Self::Job(info) if info.name.as_bytes() == name)
     }
@@ -55,7 +56,7 @@ impl SelectedJob {
         }
     }
 
-    /// Note for a command that selects another job first.
+    /// Adds a note to the question of a command that first selects another job.
     pub fn item_name(&self, change: Change, encoding: Encoding) -> Change {
         match self {
             Self::Job(info) => {
@@ -68,7 +69,7 @@ impl SelectedJob {
         }
     }
 
-    /// Text of the confirmation; `times` is the number of repetitions, such as ` 20 times`.
+    /// Text of the confirmation. `times` is the text for the repetitions, such as ` 20 times`.
     pub fn change(&self, encoding: Encoding, times: &str) -> Change {
         let unknown_name = Change::new(format!("start the selected job{times}"));
         match self {
@@ -84,7 +85,7 @@ impl SelectedJob {
         }
     }
 
-    /// Rejects the start if the selection has changed since the question.
+    /// Rejects the start if the selected job has changed since the question.
     pub async fn check_unchanged(&self, link: &mut Link) -> Result<(), Failure> {
         let now = Self::ask(link).await?;
         if now == *self {

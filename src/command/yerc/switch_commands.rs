@@ -39,7 +39,7 @@ macro_rules! order {
 
             fn intent(&self) -> String {
                 let $this = self;
-                // Most requests do not depend on the arguments.
+                // Most requests do not use the arguments.
                 let _ = $this;
                 $intent.to_owned()
             }
@@ -57,7 +57,7 @@ macro_rules! order {
                 let ($this, Context { link, authority, .. }) = (self, context);
                 let new = NewValue::of($set, $new, $done);
                 let old = Old::UNREAD;
-                // A stop must not be delayed by a read.
+                // A stop must not be delayed by a read, so its old value is not read.
                 $(let old = if self.is_stop() {
                     old
                 } else {
@@ -184,7 +184,8 @@ impl Command for Say {
     }
 }
 
-/// Display texts and job names must not contain control characters, because their effect is unknown.
+/// Rejects control characters in display texts and job names, because the effect of such characters on a controller is
+/// unknown.
 pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
     match text.chars().find(|c| c.is_control()) {
         None => Ok(()),
@@ -195,7 +196,7 @@ pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Failure for a request that cannot be built from the arguments.
+/// Failure: a request cannot be built from these arguments.
 pub(super) fn usage(error: impl std::fmt::Display) -> Failure {
     Failure::usage(error.to_string()).hint("see `--help` of the command, or `armctl help yerc` for all commands")
 }

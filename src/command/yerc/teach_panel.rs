@@ -58,7 +58,7 @@ fn relative(step: &Step<'_>, system: &str) -> Option<Vec<String>> {
     Some(words(&format!("move relative {flag} {} --coordinate {system} --speed {}{unit}", step.by, step.speed)))
 }
 
-/// The protocol has no relative joint motion, so the target is computed from the current position.
+/// The protocol has no relative joint motion. For this reason the target is computed from the current position.
 fn joint(step: &Step<'_>) -> Option<Vec<String>> {
     let pulse = &step.from["pulse"];
     let axes = pulse["pulses"].as_object()?;

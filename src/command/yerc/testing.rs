@@ -1,4 +1,4 @@
-//! Test support: sent frames of a command line, and command execution on a simulator in virtual time.
+//! Test support: the frames that a command line sends, and commands that run on a simulator in virtual time.
 
 use clap::Parser as _;
 use serde_json::Value;
@@ -45,18 +45,18 @@ pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>, Failur
     Ok(frames.iter().map(without_header).collect())
 }
 
-/// [`frames_on`] a DX200.
+/// Frames as in [`frames_on`], for a DX200.
 pub(super) fn frames(words: &str) -> Result<Vec<String>, Failure> {
     frames_on(DX200, words)
 }
 
-/// Golden frame of the manuals, in the form of [`frames`].
+/// Golden frame of the manuals, in the same form as [`frames`].
 pub(super) fn golden(id: &str) -> String {
     without_header(&golden_frame(id))
 }
 
-/// Asserts that a command line sends exactly one frame, unless the old value is the same, and that it equals the golden
-/// frame, except for the request id.
+/// Asserts that a command line sends exactly one frame, apart from the read of an old value. The frame must be equal to
+/// the golden frame, except for the request id.
 #[track_caller]
 pub(super) fn same(id: &str, target: &str, words: &[&str]) {
     let frames = dry_run(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
@@ -90,7 +90,7 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
     reports
 }
 
-/// Simulated controller with a link for several command lines, in virtual time.
+/// Simulated controller with a link, for several command lines in virtual time.
 pub(super) struct Bench {
     runtime: tokio::runtime::Runtime,
     robot: Robot,
@@ -98,7 +98,7 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    /// Bench for the simulator of a URL.
+    /// Creates a bench for the simulator of a URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
@@ -115,7 +115,7 @@ impl Bench {
         Ok((report.data()?, report.failure()))
     }
 
-    /// Data of a command line that must succeed.
+    /// Runs a command line that must succeed, and returns its data.
     #[track_caller]
     pub(super) fn data(&mut self, words: &[&str]) -> Value {
         match self.run(words) {
@@ -129,7 +129,7 @@ fn parse_line(target: &str, words: &[&str]) -> Result<Cli, clap::Error> {
     Cli::try_parse_from([&["armctl", "-t", target, "yerc"], words].concat())
 }
 
-/// Robot and command of a line.
+/// Robot and command of a command line.
 pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
     let cli = parse_line(target, words).map_err(|error| Failure::usage(error.to_string()))?;
     let selection = Selection { target: cli.globals.target, ..Selection::default() };

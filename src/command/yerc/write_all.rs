@@ -14,15 +14,15 @@ pub trait WriteOrder: Query<Answer = ()> {
     /// Item type: a variable, a register, a group of signals.
     type Item: Clone;
 
-    /// All items that it writes.
+    /// All items that the request writes.
     fn items(&self) -> Vec<Self::Item>;
 
     /// Short list of names.
     fn listed(items: Vec<Self::Item>) -> String;
 }
 
-/// Reads the values that requests replace, one request per run; refused values are missing. A dry run notes the
-/// requests.
+/// Reads the values that requests replace, with one request per run of items. Values that the controller refuses are
+/// missing. A dry run records the requests.
 pub async fn old_value<S: PlannedRead>(link: &mut Link, reads: &[S]) -> Result<HashMap<S::Item, S::Value>, Failure> {
     let mut found = HashMap::new();
     for read in reads {
@@ -31,13 +31,13 @@ pub async fn old_value<S: PlannedRead>(link: &mut Link, reads: &[S]) -> Result<H
     Ok(found)
 }
 
-/// Sends the requests one after the other. The first failure or Ctrl-C ends the sequence. The failure lists what was
-/// written, what may have been written, and what was not.
+/// Sends the requests one after another. The first failure or Ctrl-C ends the sequence. The failure lists which items
+/// were written, which may have been written, and which were not written.
 pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: &[O]) -> Result<(), Failure> {
     link.plan_all(orders)?;
     let mut done = 0;
     let progress = (orders.len() > 1).then(|| screen.spinner("writing"));
-    // Ctrl-C ends the work here, before the caller handles it, so that the result is reported.
+    // Ctrl-C ends the work here, before the caller handles it, so that the failure can list the result.
     let outcome = interruptible(async {
         for order in orders {
             if let Some(progress) = &progress {
@@ -61,10 +61,10 @@ pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: 
     Err(summarize_failure(failure, orders, done))
 }
 
-/// Failure with the result of each request; the first `done` were confirmed, the next one failed.
+/// Failure with the result of each request. The first `done` requests were confirmed, and the next request failed.
 fn summarize_failure<O: WriteOrder>(failure: Failure, orders: &[O], done: usize) -> Failure {
-    // The outcome of the failed request is unknown if its answer was lost or damaged, or after Ctrl-C. After every other
-    // failure, it was refused or not sent.
+    // If its answer was lost or damaged, or after Ctrl-C, the outcome of the failed request is unknown. After any other
+    // failure, the request was refused or was not sent.
     let is_unknown = matches!(failure.kind, Kind::OutcomeUnknown | Kind::Malformed | Kind::Interrupted);
     if !is_unknown && orders.len() == 1 {
         return failure;

@@ -31,7 +31,7 @@ pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     })
 }
 
-/// An entry that is not in the text.
+/// An entry with a default value, which has no position in the text.
 pub(crate) fn default_entry<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }
@@ -93,7 +93,8 @@ impl Source<'_> {
         self.read(entry, |text| DateTime::strptime(form, text).map_err(wrong))
     }
 
-    /// Sorts events by time. Calls `check` in text order, so that a mistake is found at the start and not during a run.
+    /// Sorts events by time. Calls `check` in text order at the start, so that a mistake is not found only during a
+    /// run.
     pub(crate) fn timeline<R>(
         &self,
         entries: &[Spanned<Event>],
@@ -104,7 +105,7 @@ impl Source<'_> {
     }
 }
 
-/// Parses a numeric key; `things` names what it counts.
+/// Parses a numeric key. `things` names the counted objects for the error message.
 pub(crate) fn numbered(things: &str, key: &str, range: RangeInclusive<usize>) -> Result<usize, String> {
     let number = key.parse().ok().filter(|number| range.contains(number));
     number.ok_or_else(|| format!("{things} must be from {} to {}", range.start(), range.end()))

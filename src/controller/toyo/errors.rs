@@ -1,10 +1,10 @@
 //! The 104 error codes (TO 4-1) of STAS SNO=1 and EHTR.
 //!
-//! The manual has only names. Causes and remedies are the usual ones for such machines.
+//! The manual has only their names. The causes and remedies are usual ones for machines of this kind.
 
 use std::borrow::Cow;
 
-/// No error. It is not in the table of the manual; sample session 3-1 has it (ambiguity R26).
+/// No error. The table of the manual does not contain this code, but sample session 3-1 does (ambiguity R26).
 pub const NONE: u8 = 0x00;
 
 /// Description of an error code.
@@ -31,7 +31,7 @@ impl Explanation {
     }
 }
 
-/// Describes a code, also an unknown one.
+/// Describes a code. Unknown codes also have a description.
 pub fn explain(code: u8) -> Explanation {
     let (axis, row) = match code {
         0x20..=0x5F => {
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn codes_name_their_axis() {
         assert_eq!(explain(0x38).in_a_line(), "38: axis 2: beyond the plus soft limit while moving");
-        // The manual also prints "+" for C3 (ambiguity R25).
+        // The manual prints "+" also for C3 (ambiguity R25).
         assert_eq!(explain(0xC3).in_a_line(), "C3: axis 2: target beyond the minus soft limit");
         assert_eq!(explain(0xC6).axis, Some(4));
         assert_eq!(explain(0x13).axis, None);

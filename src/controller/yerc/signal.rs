@@ -9,7 +9,7 @@ use super::Model;
 use super::table::{Row, Span};
 use crate::typed::unsigned;
 
-/// A signal by its logical number; the last digit is 0 to 7.
+/// A signal by its logical number, whose last digit is 0 to 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Signal {
     group: u16,
@@ -41,12 +41,12 @@ impl Signal {
         Ok(Self { group: u16::try_from(number / 10).map_err(malformed)?, bit })
     }
 
-    /// Instance of its group of eight.
+    /// Instance of the group of eight signals that contains the signal.
     pub const fn group(self) -> u16 {
         self.group
     }
 
-    /// Bit in the byte of the group, 0 the lowest.
+    /// Bit number in the byte of the group; 0 is the lowest bit.
     pub const fn bit(self) -> u8 {
         self.bit
     }
@@ -56,12 +56,12 @@ impl Signal {
         u32::from(self.group) * 10 + u32::from(self.bit)
     }
 
-    /// Whether it is on in the byte of its group.
+    /// Whether the signal is on. `byte` contains the eight signals of its group.
     pub const fn is_on(self, byte: u8) -> bool {
         byte >> self.bit & 1 == 1
     }
 
-    /// Its class, with name and write permission; `None` if the model does not have the signal.
+    /// Class of the signal, with name and write permission; `None` if the model does not have the signal.
     pub fn class(self, model: Model) -> Option<&'static Span> {
         io_class(model, self.group)
     }

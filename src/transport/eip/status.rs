@@ -518,13 +518,13 @@ pub fn connection(extended: u16) -> Option<&'static Code> {
     find(CONNECTION, extended.into())
 }
 
-/// Description of a status, of the extended code if there is one.
+/// Description of a status. If there is an extended code, this is the description of the extended code.
 pub fn meaning(status: &Status) -> Option<&'static Code> {
     let extended = status.extended.first().filter(|_| status.general == 1);
     extended.and_then(|extended| connection(*extended)).or_else(|| general(status.general))
 }
 
-/// One-line text, such as "invalid connection size (0x01/0x0109), the right one is 54 bytes".
+/// One-line text, for example "invalid connection size (0x01/0x0109), the right one is 54 bytes".
 pub fn describe(status: &Status) -> String {
     let mut text = meaning(status).map_or("an unknown status", |code| code.name).to_owned();
     // Writing to a string cannot fail.

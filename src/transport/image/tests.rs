@@ -5,10 +5,10 @@ use std::sync::Mutex;
 
 use super::*;
 
-/// Received images with their times.
+/// Received images with their times; `None` means that the master is gone.
 type Heard = Vec<(Duration, Option<Vec<u8>>)>;
 
-/// Echo peer: returns each image 3 ms later. Between two times it is gone.
+/// Echo peer: returns each image 3 ms later. The peer is not reachable between the two times in `gone`.
 #[derive(Debug, Default)]
 struct Echo {
     coming: VecDeque<(Duration, Vec<u8>)>,

@@ -1,9 +1,9 @@
-//! Conversion of PROFINET errors to [`LinkError`]: cause, advice, and URL options that can be wrong.
+//! Conversion of PROFINET errors to [`LinkError`]: cause, advice, and URL options that may be wrong.
 
 use super::error::ProfinetError;
 use crate::image::{Cause, LinkError};
 
-/// Advice for the Linux capability that raw Ethernet needs.
+/// Advice to get the Linux capability that raw Ethernet needs.
 const PRIVILEGE: &str = "run `sudo setcap cap_net_raw+ep $(command -v armctl)`, or run armctl as root";
 /// URL options for the modules of a device.
 const MODULES: &[&str] = &["layout", "gsdml"];

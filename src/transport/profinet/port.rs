@@ -1,4 +1,4 @@
-//! Frames and RPC calls outside of connections: through a network card, or to a simulated device.
+//! Frames and RPC calls outside of connections. They go through a network card, or to a simulated device.
 
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
@@ -20,14 +20,14 @@ use crate::local::LocalError;
 /// Buffer for a frame or datagram.
 const BUFFER: usize = 65_536;
 
-/// Sends and receives frames.
+/// Sender and receiver of Ethernet frames.
 #[derive(Debug)]
 pub(super) struct Frames {
     end: End<Socket>,
     tap: Tap,
 }
 
-/// Exchanges datagrams with one device.
+/// Sender and receiver of datagrams of one device.
 #[derive(Debug)]
 pub(super) struct Calls {
     end: End<UdpSocket>,
@@ -100,7 +100,7 @@ impl Frames {
         Ok(None)
     }
 
-    /// Returns the next frame before `until`.
+    /// Returns the next frame that arrives before `until`.
     pub(super) fn next(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let came = self.take(until)?;
         if let Some(bytes) = &came {
@@ -121,7 +121,7 @@ impl Frames {
                 return Ok(None);
             }
             let wait = Timespec::try_from(left).ok();
-            // A signal ends the wait early, like a shorter timeout.
+            // A signal ends the wait early, as a shorter timeout would.
             let _ = poll(&mut [PollFd::new(source, PollFlags::IN)], wait.as_ref());
             match source.read(&mut buffer) {
                 Ok(length) => {
@@ -164,7 +164,7 @@ impl Calls {
         Ok(())
     }
 
-    /// Returns the next datagram of the device before `until`.
+    /// Returns the next datagram of the device that arrives before `until`.
     pub(super) fn hear(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let (bytes, from) = match &self.end {
             End::Simulated(network) => match network.hear_datagram(until) {
@@ -176,7 +176,7 @@ impl Calls {
                 let timed = socket.set_read_timeout(Some(wait));
                 timed.map_err(|error| LocalError::new("cannot call the device", &error))?;
                 let mut buffer = vec![0; BUFFER];
-                // A timeout or a signal; the caller checks the time.
+                // This is a timeout or a signal; the caller checks the time.
                 let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer) else { return Ok(None) };
                 buffer.truncate(length);
                 (buffer, from)

@@ -59,7 +59,7 @@ const MIN_INTERVAL: Duration = Duration::from_millis(50);
 /// Address of the metrics server.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listening {
-    /// The URL to read them from.
+    /// URL of the metrics.
     url: String,
     /// Number of robots at the start.
     robots: usize,
@@ -152,7 +152,7 @@ fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
     }
 }
 
-/// Rejects options that make no sense here.
+/// Rejects options that do not apply to this command.
 fn check_globals(run: &Run, every: Duration) -> Result<(), Failure> {
     let invalid = |what: &str, hint: &str| Err(Failure::usage(format!("serve metrics {what}")).hint(hint));
     if run.repeat.count.is_some() || run.repeat.until.is_some() {

@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
-/// An extra command. Two with the same text are the same.
+/// An extra command. Two extra commands with the same text are equal.
 pub struct Extra {
     text: Arc<str>,
     family: Family,
@@ -37,7 +37,7 @@ impl Extra {
     /// Parses a command; its first word is the family.
     ///
     /// # Errors
-    /// The text is not a command, does more than read, or does not end by itself.
+    /// If the text is not a command, does more than read, or does not end by itself.
     pub fn parse(text: &str) -> Result<Self, Failure> {
         let wrong = |why: &str, hint: &str| Err(invalid(text, why, hint));
         let Some(words) = shlex::split(text) else { return wrong("has an unclosed quote", EXAMPLE) };
@@ -67,7 +67,7 @@ impl Extra {
         Ok(Self { text: text.into(), family, command, is_named })
     }
 
-    /// The command for one robot if it contains names; `None` if it is the same for all robots.
+    /// The command for one robot, if the text contains names; `None` if the command is the same for all robots.
     pub fn of(&self, robot: &Robot) -> Option<Read> {
         let words = shlex::split(&self.text).filter(|_| self.is_named)?;
         Some(names::with_names(self.family, slice::from_ref(robot), || read(&self.text, self.family, &words)))
@@ -128,8 +128,8 @@ impl fmt::Debug for Extra {
     }
 }
 
-/// Whether the command or one of its subcommands uses a path, typed or by default. A file would be read or written
-/// again and again.
+/// Whether the command or one of its subcommands uses a path, typed or by default. Each poll would read or write the
+/// file again.
 fn accepts_file(command: &clap::Command, matches: &ArgMatches) -> bool {
     let is_path = |arg: &Arg| arg.get_value_parser().type_id() == TypeId::of::<PathBuf>();
     let is_given = |arg: &Arg| {

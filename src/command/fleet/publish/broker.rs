@@ -29,7 +29,7 @@ pub struct Url {
     pub host: String,
     /// TCP port.
     pub port: u16,
-    /// Whether it uses TLS.
+    /// Whether the connection uses TLS.
     pub is_secure: bool,
 }
 
@@ -77,7 +77,7 @@ impl FromStr for Url {
     }
 }
 
-/// Which MQTT.
+/// Version of MQTT.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Protocol {
     /// MQTT 3.1.1
@@ -107,13 +107,14 @@ pub struct Login {
     /// File with the password (or ARMCTL_MQTT_PASSWORD)
     #[arg(long, value_name = "FILE", requires = "user", help_heading = "Broker")]
     password_file: Option<PathBuf>,
-    /// Certificate of the authority that signed the broker's certificate (PEM); default: those of this computer
+    /// Certificate of the authority that signed the broker's certificate (PEM); default: the certificate authorities of
+    /// this computer
     #[arg(long, value_name = "FILE", help_heading = "Broker")]
     ca: Option<PathBuf>,
     /// Certificate of this client (PEM)
     #[arg(long, value_name = "FILE", requires = "key", help_heading = "Broker")]
     cert: Option<PathBuf>,
-    /// Its private key (PEM)
+    /// Private key of this client (PEM)
     #[arg(long, value_name = "FILE", requires = "cert", help_heading = "Broker")]
     key: Option<PathBuf>,
     /// Send the password without TLS, without a warning

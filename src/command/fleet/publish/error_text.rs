@@ -4,7 +4,7 @@ use super::broker::Url;
 use super::uplink::{Loss, Refusal, TlsError, Version};
 use crate::failure::{Failure, Kind};
 
-/// Return codes of MQTT 3.1.1, section 3.2.2.3: meaning, hint, and whether it concerns a setting.
+/// Return codes of MQTT 3.1.1, section 3.2.2.3: meaning, hint, and whether a setting causes the refusal.
 const RETURN_CODES: [(u8, &str, &str, bool); 5] = [
     (
         1,

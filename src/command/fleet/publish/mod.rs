@@ -1,5 +1,5 @@
-//! `armctl publish`: publishes robot data to an MQTT broker as it changes. It only reads robots. Nothing from the
-//! broker reaches a robot.
+//! `armctl publish`: publishes robot data to an MQTT broker when the data changes. It only reads robots. Nothing from
+//! the broker reaches a robot.
 //!
 //! | file | contents |
 //! |---|---|
@@ -86,7 +86,7 @@ pub struct Publish {
     /// What to publish of each robot
     #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "status,alarms,position")]
     kinds: Vec<Kind>,
-    /// A command line that reads, whose answer is told too, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
+    /// A read command whose answer is also published, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
     /// (repeatable)
     #[arg(long, value_name = "LINE")]
     also: Vec<String>,
@@ -115,7 +115,7 @@ struct SparkplugArguments {
     /// Sparkplug group of this node
     #[arg(long, value_name = "GROUP", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
     group: Option<String>,
-    /// The primary host; while it is offline, armctl stores the data and sends it later as history
+    /// The primary host; while this host is offline, armctl stores the data and sends it later as history
     #[arg(long, value_name = "ID", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
     host: Option<String>,
 }
@@ -127,7 +127,7 @@ struct BufferArguments {
     /// Memory limit of the buffer
     #[arg(long = "buffer-memory", value_name = "SIZE", default_value = "16M", value_parser = memory_size, help_heading = "While the broker is away")]
     memory: u64,
-    /// Disk limit of the buffer, used when its memory is full; 0 for none
+    /// Disk limit of the buffer, used when the memory of the buffer is full; 0 for no disk
     #[arg(long = "buffer-disk", value_name = "SIZE", default_value = "256M", value_parser = disk_size, help_heading = "While the broker is away")]
     disk: u64,
     /// Folder of the buffer on disk; default: the state folder
@@ -169,11 +169,11 @@ fn disk_size(text: &str) -> Result<u64, String> {
 /// Published data of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
-    /// Its state, as in `armctl status`
+    /// State, as in `armctl status`
     Status,
-    /// Its alarms and errors
+    /// Alarms and errors
     Alarms,
-    /// Its position
+    /// Position
     Position,
 }
 
@@ -211,9 +211,9 @@ pub fn schemas() -> Vec<SchemaEntry> {
 /// Report of `publish` at its end.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Published {
-    /// Where.
+    /// URL of the broker.
     broker: String,
-    /// As whom.
+    /// Name of this publisher at the broker.
     node: String,
     /// Number of robots at the start.
     robots: usize,
@@ -306,7 +306,7 @@ impl Publish {
         run.local("publish", &Published { broker, node, robots, published, refused, dropped, undelivered, reconnects })
     }
 
-    /// Rejects options that make no sense here.
+    /// Rejects options that do not apply to this command.
     fn check_globals(&self, run: &Run, interval: Duration) -> Result<(), Failure> {
         let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("publish {what}")).hint(hint));
         if run.filter.is_some() || run.repeat.until.is_some() {
@@ -387,7 +387,7 @@ impl Publish {
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();
                 let remember = Box::new(move |next: u8| {
                     if let Some(file) = &file {
-                        // The number must only differ from the last one. Without a file it starts with 0.
+                        // The new number must only differ from the last one. Without a file, the numbers start with 0.
                         let _kept = files::replace(file, next.to_string().as_bytes());
                     }
                 });

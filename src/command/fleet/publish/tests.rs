@@ -58,7 +58,7 @@ pub fn silence(robot: &Arc<Robot>) -> Found {
     Found::Failed { robot: Arc::clone(robot), failure, pause: Duration::from_secs(1), traffic: Traffic::default() }
 }
 
-/// Behaviour of the broker.
+/// Behavior of the broker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mood {
     Works,

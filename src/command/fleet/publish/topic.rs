@@ -1,8 +1,8 @@
 //! Names as topic levels.
 //!
-//! A level is the name. Characters with a special meaning in topics, or that are not allowed, are written as `%` and
-//! the hex digits of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and a leading `$`. So two names
-//! never have the same topic, and the name can be decoded.
+//! A level is the name of a robot or node. Characters with a special meaning in topics, and characters that are not
+//! allowed, are written as `%` and the hex digits of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and
+//! a leading `$`. Two names therefore never have the same topic, and the name can be decoded.
 
 use std::collections::BTreeSet;
 

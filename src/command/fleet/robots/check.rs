@@ -15,11 +15,11 @@ use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::{Robot, target};
 
-/// Checks each layer of the connection between this computer and the robot, and says what to set. Changes nothing. Exit
-/// code 8 if a layer failed.
+/// Checks each layer of the connection between this computer and the robot, and shows which settings to change. Changes
+/// nothing. Exit code 8 if a layer failed.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// A robot in the inventory, or a target URL; default: the robots of -r, -t and others
+    /// A robot in the inventory, or a target URL; default: the robots that -r, -t and other flags select
     #[arg(value_name = "NAME|URL", add = ValueKind::RobotOrUrl)]
     pub name: Option<String>,
 }

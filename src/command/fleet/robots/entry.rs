@@ -22,12 +22,12 @@ use crate::settings::target::{Family, Target, TargetArgument};
 /// Arguments of `robots add`.
 #[derive(Debug, Args)]
 pub struct Add {
-    /// Its name
+    /// Name of the new robot
     name: String,
-    /// Its URL, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
+    /// URL of the robot, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
     #[arg(add = ValueKind::Url)]
     url: TargetArgument,
-    /// Its family, if armctl cannot infer it from the URL
+    /// Family of the robot, if armctl cannot infer it from the URL
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// Accept only reads and stops
@@ -39,7 +39,7 @@ pub struct Add {
     /// A tag for --tag (repeatable)
     #[arg(long = "with-tag", value_name = "TAG", add = ValueKind::Tag)]
     tags: Vec<String>,
-    /// Make it the default robot
+    /// Make this robot the default robot
     #[arg(long)]
     default: bool,
 }
@@ -108,7 +108,7 @@ impl Add {
 /// Arguments of `robots remove`.
 #[derive(Debug, Args)]
 pub struct Remove {
-    /// Its name
+    /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
 }
@@ -127,7 +127,7 @@ impl Remove {
                         pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B. Names: names.NAME=ADDRESS, such as \
                         names.clamp=27010.")]
 pub struct Set {
-    /// Its name
+    /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
     /// A setting and its value, such as read_only=off or timeout=5s
@@ -233,7 +233,7 @@ pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> R
     changes_text(run.local(id, &WasSet { name: robot, changes, file }))
 }
 
-/// Address of a name; a number if it looks like one, as in a hand-written file.
+/// Address of a name, as a number if the text is a number, as in a hand-written file.
 fn address(text: &str, family: Family) -> Result<Value, Failure> {
     named(family, "any", text)?;
     Ok(text.parse::<i64>().map_or_else(|_| text.into(), Value::from))
@@ -315,10 +315,10 @@ impl Report for WasSet {
 /// Arguments of `robots rename`.
 #[derive(Debug, Args)]
 pub struct Rename {
-    /// Its name
+    /// Current name of the robot
     #[arg(add = ValueKind::Robot)]
     old: String,
-    /// Its new name
+    /// New name of the robot
     new: String,
 }
 
@@ -356,7 +356,7 @@ impl Report for Renamed {
 /// Arguments of `robots default`.
 #[derive(Debug, Args)]
 pub struct Default {
-    /// Its name
+    /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
 }

@@ -24,7 +24,7 @@ use crate::transport::session::wire::Info;
 /// Arguments of `session close`.
 #[derive(Debug, Args)]
 pub struct Close {
-    /// Robots whose sessions to close, by name or target URL; -r, -t and --all select them too
+    /// Robots whose sessions to close, by name or target URL; -r, -t and --all also select robots
     #[arg(add = ValueKind::Session)]
     names: Vec<String>,
     /// Close even while a motion runs; the controller then stops the motion

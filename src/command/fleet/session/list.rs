@@ -55,13 +55,13 @@ struct Session {
     pid: u32,
     /// `up`, `down` (armctl reconnects), `silent` (the process does not answer) or `dead` (the process was killed).
     link: &'static str,
-    /// Reason if it is not `up`.
+    /// Reason if the link is not `up`.
     why: Option<String>,
-    /// Time of its start.
+    /// Start time of the session.
     since: Option<String>,
     /// Number of reconnections.
     reopenings: u32,
-    /// Processes that use it now.
+    /// Processes that use the session now.
     clients: Vec<Client>,
     /// Process that moves the robot.
     motion: Option<Client>,
@@ -85,7 +85,7 @@ struct Client {
 struct Left {
     #[serde(flatten)]
     client: Client,
-    /// Whether it died; otherwise it ended without a wait, as requested.
+    /// Whether the process died. Otherwise it ended without a wait, as requested.
     died: bool,
 }
 

@@ -38,7 +38,7 @@ pub struct Open {
     /// Close the session after this time without a command
     #[arg(long, value_name = "TIME", value_parser = duration::parse_some)]
     idle: Option<Duration>,
-    /// The family, if armctl cannot infer it from the target
+    /// Family of the robot, if armctl cannot infer it from the target
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// This is the process that `--background` has started.

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use crate::settings::inventory::{Inventory, Location};
 use crate::settings::{Robot, Sources};
 
-/// Inventory entry that is read again after each change of the file. Once the robot is read-only, it stays so.
+/// Inventory entry that is read again after each change of the file. Once the robot is read-only, it stays read-only.
 pub struct WatchedEntry {
     robot: Robot,
     /// Version of the file that was read last.

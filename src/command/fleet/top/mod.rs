@@ -44,7 +44,7 @@ pub struct Top {}
 /// Default and minimum polling interval.
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(500);
 const MIN_INTERVAL: Duration = Duration::from_millis(50);
-/// Minimum and maximum time between two screen updates. Elapsed times are shown as well.
+/// Minimum and maximum time between two screen updates. The maximum keeps displayed elapsed times current.
 const FRAME_INTERVAL: Duration = Duration::from_millis(100);
 const TICK: Duration = Duration::from_secs(1);
 /// Longest backoff of a robot that does not answer. It is short, because a user is waiting.
@@ -88,7 +88,7 @@ impl Top {
     }
 }
 
-/// Rejects options that make no sense on a screen.
+/// Rejects options that do not apply to a screen.
 fn check_globals(run: &Run, every: Duration) -> Result<(), Failure> {
     let invalid = |what: &str, hint: &str| Err(Failure::usage(format!("top {what}")).hint(hint));
     if run.screen.format != Format::Table || run.filter.is_some() {

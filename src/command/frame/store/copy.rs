@@ -12,7 +12,7 @@ use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::Confirmation;
 
-/// Copies a row to another one, or to several.
+/// Copies a row to one or several other rows.
 #[derive(Debug, Args)]
 #[command(after_help = S::WORDS.writing)]
 pub struct Copy<S: Writable> {
@@ -51,7 +51,7 @@ impl<S: Writable> Command for Copy<S> {
         }
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &[&to[..], &[from]].concat()).await?;
-        // In a dry run, the values are unknown.
+        // In a dry run, the values of the row are unknown.
         let mut texts = vec![None; table.fields().len()];
         if let Some(answers) = read(&mut table, link, screen, &[from]).await.known()? {
             let stored = answers.rows.into_iter().next().transpose()?.flatten().ok_or_else(|| {

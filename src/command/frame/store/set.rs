@@ -12,7 +12,7 @@ use crate::controller::nearest::nearest;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 
-/// A row, and what it shall hold.
+/// A row, and its new content.
 #[derive(Debug, Args)]
 #[command(after_help = S::help().or(S::WORDS.writing))]
 pub struct Set<S: Writable> {
@@ -20,14 +20,14 @@ pub struct Set<S: Writable> {
     options: S::Options,
     #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = S::WORDS.range, add = S::COMPLETE)]
     row: SingleRow<S>,
-    /// All values in their order, or some as NAME=VALUE, which keeps the others
+    /// All values in their order, or some as NAME=VALUE; the others keep their value
     #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true, allow_hyphen_values = S::IS_TEXT,
         action = if S::IS_TEXT { ArgAction::Set } else { ArgAction::Append },
         num_args = if S::IS_TEXT { ValueRange::SINGLE } else { ValueRange::from(1..) })]
     values: Vec<String>,
 }
 
-/// A single row.
+/// A row argument that must be a single row.
 #[derive(Debug)]
 struct SingleRow<S: Store>(S::Key);
 
@@ -83,7 +83,7 @@ pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S:
                 .ok_or_else(|| invalid(format!("'{word}' has no name, but other values have names")))?;
             let requested = name.to_ascii_lowercase().replace('-', "_");
             let exact = names.iter().position(|field| *field == requested);
-            // Accepts `speed` for `speed_mm_s`.
+            // A shorter name is accepted: `speed` for `speed_mm_s`.
             let begins = |field: &&str| field.strip_prefix(&*requested).is_some_and(|rest| rest.starts_with('_'));
             let at = exact.or_else(|| names.iter().position(begins)).ok_or_else(|| {
                 let similar = nearest(name, names.iter().copied());

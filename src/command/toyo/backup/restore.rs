@@ -49,7 +49,7 @@ pub struct Restore {
     resume: Option<Part>,
 }
 
-/// What is asked for of a restore.
+/// Options of a restore.
 struct Asked {
     restoring: RestoreSelection,
     resume: Option<Part>,
@@ -59,22 +59,22 @@ struct Asked {
 struct Job {
     part: Part,
     saved: Saved,
-    /// Steps that a program needs.
+    /// Number of steps that a program needs.
     steps: u16,
-    /// Its rows.
+    /// Rows of the part.
     table: Table,
 }
 
 /// Everything to restore, in the order of the writes.
 struct Jobs {
-    /// Parameters of the machine itself, if they are wanted.
+    /// Parameters of the machine itself, if the user requested them.
     machine: Option<Table>,
     parts: Vec<Job>,
-    /// Speed override, and the present one.
+    /// Speed override of the backup, and the current speed override.
     speed: Option<(Cell, Option<u8>)>,
 }
 
-/// Number of values that a question shows one by one; more are counted by parts.
+/// Maximum number of values that a question lists one by one. If there are more, it shows their number for each part.
 const SHOWN: usize = 10;
 
 impl Command for Restore {
@@ -92,7 +92,7 @@ impl Command for Restore {
     }
 }
 
-/// Writes back what a backup holds.
+/// Writes the data of a backup back to the controller.
 pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
     Asked { restoring: restoring.clone(), resume: None }.run(context).await
 }
@@ -102,7 +102,7 @@ impl Asked {
         let Context { link, screen, robot, authority, .. } = context;
         let folder = &self.restoring.folder;
         let manifest: Manifest = manifest::open_existing(folder)?;
-        // Whether robot and address are those of the backup; the machine itself is asked later.
+        // Checks that robot and address are as in the backup. The machine itself is checked later.
         manifest::check_origin(&manifest::open_existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
         let parts = self.chosen(&manifest)?;
         if self.restoring.machine && !parts.contains(&Part::Parameters) {
@@ -123,13 +123,13 @@ impl Asked {
         }
         let outcome = self.restore((link, screen, &authority), &manifest.controller, contents).await;
         match outcome {
-            // Nothing more is sent then but what puts things back at the end of the link.
+            // After Ctrl-C, only the blocks that restore temporary changes are sent, when the link is closed.
             Ok(report) if report.is_interrupted() => Ok(report),
             outcome => tasks::done(link, outcome).await,
         }
     }
 
-    /// The tables of the parts. Programs fill the steps of their tasks, which a dry run does not know.
+    /// Tables of the parts. The table of a program fills all steps of its task. Their number is not known in a dry run.
     fn jobs(
         &self,
         backup: &Controller,
@@ -171,7 +171,7 @@ impl Asked {
         }
         if let Some(resume) = self.resume {
             let first = parts.iter().position(|part| *part == resume);
-            // All of them, where it is the first that there can be.
+            // The parameters are always the first part, so without them all parts are restored.
             let first = first.or_else(|| (resume == Part::Parameters).then_some(0));
             let first = first.ok_or_else(|| {
                 Failure::usage(format!("--resume={resume}: the backup does not contain this part"))
@@ -224,7 +224,7 @@ impl Asked {
             if needs_power_cycle || !is_whole {
                 if let Some(result) = results.iter_mut().find(|result| result.name == Part::Parameters.to_string()) {
                     settle(result, written);
-                    // The other parameters were not written.
+                    // The parameters that do not belong to the machine were not written.
                     if is_whole {
                         (result.more.state, result.ok) = (State::NotTried, false);
                     }
@@ -303,13 +303,14 @@ impl Asked {
     }
 }
 
-/// Whether a part changes the machine itself, so that the controller needs a restart.
+/// Whether a part changes parameters of the machine itself, so that the controller needs a restart.
 fn changes_machine(table: &Table) -> bool {
     let parameter = |name: &String| Parameter::named(name).is_some_and(|found| found.group() == Group::Machine);
     table.differing().iter().any(parameter)
 }
 
-/// Compares all parts with the controller. A part that cannot be read fails alone; nothing of it is written.
+/// Compares all parts with the controller. If a part cannot be read, only this part fails, and nothing of it is
+/// written.
 async fn compare_all(
     link: &mut Link,
     screen: &Screen,
@@ -337,7 +338,7 @@ async fn compare_all(
     Ok(())
 }
 
-/// Change to confirm: a few values one by one, many by parts.
+/// Change to confirm. It lists a few values one by one, or many values as a number for each part.
 fn replacing<'j>(
     machine: Option<&Table>,
     parts: impl Iterator<Item = (&'j Job, &'j FileItem)>,
@@ -371,12 +372,12 @@ fn replacing<'j>(
     })
 }
 
-/// Override in an answer or a request.
+/// Speed override in an answer or a request.
 fn percent(record: &Record) -> u8 {
     small(record, "override")
 }
 
-/// The override of the backup.
+/// Speed override of the backup.
 fn speed(backup: &Controller) -> Result<Option<Cell>, Failure> {
     let Some(percent) = backup.speed_override_percent else { return Ok(None) };
     let values = vec![Value::Number(percent.into())];
@@ -388,7 +389,7 @@ fn speed(backup: &Controller) -> Result<Option<Cell>, Failure> {
     }))
 }
 
-/// Writes the override if it differs.
+/// Writes the speed override if it differs.
 async fn write_speed(
     link: &mut Link,
     screen: &Screen,
@@ -402,8 +403,8 @@ async fn write_speed(
     Ok(PartResult { written: 1, ..PartResult::default() })
 }
 
-/// Whether the controller is the machine that the backup is of: its robot type (SYSP), which task has which axes (E19), and
-/// what the axes are called (E01). With `machine`, E19 and E01 are among what is restored.
+/// Checks that the controller is the machine of the backup: its robot type (SYSP), the axes of each task (E19), and the
+/// letters of the axes (E01). With `machine`, E19 and E01 are restored, so they are not compared.
 fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<(), Failure> {
     let none = String::new();
     let letters = [backup, found].map(|one| one.axis_letters.as_ref());
@@ -428,7 +429,7 @@ fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()
         .hint("use a backup of this robot, or add --force to write this backup anyway; nothing was written"))
 }
 
-/// Whether all programs fit the tasks; before anything is written.
+/// Checks before the first write that all programs fit the tasks.
 fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
     for Job { part, steps, .. } in jobs {
         let Part::Program(task) = part else { continue };
@@ -442,7 +443,7 @@ fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Records the result of a part. Returns whether the next one can be tried.
+/// Records the result of a part. Returns whether the next part can be tried.
 fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bool {
     let PartResult { written, unchanged, left_out, failure } = match outcome {
         Ok(outcome) => outcome,

@@ -34,12 +34,12 @@ use crate::settings::Robot;
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
-    /// Points and program of the current task only, so that nothing is changed
+    /// Only points and program of the current task, so that nothing is changed on the controller
     #[arg(long)]
     current_task: bool,
 }
 
-/// In the scope of a backup, where the other tasks are not in it.
+/// Marks in the scope of a backup that it contains only the current task.
 const CURRENT_TASK: &str = "the current task";
 
 impl Command for Backup {
@@ -57,7 +57,7 @@ impl Command for Backup {
     }
 }
 
-/// Makes a backup; of the current task only where nothing may be changed.
+/// Makes a backup. If nothing may be changed on the controller, the backup contains only the current task.
 pub async fn back_up(
     context: Context<'_, Toyo>,
     mut making: SaveOptions,
@@ -127,7 +127,7 @@ async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackedUp, Failur
     Err(unknown())
 }
 
-/// What there is, or what there is of the current task alone.
+/// Parts of the controller. With `current_task`, the points and the program of the other tasks are omitted.
 async fn parts(link: &mut Link, controller: &Controller, current_task: bool) -> Result<Vec<Part>, Failure> {
     let current = tasks::choose(link, None).await?;
     let wanted = |task: &u8| !current_task || *task == current;

@@ -39,7 +39,7 @@ commands! {
     }
 }
 
-/// The easy programs as a table and as a type of program.
+/// The easy programs, as a table and as a type of numbered programs.
 #[derive(Debug)]
 pub struct Numbered;
 

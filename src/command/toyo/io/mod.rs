@@ -43,7 +43,7 @@ struct Station {
     station: u8,
 }
 
-/// Open points of the manual (ambiguities C8 and C9).
+/// Help about questions that the manual leaves open (ambiguities C8 and C9).
 const BITS: &str = "IN1.3 is bit 3 of input port 1, OUT1.3 of output port 1, INT1.3 of internal port 1. IN1 is the \
                     whole port. IN0 and OUT0 are the system ports. Bit 1 is the rightmost bit of a port, as in the \
                     example of section 3-1 of the manual.";

@@ -8,13 +8,13 @@ use crate::command::robot::io::IoRow;
 use crate::controller::names::Names;
 use crate::failure::{Failure, Kind};
 
-/// Bytes of ports, or the reason for a missing byte.
+/// Bytes of ports, or the reason why a byte is missing.
 pub type Bytes = BTreeMap<(PortBank, u8), Result<u8, Failure>>;
 
-/// Reads the ports of signals. After a lost connection the remaining ports are not read.
+/// Reads the ports of signals. After a lost connection, the remaining ports are not read.
 ///
 /// # Errors
-/// A port that the station does not have, or a lost connection. A dry run ends here.
+/// If the station does not have a port, or the connection is lost. A dry run ends here.
 pub async fn read(link: &mut Link, station: u8, signals: &[Signal]) -> Result<Bytes, Failure> {
     let ports: BTreeSet<(PortBank, u8)> = signals.iter().map(|signal| (signal.bank, signal.port)).collect();
     for (bank, port) in &ports {

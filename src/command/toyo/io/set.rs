@@ -56,11 +56,11 @@ pub struct Direct {
 struct Assignment {
     port: u8,
     mask: Mask,
-    /// Whether a name was typed; names belong to station 0.
+    /// Whether the user typed a name. Names apply only to station 0.
     is_named: bool,
 }
 
-/// A port or a bit of it, as typed.
+/// A port or a bit of a port, as typed.
 #[derive(Debug, Clone, Copy)]
 struct Target {
     port: u8,
@@ -110,7 +110,7 @@ fn one_bit(number: u8, value: &str) -> Result<Mask, String> {
 }
 
 impl Set {
-    /// One assignment for each port, in the order of the first mention. A repeated bit is an error.
+    /// One assignment for each port, in the order in which the ports first occur. It is an error if a bit occurs twice.
     fn orders(&self) -> Result<Vec<Assignment>, Failure> {
         let mut orders: Vec<Assignment> = Vec::new();
         for assignment in &self.assignments {
@@ -154,11 +154,11 @@ impl Command for Set {
     }
 }
 
-/// A port before and after a command, if it was read.
+/// A port before and after a command; `None` if it was not read.
 struct PortChange {
     old: Option<u8>,
     now: Option<u8>,
-    /// Failure if bits differ from the command.
+    /// Failure, if the bits differ from the command.
     failure: Option<Failure>,
 }
 
@@ -184,7 +184,7 @@ impl Assignment {
         signals.filter(move |signal| signal.is_on(mask.care))
     }
 
-    /// Sets the port, and reads it back if possible.
+    /// Sets the port. Reads it back, if this is possible.
     async fn set(&self, link: &mut Link, station: u8) -> Result<PortChange, Failure> {
         let order = self.order(station)?;
         let Some(screen) = OUTPUTS.screen_of(station, self.port) else {
@@ -226,7 +226,7 @@ impl Assignment {
     }
 }
 
-/// Failure of a command with the result of the others; the controller accepted `done` of them.
+/// Failure of a command, with the results of the other commands. The controller accepted `done` of them.
 fn with_results(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
     if orders.len() == 1 {
         return failure;
@@ -316,7 +316,7 @@ mod tests {
         let keys = |item: &Value| [item["name"].clone(), item["old"].clone(), item["value"].clone()];
         assert_eq!(keys(&set["items"][0]), [Value::from("OUT1.3"), false.into(), true.into()], "{set}");
         assert_eq!(keys(&set["items"][1]), [Value::from("OUT18.1"), false.into(), true.into()], "{set}");
-        // A bit marked with a dot can have any state.
+        // The command does not set a bit that is marked with a dot, so the bit can have any state.
         let odd = |block: &str, _| match block {
             "@MOUT SNO=0 GN=1" => {
                 Fault::Answered("@MOUT SNO=0 GN=1 SY01=00000000 PN01=10000000 PN02=10000001 PN03=00000000")

@@ -1,4 +1,4 @@
-//! Report of changes that an ended process left on the controller.
+//! Reports changes that another process left on the controller when it ended.
 
 use super::Link;
 use crate::client::toyo::{Error, status_page};
@@ -26,7 +26,7 @@ impl Link {
         }
     }
 
-    /// Changes that are still present, each with the command that undoes it.
+    /// Changes that are still present. Each text names the command that undoes the change.
     async fn remaining_changes(&mut self, abandoned: &AbandonedEntry) -> Result<Vec<String>, Error> {
         let mut notices = Vec::new();
         let mut status = Status::default();

@@ -52,7 +52,7 @@ commands! {
     }
 }
 
-/// The palletizing programs as a type of program.
+/// The palletizing programs, as a type of numbered programs.
 #[derive(Debug)]
 pub struct Numbered;
 
@@ -106,7 +106,7 @@ pub struct Records {
 }
 
 impl Records {
-    /// Records of a program of a machine whose axes have these letters.
+    /// Records of a program, on a machine whose axes have these letters.
     pub const fn new(program: i32, letters: Letters) -> Self {
         Self { program, letters }
     }
@@ -138,7 +138,7 @@ impl Hash for Key {
     }
 }
 
-/// Additional keys of a record.
+/// Fields that toyo adds to a record.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct About {
     /// Number of the program, 1 to 16.
@@ -146,7 +146,7 @@ pub struct About {
     program: i32,
     /// Number of the record, 1 to 16.
     record: u8,
-    /// Content.
+    /// Description of the content.
     about: &'static str,
     #[serde(flatten)]
     listed: Listed,
@@ -262,7 +262,7 @@ impl EepromRow for Records {
         cell(self.program, record, values)
     }
 
-    /// Block that writes a record, with `?` in place of unchanged values.
+    /// Block that writes a record. `?` stands for unchanged values.
     fn sketch(&self, Key(record): Key, values: &[Option<Value>]) -> String {
         let body = record.layout.sketch(values).unwrap_or_default();
         format!("@WPLT {:02} SNO={:02} {body}", self.program, record.number)

@@ -29,7 +29,7 @@ impl Command for Progress {
 /// Progress of a palletizing program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProgressReport {
-    /// 1 to 16.
+    /// Number of the program, 1 to 16.
     #[serde(rename = "number")]
     program: i32,
     /// Which sides are a matrix: `M-1`, `1-M` or `M-M`.

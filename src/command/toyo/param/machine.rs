@@ -5,9 +5,9 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
 
-/// Limit of the steps of all tasks together (TO 2-4, E22).
+/// Maximum number of steps of all tasks together (TO 2-4, E22).
 const MOST_STEPS: i32 = 5000;
-/// Limit of steps with easy programs.
+/// Maximum number of steps if there are easy programs.
 const BESIDE_EASY: i32 = 2000;
 
 /// Remedy after a change of a machine parameter.
@@ -22,7 +22,7 @@ pub fn consequence_of(parameters: &[&Parameter]) -> String {
     of_machine(&what, parameters.iter().any(|parameter| is_task_steps(parameter)))
 }
 
-/// Consequence of a change of machine parameters; `has_steps` if the steps of tasks are among them.
+/// Consequence of a change of machine parameters. `has_steps` is whether the number of steps of the tasks changes.
 fn of_machine(what: &str, has_steps: bool) -> String {
     let lost = if has_steps {
         "; a task with fewer steps loses its last steps, and with more than 2000 steps in total all easy programs are \

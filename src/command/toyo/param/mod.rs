@@ -84,25 +84,26 @@ impl Key {
     }
 }
 
-/// Additional keys of a parameter.
+/// Fields that toyo adds to a parameter.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct About {
-    /// `P01`.
+    /// Id of the parameter, such as `P01`.
     pub id: &'static str,
     /// `mode`, `axis`, `machine`, `special` or `table`.
     pub group: &'static str,
-    /// Content.
+    /// Description of the content.
     pub about: &'static str,
-    /// Controllers with the parameter; empty for all.
+    /// Controllers that have the parameter; empty for all controllers.
     pub only_on: &'static [&'static str],
     #[serde(flatten)]
     listed: Listed,
 }
 
-/// Groups, in the order of the writes: after a machine parameter, a controller can refuse all others.
+/// Groups in the order of the writes. After a machine parameter, a controller may refuse all other parameters, so the
+/// machine group is last.
 const GROUPS: [Group; 5] = [Group::Mode, Group::Axis, Group::Table, Group::Special, Group::Machine];
 
-/// The table of points, which `point` reads.
+/// The table of points. It has its own commands (`point`).
 const POINTS: &str = "T1";
 
 /// Rows of all tables except the points.
@@ -123,7 +124,7 @@ fn singles() -> impl Iterator<Item = &'static Parameter> {
     PARAMETERS.iter().filter(|parameter| parameter.row().is_none())
 }
 
-/// A parameter by name or id, a row of a table such as `T2.5`, or all of a group.
+/// Parses the name or id of a parameter, a row of a table such as `T2.5`, or a group.
 fn parse(name: &str) -> Result<Vec<Key>, String> {
     if let Some(group) = GROUPS.iter().find(|group| group.name().eq_ignore_ascii_case(name)) {
         if *group == Group::Table {
@@ -148,7 +149,7 @@ fn parse(name: &str) -> Result<Vec<Key>, String> {
     }
 }
 
-/// `P01`, or a row as `T2.5`.
+/// Text for a key: `P01`, or `T2.5` for a row.
 pub fn key_text(Key { parameter, row }: Key) -> String {
     match row {
         Some(row) => format!("{}.{row}", parameter.id),
@@ -177,8 +178,8 @@ fn command_of(table: &Parameter) -> &'static str {
     }
 }
 
-/// Reads parameters and rows, each with its own result. A refused read has a second attempt, because a busy controller
-/// also refuses.
+/// Reads parameters and rows. Each has its own result. A refused read is repeated once, because a busy controller also
+/// refuses.
 pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Records, Failure> {
     let request = |key: &Key| Request::read_parameter(key.parameter, key.row);
     let requests = keys.iter().map(request).collect::<Result<Vec<Request>, _>>().map_err(|error| wrong(&error))?;

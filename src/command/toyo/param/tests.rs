@@ -15,7 +15,7 @@ use crate::controller::toyo::table::Parameter;
 fn parameters_are_read_by_name_or_id() {
     assert_eq!(blocks(&["param", "get", "Soft-Limit-Plus", "p01", "M09"]).unwrap(), ["@RPAR P01", "@RPAR M09"]);
     assert_eq!(blocks(&["param", "list", "special"]).unwrap(), ["@RPAR U03", "@RPAR U21", "@RPAR U22"]);
-    // Parameters that only some controllers have get a second request after a refusal.
+    // A parameter that only some controllers have is requested a second time after a refusal.
     let mut all = blocks(&["param", "list"]).unwrap();
     all.dedup();
     assert_eq!(all.len(), 74);
@@ -42,7 +42,7 @@ fn a_write_compares_first_and_takes_the_host() {
     assert_eq!(blocks(&["param", "set", "m09", "english"]).unwrap(), ["@RPAR M09", "@WPAR M09 E", "@RPAR M09"]);
     assert_eq!(blocks(&["param", "set", "m01", "0/01/3"]).unwrap(), ["@RPAR M01", "@WPAR M01 0/01/3", "@RPAR M01"]);
     assert_eq!(blocks(&["param", "set", "p13", "<=", "-5", "0/01/3"]).unwrap()[1], "@WPAR P13 AX1<=-0005.00 0/01/3");
-    // Kept values are unknown in a dry run.
+    // Values that are kept are unknown in a dry run.
     assert_eq!(
         all_blocks(&["param", "set", "p01", "ax2=150"]).unwrap(),
         [
@@ -216,7 +216,7 @@ fn a_dump_names_values_that_cannot_be_written_back() {
     assert!(!std::fs::read_to_string(&file).unwrap().contains("cc-link"));
 }
 
-/// A value of a field, selected by a number.
+/// A value for a field. `pick` selects which one.
 fn value(field: &Field, pick: u32) -> Value {
     let [low, high, ..] = pick.to_le_bytes();
     match field.form {
@@ -277,7 +277,7 @@ fn a_partial_change_reads_the_parameter_once_before_the_write() {
         received.borrow_mut().clear();
         bench.data(words);
         let received = received.borrow();
-        // Once before the write, and once to read it back.
+        // The value is read once before the write, and once after it.
         assert_eq!(received.iter().filter(|block| *block == read).count(), 2, "{received:#?}");
     }
 }

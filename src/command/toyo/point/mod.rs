@@ -50,22 +50,22 @@ pub struct Points {
 }
 
 impl Points {
-    /// Table of a task, or of the current task.
+    /// The table of a task, or of the current task.
     pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
         Ok(Self { letters: link.letters().await?, selected_task: task, task: task.unwrap_or_default() })
     }
 
-    /// Table of a task of a machine whose axes have these letters.
+    /// The table of a task, on a machine whose axes have these letters.
     pub const fn with_letters(task: u8, letters: Letters) -> Self {
         Self { letters, selected_task: Some(task), task }
     }
 
-    /// The letters of the axes.
+    /// Letters of the axes.
     pub fn letters(&self) -> Letters {
         self.letters
     }
 
-    /// The task that was selected.
+    /// Task of the table.
     pub fn task(&self) -> u8 {
         self.task
     }
@@ -79,7 +79,7 @@ pub struct TaskOptions {
     pub task: Option<u8>,
 }
 
-/// Additional keys of a point.
+/// Fields that toyo adds to a point.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct OfTask {
     /// Task of the point.

@@ -91,7 +91,7 @@ impl Teach {
         if !is_stored {
             points.write(link, screen, &[(point, Some(&stored), &new)]).await?;
         }
-        // The value was written and read back.
+        // The position was written and read back.
         let name = point.to_string();
         let taught =
             Taught::new(name, Some(old.position()), coordinates.position(), coordinates.position().of_group(UNIT));

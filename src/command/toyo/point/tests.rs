@@ -103,7 +103,7 @@ fn a_failed_write_ends_the_restore_with_a_report() {
     assert!(last.starts_with("not written: "), "{last}");
 }
 
-/// Whether each point has a result, and whether it was written.
+/// For each point: whether it has a result, and whether it was written.
 fn outcomes(report: &serde_json::Value) -> Vec<(bool, bool)> {
     let flag = |item: &serde_json::Value, key: &str| item[key].as_bool().unwrap();
     report["items"].as_array().unwrap().iter().map(|item| (flag(item, "ok"), flag(item, "written"))).collect()
@@ -153,7 +153,7 @@ fn the_current_task_is_restored_after_the_command() {
     assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["task"], 3);
 }
 
-/// Axes 2 and 3 have exchanged letters, as on a machine with a vertical second axis.
+/// The letters of axes 2 and 3 are exchanged, as on a machine whose second axis is vertical.
 const CROSSED: &str = "write = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\norigin = true\n";
 
 #[test]

@@ -75,13 +75,13 @@ impl OfflineCommand for Check {
     }
 }
 
-/// Adds the step at which an offline run stops with an error, unless it already has a finding.
+/// Adds the step at which an offline run stops with an error, unless there is already a finding for this step.
 fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
     let Some(Stop { code, after_s, line }) = stop else { return };
     let said = findings.iter().filter(|finding| finding.line == *line).map(|finding| finding.severity).min();
     let severity = match said {
         Some(Severity::Error | Severity::Warning) => return,
-        // The result depends on the controller, or another file has the program of the task.
+        // Here the result depends on the controller, or the program of the task is in another file.
         Some(Severity::Note) => Severity::Note,
         None if code.is_none_or(|code| code == NO_TASK) => Severity::Note,
         None => Severity::Warning,
@@ -135,7 +135,7 @@ struct FileVerdict {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Labelled {
     name: String,
-    /// Number of its tag.
+    /// Tag number of the label.
     tag: i32,
     /// Step of the tag.
     step: usize,
@@ -261,7 +261,7 @@ b.txt: 2 steps, 1 label
         assert_eq!((failure.kind.exit(), failure.message.as_str()), (8, "a.txt has errors"));
     }
 
-    /// Errors that appear only when the steps run.
+    /// A run finds errors that the steps alone do not show.
     #[test]
     fn a_run_finds_what_the_steps_do_not_show() {
         let folder = tempfile::tempdir().unwrap();

@@ -97,7 +97,7 @@ impl Copy {
         Request::of(table::Command::Cpss, values)
     }
 
-    /// Command text without the current task, which is not known yet.
+    /// Text of the command. The current task is omitted, because it is not known yet.
     fn sketch(&self) -> String {
         let step = |step: u16| Some(Value::Number(step.into()));
         let task = |task: Option<u8>| task.map(|task| Value::Number(task.into()));
@@ -184,7 +184,7 @@ pub struct Copied {
     at_step: u16,
     /// Number of steps.
     steps: usize,
-    /// Whether the steps were already equal, so that nothing was written.
+    /// Whether the target steps were already equal, so that nothing was written.
     was_there: bool,
 }
 

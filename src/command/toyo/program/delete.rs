@@ -75,7 +75,7 @@ impl Delete {
 
     /// Change to confirm.
     fn change(&self, deleted: &[Record], task: u8) -> Change {
-        // A step without effect also counts, because later steps move up.
+        // Steps that do nothing are also listed, because later steps move up.
         let steps = (self.step..).zip(deleted).map(|(step, record)| format!("step {step}: {}", record.written()));
         let change = match deleted.len() {
             1 => Change::new(format!("delete a step of task {task}")),

@@ -93,9 +93,9 @@ struct Steps {
     /// Changes from the controller (old) to the file (new); one line per step.
     #[serde(flatten)]
     compared: Compared,
-    /// Steps in the controller, up to the last step that is not a NOP.
+    /// Number of steps in the controller, up to the last step that is not a NOP.
     controller_steps: usize,
-    /// Steps of the file, up to the last step that is not a NOP.
+    /// Number of steps in the file, up to the last step that is not a NOP.
     file_steps: usize,
 }
 

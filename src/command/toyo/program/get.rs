@@ -119,7 +119,7 @@ impl Command for Get {
                 draft.write(text.as_bytes())?;
                 draft.commit()
             }
-            // A program file must be complete, and must not be replaced by an incomplete one.
+            // A program file must be complete. An incomplete program must not replace it.
             Some(_) => Err(Failure::new(Kind::ConditionNotMet, NOT_WRITTEN)),
             None => Ok(()),
         };
@@ -146,7 +146,7 @@ impl Command for Get {
 }
 
 impl Get {
-    /// Whether options require another text than the one that was written.
+    /// Whether the options require a text other than the stored source text.
     fn changes_text(&self) -> bool {
         self.plain || self.numbers || self.explain
     }
@@ -166,7 +166,7 @@ impl Get {
         }
     }
 
-    /// Reads the steps: their task, the number of steps of the task, and each step.
+    /// Reads the steps. Returns their task, the number of steps of this task, and each step.
     pub async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers), Failure> {
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, self.to.unwrap_or(self.from)).await?;
@@ -175,7 +175,7 @@ impl Get {
         Ok((task, room, read))
     }
 
-    /// Records the requests of a dry run.
+    /// Records the requests in a dry run.
     pub async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
         tasks::choose(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
@@ -185,7 +185,7 @@ impl Get {
     }
 }
 
-/// Note that the program differs from the text that was written last.
+/// Note: the program differs from the text that was last written.
 fn other_program(source: &Source, differences: usize) -> String {
     let Source { file, put_at, .. } = source;
     let steps = if differences == 1 { "1 step differs".to_owned() } else { format!("{differences} steps differ") };
@@ -202,7 +202,7 @@ const NOT_WRITTEN: &str = "was not written, because the program is incomplete";
 /// Reasons why steps were not read.
 fn unread(answers: &Answers) -> Unread {
     let why = |failure: &Failure| match failure.kind {
-        // One reason for all steps that were not requested.
+        // Steps that were not requested have one common reason.
         Kind::NoAnswer => in_a_word(failure.kind).to_owned(),
         _ => escape::line(&failure.message).into_owned(),
     };
@@ -210,7 +210,7 @@ fn unread(answers: &Answers) -> Unread {
     failed.map(|(index, failure)| (index, why(failure))).collect()
 }
 
-/// Table rows that the steps use, without rows that the controller refuses.
+/// Table rows that the steps use. Rows that the controller refuses are omitted.
 async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows, Failure> {
     let mut rows = Rows::new();
     for (id, row) in program::uses(steps) {
@@ -232,17 +232,17 @@ pub struct Got {
     first_step: u16,
     /// The last step that was read.
     last_step: usize,
-    /// Steps up to the last one that is not a NOP or was not read.
+    /// Number of steps up to the last step that is not a NOP, or that was not read.
     used_steps: usize,
     /// Tags with their steps.
     tags: Vec<Tag>,
-    /// Each step, without the NOPs at the end of the task.
+    /// Each step. The NOPs at the end of the task are omitted.
     steps: Vec<Item<Step>>,
-    /// Whether the text is the one that was written, with its labels and comments.
+    /// Whether the text is the stored source text, with its labels and comments.
     is_source: bool,
-    /// Text of the file, with `?` for steps that were not read; null if it went to a file.
+    /// Text of the file, with `?` for steps that were not read; null if the text was written to a file.
     text: Option<String>,
-    /// Text, and the file that was written; no file is written if a step was not read.
+    /// Text, and the file that was written. If a step was not read, no file is written.
     files: [FileItem<Plain>; 1],
     #[serde(skip)]
     read_steps: usize,
@@ -262,12 +262,12 @@ pub struct Step {
     pub step: usize,
     /// Instruction in the controller.
     pub instruction: String,
-    /// Whether the manual lists it; other instructions cannot be written.
+    /// Whether the manual lists the instruction. Other instructions cannot be written.
     pub in_manual: bool,
 }
 
 impl Step {
-    /// A step as read.
+    /// Creates a step from a record that was read.
     pub fn of(step: usize, record: &Record) -> Self {
         Self { step, instruction: record.written(), in_manual: record.is_listed() }
     }
@@ -327,7 +327,7 @@ mod tests {
              at the end of the program are omitted\n"
         );
         assert_eq!(got["text"], text);
-        // The text is not accepted as a program.
+        // `program put` does not accept the text as a program.
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("partial.txt");
         std::fs::write(&path, text).unwrap();

@@ -28,7 +28,7 @@ use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::View;
 
-/// Insert a step; this step and later ones move by one.
+/// Insert a step. The number of each later step increases by one.
 #[derive(Debug, Args)]
 #[command(after_help = and_mode("The insertion removes the last step of the task. If the last step is not a NOP, \
                                  armctl rejects the command."))]
@@ -150,7 +150,7 @@ impl Insert {
     }
 }
 
-/// Failure because steps did not move as expected.
+/// Failure: the steps did not move as expected.
 pub fn moved_wrong(step: u16, wanted: &Record, found: &Record) -> Failure {
     let (wanted, found) = (wanted.written(), found.written());
     Failure::new(Kind::Malformed, format!("the controller answered @OK, but step {step} is '{found}', not '{wanted}'"))

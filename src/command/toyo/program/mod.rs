@@ -48,7 +48,7 @@ commands! {
     }
 }
 
-/// Adds to a help text that commands that write steps select program mode temporarily.
+/// Adds to a help text that a command selects program mode temporarily to write steps.
 fn and_mode(text: &str) -> String {
     format!("{text}\n\n{MODE}")
 }

@@ -56,7 +56,7 @@ pub struct Put {
     /// Read every step of the task, even if armctl wrote the program and NOPs after it
     #[arg(long, conflicts_with_all = ["at", "keep_rest"])]
     read_all: bool,
-    /// Program that the controller must have before the write.
+    /// Program that the controller must still have before the write.
     #[arg(skip)]
     expected: Option<Vec<Record>>,
 }
@@ -91,7 +91,7 @@ impl Command for Put {
         let name = self.name();
         let bytes = files::read(&self.file)?;
         let names = names::of_robot(robot, screen);
-        // The tags around a part are known later.
+        // The tags around a part are only known later.
         let around = self.at.map(|at| part(at, None));
         let room = MOST_STEPS + 1 - usize::from(self.at.unwrap_or(1));
         let program = text::program(&name, check_named(&bytes, room, around.as_ref(), names), screen)?;
@@ -111,7 +111,7 @@ impl Command for Put {
 }
 
 impl Put {
-    /// A program that was edited, to replace the program that was read.
+    /// Creates a `put` for an edited program, which replaces the program that was read.
     pub fn edited(file: PathBuf, task: Option<u8>, expected: Vec<Record>) -> Self {
         Self { file, task, at: None, keep_rest: false, resume: None, read_all: true, expected: Some(expected) }
     }
@@ -138,7 +138,7 @@ impl Put {
                 let checked = check_named(bytes, room.into(), None, names);
                 text::program(&name, checked, &screen.silenced())?
             }
-            // A part without tags does not depend on the tags around it.
+            // A part that uses no tags does not depend on the tags around it.
             Some(_) if !names_tags(program) => program.clone(),
             Some(at) => {
                 let tags = tags_around(link, screen, first, last, room).await?;
@@ -165,7 +165,8 @@ impl Put {
         if !changes.is_empty() {
             steps::open(link).await?;
             let mut progress = screen.items_progress("writing steps", changes.len() as u64);
-            // The caller also waits for Ctrl-C, but polls this work first. It therefore ends here, with the account.
+            // The caller also waits for Ctrl-C, but polls this work first. The work therefore ends here, so that the
+            // failure can state the number of written steps.
             let outcome = interruptible(async {
                 for Edit { step, instruction, .. } in &changes {
                     link.overwrite(screen, &steps::cell(*step, instruction)?, &mut cells).await?;
@@ -201,9 +202,9 @@ impl Put {
         })
     }
 
-    /// Present steps from the first compared step on. If the controller has the program that was written last with only
-    /// NOPs after it, later steps are not read. The first later step is read, because the pendant can have extended the
-    /// program there.
+    /// Reads the current steps, from the first step that is compared. If the controller still has the program that was
+    /// last written, followed only by NOPs, the later steps are not read. The first later step is read, because someone
+    /// may have extended the program there on the pendant.
     async fn found(
         &self,
         (link, screen): (&mut Link, &Screen),
@@ -225,7 +226,7 @@ impl Put {
         Ok(found)
     }
 
-    /// Saves the text for a later `get`.
+    /// Saves the text for a later `program get`.
     fn keep(&self, link: &mut Link, screen: &Screen, (task, room): (u8, u16), bytes: &[u8], program: &Program) {
         let Ok(text) = std::str::from_utf8(bytes) else { return };
         let steps = records(program);
@@ -309,7 +310,7 @@ async fn tags_around(
     Ok(program::tags(&around, 1).into_keys().collect())
 }
 
-/// Failure of the write at a step, with the steps that are written and the hint to continue.
+/// Failure of the write at a step. It states which steps were written, and has a hint how to continue.
 fn account(failure: Failure, name: &str, first: u16, next: u16, left: usize) -> Failure {
     let rest = if left == 1 { "1 step is".to_owned() } else { format!("{left} steps are") };
     let state = match next - first {
@@ -334,9 +335,9 @@ pub struct Stored {
     first_step: u16,
     /// Last step of the file.
     last_step: u16,
-    /// Later steps that became NOP.
+    /// Number of later steps that became NOP.
     cleared_steps: usize,
-    /// Later steps that were not read, because armctl wrote the previous program with NOPs after it.
+    /// Number of later steps that were not read, because armctl wrote the previous program and NOPs after it.
     unread_steps: usize,
     /// Labels with their tags.
     labels: Vec<Labelled>,

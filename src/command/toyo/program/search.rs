@@ -92,7 +92,7 @@ impl Search {
 pub struct TagReport {
     task: u8,
     tag: u16,
-    /// Step of the tag; null if the controller did not go there (ambiguity C21).
+    /// Step of the tag; null if the controller did not go to the tag (ambiguity C21).
     step: Option<i32>,
 }
 

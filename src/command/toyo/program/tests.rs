@@ -6,7 +6,7 @@ use tempfile::TempDir;
 use crate::command::toyo::testing::{Bench, blocks, objection};
 use crate::failure::{Failure, Kind};
 
-/// The program of the manual's sample session (TO 3-1).
+/// The program in the sample session of the manual (TO 3-1).
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
 
 /// A controller, and a folder for its programs.
@@ -182,7 +182,7 @@ fn while_a_program_runs_nothing_is_written() {
 
 #[test]
 fn what_was_written_before_a_failure_is_told() {
-    // The fourth write of a cell is not kept: three programs are, the fourth fails at its first step.
+    // The fourth write to a cell is lost. Three programs are written, and the fourth fails at its first step.
     let mut desk = Desk::with("eeprom_limit = 1");
     desk.put("SPD V=1\nEND\n", &[]).unwrap();
     let failure = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &[]).unwrap_err();

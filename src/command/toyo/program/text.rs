@@ -18,7 +18,7 @@ pub fn name(text: &str) -> Result<Name, String> {
     inventory::named(Family::Toyo, name, address).map_err(|failure| failure.message)
 }
 
-/// Program of a checked text. Warnings go to stderr, errors are a failure.
+/// Program of a text that was checked. Warnings are printed on stderr. If there are errors, fails.
 pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {
     let Some(program) = checked.program else {
         let errors: Vec<Finding> = checked.errors().cloned().collect();
@@ -42,9 +42,9 @@ fn in_a_line(name: &str, finding: &Finding) -> String {
 pub struct Remark {
     /// `error`, `warning` or `note`. A file with an error is not a program.
     pub severity: &'static str,
-    /// From 1.
+    /// Line number, from 1.
     pub line: usize,
-    /// In characters, from 1.
+    /// Column in characters, from 1.
     pub column: usize,
     /// Error, with the expected input.
     pub message: String,
@@ -79,7 +79,7 @@ impl Remark {
         };
         let number = line.to_string();
         let margin = " ".repeat(number.len());
-        // One blank per tab keeps the mark at its column.
+        // Each tab becomes one blank, so that the mark is below its column.
         let source = source.replace('\t', " ");
         let mut lines = vec![
             Cell::from(format!("{severity}: {message}")).tone(tone),

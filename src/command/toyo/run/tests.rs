@@ -3,7 +3,7 @@
 use super::*;
 use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
 
-/// Half a second, then 100 mm at 100 mm/s.
+/// A program that waits half a second, and then moves 100 mm at 100 mm/s.
 const PROGRAM: &str = "origin = true\nspeeds = { 1 = 100.0 }\npoints = { 1 = { 1 = [100.0, 0.0, 0.0, 0.0] } }\n\
     steps = { 1 = [\"TIM TM=000.5\", \"MOVP a PT=001 CN=00 S V=01 POST\", \"OUT STN=0 PN01=.......1\", \"END\"] }\n";
 
@@ -163,7 +163,7 @@ fn ctrl_c_stops_what_runs() {
 
 #[test]
 fn a_late_ok_to_the_start_does_not_confirm_the_stop() {
-    // The start is answered after 400 ms; Ctrl-C comes before that, and the first stop is lost.
+    // The start is answered after 400 ms. Ctrl-C comes before the answer, and the first stop is lost.
     let (mut bench, received) = Bench::with_faults(PROGRAM, |block, count| match block {
         "@SPST 0001" => Fault::Late(Duration::from_millis(400)),
         "@STOP" if count == 1 => Fault::Lost,

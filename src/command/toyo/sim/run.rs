@@ -70,13 +70,13 @@ pub struct Run {
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Input {
     at: Duration,
-    /// Text for the console of the simulator: `0/01/3 on`.
+    /// Text for the console of the simulator, such as `0/01/3 on`.
     what: String,
 }
 
 /// Default time limit.
 const WITHIN: Duration = Duration::from_secs(600);
-/// Time limit of a run for a check.
+/// Time limit of the run that `program check` makes.
 const REHEARSAL: Duration = Duration::from_secs(30);
 /// Minimum interval of printed positions.
 const FINEST: Duration = Duration::from_millis(1);
@@ -110,7 +110,7 @@ fn input(text: &str) -> Result<Input, String> {
         rest => (Duration::ZERO, rest),
     };
     let input = Input { at, what: rest.join(" ") };
-    // A controller with all ports checks the text.
+    // The text is checked on a controller that has all ports.
     let tried = Simulator::new(Start::default()).console(Duration::ZERO, &input.line());
     tried.map(|_| input).map_err(|why| format!("{why}; type an event such as \"at 2s 0/01/3 on\""))
 }
@@ -141,7 +141,8 @@ impl OfflineCommand for Run {
     }
 }
 
-/// Location at which a controller with these points stops the program with an error within some seconds.
+/// Location at which a controller with these points stops the program with an error. The program runs for up to some
+/// seconds.
 pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<Option<Stop>, Failure> {
     let run = Run {
         file: PathBuf::new(),
@@ -173,7 +174,7 @@ impl Run {
         Ok(self.watch(&mut simulator, Recorder::new(sources, self.rows)))
     }
 
-    /// The controller with the programs.
+    /// Start state with the programs.
     fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
         let state = match &self.state {
             Some(path) => {
@@ -194,7 +195,7 @@ impl Run {
         if let Some(path) = &self.params {
             written.extend(writes(path)?);
         }
-        // These writes precede the power-on, so that parameter 2 is active.
+        // These writes come before power on, so that parameter 2 is active.
         let mut document: toml::Table = state.parse().map_err(|error| {
             Failure::usage(format!("{error}")).hint("see `armctl help simulator` for the form of the file")
         })?;
@@ -260,7 +261,7 @@ impl Run {
             while let Some(input) = inputs.next_if(|input| input.at <= now) {
                 let line = input.line();
                 recorder.input(now, simulator.state().position, &line);
-                // The port was checked before.
+                // The port was already checked.
                 if let Err(why) = simulator.console(now, &line) {
                     recorder.input(now, simulator.state().position, &why);
                 }
@@ -285,12 +286,12 @@ fn writes(path: &Path) -> Result<Vec<String>, Failure> {
     Ok(commands)
 }
 
-/// All values of a row of a file.
+/// All values for a row of a file.
 fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failure> {
     changes.whole().ok_or_else(|| in_file(path, &format!("{row}: values are missing")))
 }
 
-/// A row of a file that cannot be used.
+/// Failure: a row of a file cannot be used.
 fn in_file(path: &Path, why: &str) -> Failure {
     Failure::usage(format!("{}: {why}", files::display_path(path))).hint("use `dump` to write a valid file")
 }

@@ -4,7 +4,7 @@ use tempfile::TempDir;
 use crate::command::toyo::testing::{Bench, objection};
 use crate::failure::{Failure, Kind};
 
-/// Program of the manual's sample session (TO 3-1), with its point.
+/// The program in the sample session of the manual (TO 3-1), and its point.
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
 const POINTS: &str = "name,x_mm,y_mm,z_mm,r_mm\n1,100,20,0,0\n";
 

@@ -30,18 +30,18 @@ pub struct Source {
     pub program: Program,
 }
 
-/// End of a run.
+/// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// END of every started task.
+    /// Every started task reached its END.
     Ended,
-    /// A STOP.
+    /// The program stopped at a STOP.
     Stopped,
-    /// An error of the controller.
+    /// An error of the controller stopped the program.
     Error(u8),
-    /// Every task waits without end.
+    /// Every task waits without an end.
     Waits,
-    /// The time limit.
+    /// The time limit was reached.
     TimeUp,
 }
 
@@ -60,21 +60,21 @@ pub struct Recorder {
 /// Events and end of a run.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Trace {
-    /// `ended`, `stopped`, `error`, `waits` or `time_up`.
+    /// Why the run ended: `ended`, `stopped`, `error`, `waits` or `time_up`.
     end: &'static str,
     /// Alarm at the end; null without an alarm.
     alarm: Option<Alarm>,
-    /// Time of the program at the end.
+    /// Time in the program at the end.
     elapsed_s: f64,
     /// Position at the end.
     position: Coordinates,
-    /// Output ports with a bit that is on at the end.
+    /// Output ports in which a bit is on at the end.
     outputs: Vec<Port>,
     /// Current steps of the tasks that have not ended.
     steps: Vec<TraceStep>,
     /// Events in order.
     trace: VecDeque<Row>,
-    /// Number of omitted earlier rows.
+    /// Number of earlier rows that were omitted.
     rows_left_out: usize,
     #[serde(skip)]
     failure: Option<Failure>,
@@ -83,7 +83,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Location of task 1 when the controller stopped with an error or every task waited.
+    /// Location in task 1 at which the controller stopped with an error, or at which every task waited.
     pub fn stop(&self) -> Option<&Stop> {
         self.stop.as_ref()
     }
@@ -94,7 +94,7 @@ impl Trace {
 pub struct Stop {
     /// Error code; `None` for a wait.
     pub code: Option<u8>,
-    /// Time of the program.
+    /// Time in the program.
     pub after_s: f64,
     /// Line of the file, from 1.
     pub line: usize,
@@ -103,10 +103,10 @@ pub struct Stop {
 /// An output port.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct Port {
-    /// 0 to 4.
+    /// Station, 0 to 4.
     station: usize,
     port: usize,
-    /// Bits 8 to 1.
+    /// Bits 8 to 1 of the port.
     bits: String,
 }
 
@@ -118,7 +118,7 @@ struct TraceStep {
     file: String,
     /// Line of the file, from 1.
     line: usize,
-    /// Label of this step, or label that it uses.
+    /// Label that this step defines or uses.
     label: Option<String>,
     instruction: String,
 }
@@ -127,9 +127,9 @@ struct TraceStep {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 struct Row {
     time_s: f64,
-    /// `step`, `output`, `input`, `position`, `origin`, `stopped`, `error` or `ended`.
+    /// Type of the event: `step`, `output`, `input`, `position`, `origin`, `stopped`, `error` or `ended`.
     event: &'static str,
-    /// Text.
+    /// Text of the event.
     what: String,
     /// Step that begins or ends.
     at: Option<TraceStep>,
@@ -140,7 +140,7 @@ struct Row {
 }
 
 impl Recorder {
-    /// A recorder for these programs, with a limit of rows.
+    /// Creates a recorder for these programs, with a maximum number of rows.
     pub fn new(sources: Vec<Source>, most: usize) -> Self {
         let (rows, at, ports) = (VecDeque::new(), BTreeMap::new(), BTreeMap::new());
         Self { sources, rows, most, left_out: 0, at, ports }
@@ -241,7 +241,7 @@ impl End {
         }
     }
 
-    /// Failure of a run.
+    /// Failure that the end of a run means.
     fn failure(self, at: Duration, steps: &[TraceStep]) -> Option<Failure> {
         let places: Vec<String> = steps.iter().map(TraceStep::in_a_line).collect();
         let places = places.join("; ");
@@ -301,7 +301,7 @@ impl TraceStep {
         })
     }
 
-    /// Hint to satisfy the condition.
+    /// Hint how to meet the condition.
     fn help(&self) -> Option<String> {
         let record = instruction(&self.instruction).ok().filter(|_| self.op() == Some(Op::In))?;
         let (station, port, mask) = (record.number("station")?, record.number("port")?, record.mask("data")?);
@@ -329,7 +329,7 @@ impl Row {
 }
 
 impl Trace {
-    /// The end in one line.
+    /// The end of the run in one line.
     pub fn summary(&self) -> String {
         let outputs: Vec<String> = self.outputs.iter().map(Port::in_words).collect();
         let outputs = if outputs.is_empty() { "no output is on".to_owned() } else { outputs.join(", ") };
@@ -345,13 +345,13 @@ impl Trace {
     }
 }
 
-/// A column with its axis.
+/// A column and its axis.
 type Axis = (&'static str, usize);
 
 impl Report for Trace {
     const ROWS: RowsOf = RowsOf::List("trace");
 
-    /// Axes that stay at 0 have no column. A single task has no column.
+    /// Columns for axes that stay at 0 are omitted. With only one task, the column for the task is omitted.
     fn view(&self) -> View {
         let axes: [Axis; 4] = [("x (mm)", 0), ("y (mm)", 1), ("z (mm)", 2), ("r (mm)", 3)];
         let has_tasks = self.trace.iter().any(|row| row.at.as_ref().is_some_and(|at| at.task > 1));

@@ -16,7 +16,7 @@ use crate::settings::target::Family;
 /// Sub-code texts of the controller.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WithTexts {
-    /// Whether sub-code texts were requested and the controller has them.
+    /// Whether sub-code texts were requested, and the controller has such texts.
     pub with_texts: bool,
 }
 
@@ -39,21 +39,21 @@ pub struct Own {
 pub(super) struct SubCode {
     /// Raw value; 0 if there is no sub-code.
     raw: u32,
-    /// Sub-code as the pendant shows it; hexadecimal bytes if `trust` is `raw`; empty if there is no sub-code.
+    /// Sub-code as the pendant shows it. If `trust` is `raw`, hexadecimal bytes. Empty if there is no sub-code.
     rendered: String,
     /// Reliability of `rendered`: `printed` in the manuals, `inferred`, or `raw`.
     trust: &'static str,
     /// Text on the pendant, as the controller reports it; null without texts.
     text: Option<String>,
-    /// A 1 for each character that the pendant shows reversed; null without texts.
+    /// A 1 for each character that the pendant displays reversed; null without texts.
     reversed: Option<String>,
-    /// `rendered`, with the raw value if it is uncertain.
+    /// Text of `rendered`, with the raw value if the text is uncertain.
     #[serde(skip)]
     shown: String,
 }
 
 impl SubCode {
-    /// Text on the pendant, or the best known form; none if there is no sub-code.
+    /// Text on the pendant, or otherwise the best known form; `None` if there is no sub-code.
     pub(super) fn describe(&self) -> Option<&str> {
         let text = self.text.as_deref().filter(|text| !text.trim().is_empty());
         Some(text.unwrap_or(&self.shown)).filter(|rendered_text| !rendered_text.is_empty())
@@ -87,7 +87,7 @@ pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) ->
     AlarmEntry { alarm, own }
 }
 
-/// Adds the text of `alarms.toml`.
+/// Adds the user's texts from `alarms.toml` to alarms.
 pub(super) async fn explain(
     entry: AlarmEntry<Own>,
     robot: &Robot,
@@ -100,7 +100,7 @@ pub(super) async fn explain(
     Ok(AlarmEntry { alarm: entry.alarm.with(find(model)?), ..entry })
 }
 
-/// Short form for one line: the sub-code is part of the text.
+/// Short form for one line. The sub-code is a part of the text.
 pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
     let parts = [alarm.text.as_deref(), own.sub_code.describe()].into_iter().flatten();
     let text = parts.collect::<Vec<_>>().join(" ");
@@ -108,7 +108,7 @@ pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
 }
 
 impl ExtraColumns for Own {
-    // The type is only in JSON, because a column for it would leave no space for the text.
+    // The type has no column, because the column would leave no space for the text. It is only in JSON.
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         let board = self.board.as_deref().map(str::trim).filter(|board| !board.is_empty());
         vec![("sub-code", self.sub_code.describe().map(ToOwned::to_owned)), ("board", board.map(ToOwned::to_owned))]

@@ -1,9 +1,9 @@
 //! `yerc file cmos` (FS and DX 3.4.5): the batch backup.
 //!
-//! The same request creates the backup and downloads it, and the manuals do not say how a controller distinguishes
-//! the two. So the first answer decides. Without data, the backup has been created, and the request is sent once
-//! more. With data, it is already the file. The request is never repeated automatically, because that could create a
-//! second backup.
+//! The same request creates the backup and downloads it, and the manuals do not say how a controller distinguishes the
+//! two. For this reason, the first answer decides. If it has no data, the backup has been created, and the request is
+//! sent once more. If it has data, this is already the file. The request is never repeated automatically, because that
+//! could create a second backup.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -83,7 +83,7 @@ impl Command for Cmos {
 impl Cmos {
     async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files, Failure> {
         let _waiting = Waiting::new(screen, CREATE_TIMEOUT);
-        // The transfer ends at its first block, so that the controller keeps its existing backup.
+        // The transfer is ended at its first block, so that the controller keeps the backup that exists.
         let existed = |_: &[u8]| {
             Err(Failure::new(Kind::Malformed, "the controller already has a backup, so it created no new backup")
                 .hint("download the existing backup with --download-only"))
@@ -132,7 +132,7 @@ const NAME: &str = "CMOSBK.BIN";
 const CREATE_TIMEOUT: &str = "the controller creates its backup (about ten minutes)";
 const FETCHING: &str = "waiting for the backup";
 
-/// Progress display: first the wait for the controller, then the bytes received.
+/// Progress display: first the wait for the controller, and then the number of received bytes.
 struct Waiting<'a> {
     screen: &'a Screen,
     progress: Progress,
@@ -154,7 +154,7 @@ impl<'a> Waiting<'a> {
     }
 }
 
-/// Report of the batch backup; it has a path unless it was left on the controller.
+/// Report of the batch backup. It has a path, unless the backup was left on the controller.
 fn created_files(mut file: FileItem) -> Files {
     file.succeed(State::Done);
     Files::new(vec![file], |files| match files {

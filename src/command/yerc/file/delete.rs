@@ -64,7 +64,7 @@ impl Command for Delete {
     }
 }
 
-/// Confirmation with the files to delete and the missing files.
+/// Confirmation that names the files to delete, and the files that do not exist.
 fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Change {
     let tell = |file: &FileName| lists.map_or(Existence::No, |lists| lists.existence(file));
     let name = |file: &FileName| encoding.decode(file.as_bytes());

@@ -1,4 +1,4 @@
-//! `yerc file diff`: changes that an upload of the local file would make.
+//! `yerc file diff`: shows the changes that an upload of the local file would make.
 
 use std::path::{Path, PathBuf};
 
@@ -64,7 +64,7 @@ impl Command for Diff {
         let mut comparer = Comparer::new(source.pieces()?, without_date);
         transfer::fetch(link, &file, |block| {
             progress.advance(block.len() as u64);
-            // One byte more than the limit shows that the file is longer.
+            // One byte more than the limit is enough to show that the file is too long.
             let remaining = (MAX_TEXT + 1).saturating_sub(controller_bytes.len());
             controller_bytes.extend_from_slice(block.get(..remaining).unwrap_or(block));
             comparer.take(block)
@@ -97,7 +97,7 @@ impl Command for Diff {
 /// Difference between a file on the controller (old) and a local file (new).
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Difference {
-    /// Whether the files are equal, apart from ignored lines.
+    /// Whether the files are equal. Ignored lines do not count.
     equal: bool,
     /// The local file.
     files: [FileItem<Sides>; 1],
@@ -106,7 +106,7 @@ pub struct Difference {
 /// Fields of the compared files.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Sides {
-    /// Bytes of the name, if the text does not convert back to them.
+    /// Bytes of the name, if the text cannot be converted back to these bytes.
     name_hex: Option<String>,
     #[serde(flatten)]
     compared: Compared,
@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn reports_differences_invisible_in_text() {
-        // Both decode to the same character, but a controller may treat them as different.
+        // Both byte sequences decode to the same character, but a controller may treat them as different.
         let found = difference(b"\x81\xca\r\n", b"\xee\xf9\r\n");
         assert_eq!(found.files[0].more.compared.hunks.as_ref().map(|hunks| hunks[0].lines.len()), Some(2));
     }

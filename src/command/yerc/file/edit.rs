@@ -1,4 +1,4 @@
-//! `yerc job edit`: edit a job of the controller in the user's editor.
+//! `yerc job edit`: edits a job of the controller in the user's editor.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -96,7 +96,7 @@ impl Edit {
             return Ok(EditedJob { name: shown, changed: false, bytes: old.len() as u64, hunks: Vec::new() });
         }
         let new = form.encode_text(&edited.text()?)?;
-        // From here on, the file has the bytes for the controller.
+        // From now on, the file contains the bytes for the controller.
         edited.replace(&new)?;
         let mut delivery = Delivery { file: file.clone(), content: Content::open(edited.path())? };
         delivery.content.check_job(JobRules::default())?;
@@ -137,7 +137,7 @@ impl Edit {
     }
 }
 
-/// Form of a job in the editor.
+/// Form of the job text in the editor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TextForm {
     /// Unchanged bytes.
@@ -147,7 +147,7 @@ enum TextForm {
 }
 
 impl TextForm {
-    /// Text, if the conversion is reversible.
+    /// Text, if its conversion is reversible; otherwise bytes.
     fn of(encoding: Encoding, bytes: &[u8]) -> Self {
         let text = Self::Text(encoding);
         if text.encode_text(&text.decode_text(bytes)).is_ok_and(|back| back == bytes) { text } else { Self::Bytes }
@@ -197,7 +197,7 @@ async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<
     Ok(bytes)
 }
 
-/// A running job is not overwritten.
+/// Rejects the edit while a job runs. A running job must not be overwritten.
 async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     if !link.ask(&ReadStatus).await?.running() {
         return Ok(());
@@ -236,7 +236,7 @@ pub struct EditedJob {
     /// Whether the job was written and read back.
     changed: bool,
     bytes: u64,
-    /// Changes.
+    /// Changes in the text.
     hunks: Vec<Hunk>,
 }
 

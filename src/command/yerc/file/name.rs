@@ -14,19 +14,20 @@ use crate::failure::Failure;
 pub struct Shown {
     /// Name on the controller.
     pub name: String,
-    /// Bytes of the name, if the text does not convert back to them; as an argument, use them with the prefix `hex:`.
+    /// Bytes of the name, if the text cannot be converted back to these bytes. To use them as an argument, add the
+    /// prefix `hex:`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name_hex: Option<String>,
 }
 
 impl Shown {
-    /// Name from the bytes of a controller.
+    /// Creates a name from the bytes of a controller.
     pub fn new(encoding: Encoding, name: &[u8]) -> Self {
         let name = encoding.name(name);
         Self { name: name.text, name_hex: name.hex }
     }
 
-    /// File that was not tried yet.
+    /// Report item for a file that was not tried yet.
     pub fn pending(self) -> FileItem {
         let mut file = FileItem::pending(self.name);
         file.more.name_hex = self.name_hex;
@@ -78,7 +79,7 @@ pub fn name_of_type(name: &[u8]) -> Option<&'static str> {
     FileType::from_name(name).map(type_word)
 }
 
-/// Type in reports and manifests: `jbi`.
+/// Name of the type in reports and manifests, such as `jbi`.
 pub fn type_word(kind: FileType) -> &'static str {
     match kind {
         FileType::Jbi => "jbi",
@@ -106,7 +107,7 @@ pub fn parse_name(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
     exact(bytes)
 }
 
-/// Checks a name for an upload.
+/// Checks that a name is allowed for an upload.
 pub fn name_to_send(file: FileName) -> Result<FileName, Failure> {
     match file.check_load() {
         Ok(()) => Ok(file),
@@ -114,7 +115,7 @@ pub fn name_to_send(file: FileName) -> Result<FileName, Failure> {
     }
 }
 
-/// Parses several file arguments and rejects duplicates.
+/// Parses several file arguments, and rejects duplicates.
 pub fn parse_names(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>, Failure> {
     let mut files = Vec::with_capacity(texts.len());
     for text in texts {
@@ -127,7 +128,7 @@ pub fn parse_names(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>
     Ok(files)
 }
 
-/// Checks that a name has no wildcards. A controller might match `*` or `?` with any name and delete too many files.
+/// Checks that a name has no wildcards. A controller might match `*` or `?` with any name, and delete too many files.
 pub fn exact(bytes: Vec<u8>) -> Result<FileName, Failure> {
     if bytes.iter().any(|byte| matches!(byte, b'*' | b'?')) {
         return Err(Failure::usage(format!("the file name '{}' contains * or ?", bytes.escape_ascii()))

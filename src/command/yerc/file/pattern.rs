@@ -1,4 +1,4 @@
-//! Patterns of file names, such as `*.JBI`: required lists of the controller, and matching names. A pattern is never
+//! Patterns of file names, such as `*.JBI`. They are matched against the lists of the controller. A pattern is never
 //! sent, because a controller might interpret it differently.
 
 use super::name::{self, Shown};
@@ -12,13 +12,13 @@ use crate::settings::inventory::matches_pattern;
 /// A requested file, or the reason why there is none.
 #[derive(Debug)]
 pub struct FilePattern {
-    /// Name, or the pattern or list without a result.
+    /// Name of the file, or the pattern or list that has no result.
     pub name: Shown,
     /// Name to send.
     pub file: Result<FileName, Failure>,
 }
 
-/// Whether an argument is a pattern; `hex:` is always a name.
+/// Whether an argument is a pattern. An argument with `hex:` is always a name.
 pub fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?']) && !text.starts_with("hex:")
 }
@@ -29,8 +29,8 @@ fn types(pattern: &str) -> Vec<FileType> {
     FileType::ALL.into_iter().filter(|kind| matches_pattern(&ending.to_uppercase(), kind.extension())).collect()
 }
 
-/// Finds the files of arguments: names unchanged, and matches of patterns, without duplicates. `None` in a dry run,
-/// which notes the requests.
+/// Finds the files for arguments, without duplicates. Names are used unchanged, and patterns are replaced by the names
+/// that match. Returns `None` in a dry run, which records the requests.
 pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePattern>>, Failure> {
     let (patterns, names): (Vec<&String>, Vec<&String>) = asked.iter().partition(|text| is_pattern(text));
     let names: Vec<String> = names.into_iter().cloned().collect();
@@ -76,14 +76,15 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePa
             }
             let is_new = !found.iter().any(|other| other.name == name);
             if matches_any && is_new {
-                // A listed name that is not allowed is an error of the controller, not of the operator.
+                // If the list contains a name that is not allowed, this is an error of the controller, and not of the
+                // user.
                 let file = name::exact(bytes).map_err(|failure| Failure { kind: Kind::Malformed, ..failure });
                 found.push(FilePattern { name, file });
             }
         }
     }
     for (pattern, fitted) in patterns.into_iter().zip(matched) {
-        // After a refused list, the matching files are unknown.
+        // If a list was refused, it is unknown which files match.
         if !fitted && !types(pattern).iter().any(|kind| refused.iter().any(|list| list.name.name == kind.filter())) {
             let no_match = Failure::new(Kind::Refused, "no file on the controller matches")
                 .hint("use `yerc file list --type all` to see the names; names are case-sensitive");

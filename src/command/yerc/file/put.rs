@@ -86,7 +86,7 @@ impl Command for Put {
             return Ok(report(results));
         };
         for (delivery, result) in deliveries.iter_mut().zip(&mut results) {
-            // An unlisted file was not confirmed, so it is not deleted.
+            // A file that was not in a list was not confirmed, so it is not deleted.
             let replace = manner.replace && lists.existence(&delivery.file) != Existence::No;
             let outcome =
                 upload(link, screen, delivery, UploadOptions { replace, ..manner }, &mut result.more.notes).await;
@@ -99,7 +99,7 @@ impl Command for Put {
 }
 
 impl Put {
-    /// All files, checked before the first upload.
+    /// All files to upload. They are checked before the first upload.
     fn deliveries(&self, encoding: Encoding) -> Result<Vec<Delivery>, Failure> {
         if self.name.is_some() && self.files.len() > 1 {
             return Err(Failure::usage("--as needs exactly one file").hint("send the files one by one"));
@@ -129,7 +129,7 @@ impl Put {
     }
 }
 
-/// Controller file name for a local file.
+/// File name on the controller for a local file.
 fn named_after(encoding: Encoding, path: &Path) -> Result<FileName, Failure> {
     let invalid = |why: String| {
         Failure::usage(format!("{}: {why}", path.display())).hint("set the name on the controller with --as")

@@ -13,14 +13,14 @@ use crate::output::Screen;
 pub enum FileReading {
     /// Content.
     Read(Vec<u8>),
-    /// The controller has no such file.
+    /// The controller does not have the file.
     Missing,
     /// The file was not read.
     Failed(Failure),
 }
 
-/// Reads files of at most `most` bytes, each with its own result, in order; `None` in a dry run, which notes the
-/// requests.
+/// Reads files of at most `most` bytes, in order. Each file has its own result. Returns `None` in a dry run, which
+/// records the requests.
 pub async fn read_files(
     link: &mut Link,
     screen: &Screen,

@@ -1,5 +1,5 @@
-//! Upload of a local file with its options: verification, and replacement of an existing job such that one copy
-//! always exists.
+//! Upload of a local file with its options: verification, and replacement of an existing job. During a replacement,
+//! there is always at least one copy of the job.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,15 +31,15 @@ pub struct Delivery {
 /// Upload options.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct UploadOptions {
-    /// Read the file back and compare it.
+    /// Whether to read the file back and compare it.
     pub verify: bool,
-    /// Ignore the line that controllers rewrite in the comparison.
+    /// Whether the comparison ignores the line that controllers rewrite.
     pub ignore_header: bool,
-    /// Delete an existing job that the controller refuses to overwrite.
+    /// Whether to delete an existing job that the controller refuses to overwrite.
     pub replace: bool,
 }
 
-/// Asks for confirmation if files are overwritten: listed files, and files of a type without a list.
+/// Asks for confirmation if files will be overwritten: files that are in a list, and files of a type without a list.
 pub async fn confirm_uploads<'a>(
     authority: &Authority<'_>,
     encoding: Encoding,
@@ -69,7 +69,7 @@ pub async fn confirm_uploads<'a>(
     authority.confirm(&change).await
 }
 
-/// Notes in a dry run the requests of [`upload`].
+/// In a dry run, records the requests of [`upload`].
 pub fn plan(
     link: &mut Link,
     delivery: &mut Delivery,
@@ -98,7 +98,7 @@ pub fn plan(
     Ok(())
 }
 
-/// Uploads a file and adds the steps to `notes`. Returns the content that was sent.
+/// Uploads a file, and adds the completed steps to `notes`. Returns the content that was sent.
 pub async fn upload(
     link: &mut Link,
     screen: &Screen,
@@ -132,7 +132,7 @@ pub async fn upload(
 }
 
 impl Delivery {
-    /// Name in the job and name of the upload, if they differ.
+    /// Name in the job, and name of the upload; `None` if they are equal.
     pub fn name_in_job(&self, encoding: Encoding) -> Option<(String, String)> {
         let file = self.file.as_bytes();
         let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
@@ -141,7 +141,7 @@ impl Delivery {
     }
 }
 
-/// Adds a hint if the name in the job differs from its file name, a likely cause of a refusal.
+/// Adds a hint to the failure if the name in the job differs from its file name. This is a likely cause of a refusal.
 fn check_job_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure {
     match delivery.name_in_job(link.encoding) {
         Some((own, stem)) => {
@@ -188,8 +188,8 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
     }
 }
 
-/// Replaces an existing job. A local copy of it exists from before its deletion until the new job is on the
-/// controller.
+/// Replaces an existing job. A local copy of the existing job is kept from before its deletion until the new job is on
+/// the controller.
 async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<Hash, Failure> {
     let mut old = OldCopy::fetch(link, screen, delivery).await?;
     old.is_needed = true;
@@ -220,7 +220,7 @@ async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> R
     }
 }
 
-/// Local copy of a job to be deleted. It is removed at the end, unless it is the only copy.
+/// Local copy of a job that will be deleted. The copy is removed at the end, unless it is the only one.
 #[derive(Debug)]
 struct OldCopy {
     path: PathBuf,
@@ -240,7 +240,7 @@ impl OldCopy {
         Ok(Self { path, screen: *screen, is_needed: false, is_path_reported: false })
     }
 
-    /// First free name: `A.JBI.replaced`, `A.JBI.replaced-2`.
+    /// First free name for the copy: `A.JBI.replaced`, `A.JBI.replaced-2`.
     fn local_folder(folder: &Path, local: &str) -> Result<Target, Failure> {
         let free = |path: &PathBuf| path.symlink_metadata().is_err();
         let numbered = (2..1000).map(|number| folder.join(format!("{local}.replaced-{number}")));
@@ -252,7 +252,7 @@ impl OldCopy {
         Target::new(path, false)
     }
 
-    /// Failure with the location of the copy.
+    /// Adds the path of the copy to a failure.
     fn failure_with_path(&mut self, failure: Failure) -> Failure {
         if !self.is_needed {
             return failure;

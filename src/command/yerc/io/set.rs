@@ -36,7 +36,7 @@ pub struct Set {
     /// 27010=on, #27011=off, or clamp=on for a name
     #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off", add = complete::SIGNAL_STATE)]
     signals: Vec<Switch>,
-    /// Eight signals of a group, the first one lowest, such as 2701=0xA5 (repeatable)
+    /// Eight signals of a group, such as 2701=0xA5; the first signal is the lowest bit (repeatable)
     #[arg(long = "group", value_name = "GROUP=VALUE")]
     groups: Vec<GroupValue>,
 }
@@ -76,7 +76,7 @@ impl FromStr for GroupValue {
     }
 }
 
-/// Change of a group: bits in the mask are set to those of the value, the others stay.
+/// Change of a group. Bits in the mask get the bits of the value; the other bits stay unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Change {
     mask: u8,
@@ -136,7 +136,7 @@ impl Command for Set {
 }
 
 impl Set {
-    /// Change of each group. A signal that appears twice is an error.
+    /// Change of each group. It is an error if a signal occurs twice.
     fn changes(&self) -> Result<BTreeMap<u16, Change>, Failure> {
         let mut changes: BTreeMap<u16, Change> = BTreeMap::new();
         let wholes = self.groups.iter().map(|whole| (whole.group, Change { mask: u8::MAX, value: whole.value }));
@@ -156,7 +156,7 @@ impl Set {
     }
 }
 
-/// Notes in a dry run a change that depends on the values read first.
+/// In a dry run, records a change that depends on values that must be read first.
 fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
     let reads = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
     let about = |groups: &[u16]| Some(format!("reads group {}", typed::runs(groups, "..")));

@@ -40,7 +40,7 @@ impl Command for List {
 /// Jobs of a controller.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Listing {
-    /// In the order of the controller.
+    /// Jobs in the order of the controller.
     jobs: Vec<Listed>,
 }
 

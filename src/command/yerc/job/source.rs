@@ -1,7 +1,7 @@
 //! Text of the current line of a job, from the job file (`job show --source`).
 //!
-//! The protocol has no dates, sizes or hashes of files, so a cached file could be outdated. The file is downloaded
-//! each time, and its hash identifies the version.
+//! The protocol has no dates, sizes or hashes of files, so a cached file could be outdated. For this reason the file is
+//! downloaded each time. Its hash identifies the version.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -19,7 +19,7 @@ pub struct Source {
     file: String,
     /// SHA-256 of the file, as in backups.
     sha256: String,
-    /// Text of the line; null if the file has no such line.
+    /// Text of the line; null if the file does not have the line.
     text: Option<String>,
 }
 
@@ -44,7 +44,7 @@ impl Source {
     }
 }
 
-/// Line by the controller's number: NOP, the first instruction, is 0.
+/// Line with this number of the controller. NOP, the first instruction, is line 0.
 fn line(content: &[u8], number: u32) -> Option<&[u8]> {
     let lines = content.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
     lines.skip_while(|line| *line != b"NOP").nth(usize::try_from(number).ok()?)

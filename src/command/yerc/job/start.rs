@@ -1,5 +1,4 @@
-//! `yerc job start`: start of the selected job, or of a job by name, once or several times, with an optional wait for
-//! its end.
+//! `yerc job start`: starts the selected job, or a job by name, once or several times, and can wait for its end.
 
 use std::time::Duration;
 
@@ -98,7 +97,7 @@ impl Command for Start {
         let mut line = None;
         for _ in 0..self.repeat.count() {
             let too_early = |failure| runs.add_to_failure(failure);
-            // A job is started again only if its state is the same as before.
+            // A job is started again only if the state of the controller is the same as before the previous run.
             if runs.last_ms().is_some() {
                 selected.check_unchanged(link).await.map_err(too_early)?;
             }
@@ -141,7 +140,7 @@ impl Start {
         chosen.item_name(change, link.encoding)
     }
 
-    /// Notes in a dry run what follows a start.
+    /// In a dry run, records what follows a start.
     async fn plan(&self, link: &mut Link) -> Result<Failure, Failure> {
         link.plan(&ReadStatus.request(), "repeatedly until the job has ended");
         let job = link.by_model(|model| ReadJob::new(model, 0)).await?;
@@ -156,7 +155,7 @@ impl Start {
     }
 }
 
-/// Rejects the repetition of a job that does not end, or that ends after each line.
+/// Rejects repeated starts in a cycle mode in which the job does not end, or ends after each line.
 async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
     let Some(status) = link.for_purpose("cycle mode").ask(&ReadStatus).await.known()? else {
         return Ok(());
@@ -172,7 +171,7 @@ async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
         .hint("set `yerc cycle once`, so that each start runs the job once"))
 }
 
-/// Rejects the start if another job is selected than the confirmed one.
+/// Rejects the start if the selected job is not the confirmed job.
 fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &SelectedJob) -> Result<(), Failure> {
     let shown = |chosen: &SelectedJob| chosen.name(link.encoding).unwrap_or_else(|| "an unknown job".to_owned());
     if !now.is(name) {
@@ -190,7 +189,7 @@ fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &Selected
     }
 }
 
-/// Waits for the end of a started job. Returns the duration and the line at the end.
+/// Waits until a started job ends. Returns the duration, and the line at the end.
 async fn wait(
     link: &mut Link,
     screen: &Screen,
@@ -204,7 +203,7 @@ async fn wait(
     loop {
         let status = link.ask(&ReadStatus).await.map_err(|failure| lost_contact("the job was started", failure))?;
         let look = watch.look(began.elapsed(), status);
-        // A short job may end before the first status read; then its line has changed.
+        // A short job may end before the first status read. In that case its line has changed.
         if !watch.was_running && matches!(look, Look::Running | Look::NeverStarted) && has_changed(link, chosen).await?
         {
             break;
@@ -226,7 +225,7 @@ async fn wait(
         tokio::time::sleep(POLL_INTERVAL).await;
     }
     let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
-    // The end is certain even if the controller refuses to report the line.
+    // The job has certainly ended, even if the controller refuses to report the line.
     let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
     let at = link.ask(&question).await;
     Ok((elapsed_ms, at.ok().map(|job| job.line)))
@@ -240,7 +239,7 @@ async fn has_changed(link: &mut Link, chosen: &SelectedJob) -> Result<bool, Fail
     Ok(now.is_ok_and(|now| now.name == before.name && now.line != before.line))
 }
 
-/// Job and line for the progress display, if there is one; a refusal is ignored here.
+/// Job and line for the progress display, if there is such a display. A refusal is ignored here.
 async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure> {
     if !is_seen {
         return Ok(None);
@@ -261,7 +260,7 @@ fn never_started() -> Failure {
         .hint("use `yerc job show` to see the line, and `yerc status` to see what holds the robot")
 }
 
-/// Watcher of a job from its start to its end.
+/// Watches a job from its start to its end.
 #[derive(Debug)]
 pub(super) struct Watch {
     limit: Option<Duration>,
@@ -271,15 +270,15 @@ pub(super) struct Watch {
 /// State of the job after a status read.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Look {
-    /// Still running.
+    /// The job is still running.
     Running,
-    /// Ended.
+    /// The job has ended.
     Ended,
-    /// Stopped by a cause.
+    /// The job was stopped. Contains the cause.
     Stopped(StandstillCause),
-    /// Not seen running in time.
+    /// The job was not running in any status read within the time limit.
     NeverStarted,
-    /// Running longer than the limit.
+    /// The job runs longer than the time limit.
     Timeout(Duration),
 }
 
@@ -291,7 +290,7 @@ impl Watch {
     pub(super) fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
         self.was_running |= status.running();
         match StandstillCause::of(status) {
-            // An error is a message on the pendant; the job may continue.
+            // An error is a message on the pendant. The job may continue.
             Some(StandstillCause::Error) if status.running() => {}
             Some(trouble) => return Look::Stopped(trouble),
             None if self.was_running && !status.running() => return Look::Ended,
@@ -308,9 +307,9 @@ impl Watch {
 /// Result of a start.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Started {
-    /// The controller accepted the start.
+    /// Whether the controller accepted the start.
     accepted: bool,
-    /// The job. Its line is the line at the end; 0 is the first line, where END leads.
+    /// The job. Its line is the line at the end. Line 0 is the first line; END leads to it.
     #[serde(flatten)]
     program: Program,
 }

@@ -56,6 +56,6 @@ impl Command for Halt {
 async fn hold(context: Context<'_, Yerc>) -> Result<Done, Failure> {
     context.link.ask(&query::Hold(true)).await?;
     let words = "HOLD is on and the job is stopped; to continue it, use `yerc hold off` and `yerc job start`";
-    // A stop must not be delayed by a read, as in `hold on`.
+    // A stop must not be delayed by a read, so the old value is not read, as in `hold on`.
     Ok(NewValue::of("held", true, words).replaces(Old::UNREAD))
 }

@@ -169,7 +169,7 @@ impl Motion<'_> {
         let mut order = cartesian_move(link, &self.target.mover, self.speed, &self.target.frame);
         order.coordinate = position.kind;
         (order.target, order.form, order.extended) = (target, position.form, position.extended);
-        // The user coordinate number applies only to user coordinates; other moves need 0.
+        // The user coordinate number applies only to user coordinates. Other moves need the number 0.
         (order.tool, order.user) = (position.tool, if position.kind == PositionKind::User { position.user } else { 0 });
         let model = link.model_for(|model| MoveCartesian::new(model, self.kind, order)).await?;
         let order = MoveCartesian::new(model, self.kind, order).map_err(|error| {
@@ -190,7 +190,7 @@ impl Motion<'_> {
         })
     }
 
-    /// Converts degrees to pulses, with the values of the inventory.
+    /// Converts degrees to pulses with the pulses per degree in the inventory.
     fn rotated_axis(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
         let group = self.target.mover.group;
         let per_degree = link.pulses_per_degree(group);
@@ -219,7 +219,7 @@ impl Motion<'_> {
         })
     }
 
-    /// Notes in a dry run what follows; the kind of move is unknown.
+    /// In a dry run, records what follows. The kind of move is unknown.
     async fn plan(&self, link: &mut Link, variable: Reference) -> Result<Failure, Failure> {
         let group = self.target.mover.group;
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
@@ -270,7 +270,7 @@ impl Motion<'_> {
     }
 }
 
-/// Content of a variable, which must be defined.
+/// Content of a variable. The variable must be defined.
 async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
     let question = ReadVariable::new(variable.kind, variable.number);
     match link.for_purpose("target position").ask_optional(&question).await? {
@@ -284,7 +284,7 @@ async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
     }
 }
 
-/// Rejects a variable of another group.
+/// Rejects a variable that belongs to another kind of group.
 fn is_suitable(variable: Reference, group: Group) -> Result<(), Failure> {
     let is_right = match group {
         Group::Robot(_) => variable.kind == VariableKind::P,

@@ -1,6 +1,6 @@
 //! Variables in a table for a spreadsheet: numbers, strings and the fields of positions in columns.
 //!
-//! A position can have some of its columns: the other fields keep their value on the controller.
+//! A position may have only some of its columns. The other fields keep their value on the controller.
 
 use std::collections::BTreeMap;
 
@@ -13,17 +13,17 @@ use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{Position, PositionKind, Text};
 use crate::controller::yerc::variables::{Value, VariableKind};
 
-/// Text of each cell that has one, by column.
+/// Text of each cell that is not empty, by column.
 pub type Cells = BTreeMap<String, String>;
 
-/// Column of numbers.
+/// Column for numbers.
 const NUMBER: &str = "value";
-/// Column of strings, and of reals that are not a number.
+/// Column for strings, and for reals that are not a number.
 const TEXT: &str = "text";
-/// Column of the bytes, if the text does not convert back to them.
+/// Column for the bytes, if the text cannot be converted back to these bytes.
 const BYTES: &str = "value_hex";
-/// Text of an empty string, because an empty cell means no value. A string of these two characters also has its bytes in
-/// the row.
+/// Text for an empty string, because an empty cell means no value. A string that consists of these two characters also
+/// has its bytes in the row.
 const EMPTY: &str = "\"\"";
 /// Tools and user coordinates are 0 to 63 (3.3.16).
 pub const LAST_TOOL: u32 = 63;
@@ -53,10 +53,10 @@ pub fn of(value: &Value, encoding: Encoding) -> Cells {
     cells
 }
 
-/// Value of a number or a string from its cells.
+/// Value of a number or a string, from its cells.
 ///
 /// # Errors
-/// Which cell is missing or wrong.
+/// If a cell is missing or wrong. The error names the cell.
 pub fn plain(kind: VariableKind, cells: &Cells, encoding: Encoding) -> Result<Value, String> {
     let typed = |text: &[u8]| Value::from_text(kind, text).map_err(|error| error.to_string());
     let is_string = matches!(kind, VariableKind::S16 | VariableKind::S32);
@@ -72,7 +72,7 @@ pub fn plain(kind: VariableKind, cells: &Cells, encoding: Encoding) -> Result<Va
     }
 }
 
-/// A value defined by its bytes; the shown text must match them.
+/// Value from its bytes. The displayed text must match these bytes.
 fn exact(kind: VariableKind, shown: Option<&str>, digits: &str, encoding: Encoding) -> Result<Value, String> {
     let bytes = unhex(digits).ok_or_else(|| format!("{BYTES}: '{digits}' is not pairs of hexadecimal digits"))?;
     let wrong = |error| format!("{BYTES}: {error}");
@@ -91,10 +91,10 @@ fn exact(kind: VariableKind, shown: Option<&str>, digits: &str, encoding: Encodi
     }
 }
 
-/// Checks that cells can be of a position.
+/// Checks that a position can have these cells.
 ///
 /// # Errors
-/// Which cell cannot.
+/// If a position cannot have a cell. The error names the cell.
 pub fn check_position(cells: &Cells) -> Result<(), String> {
     match cells.keys().find(|column| [NUMBER, TEXT, BYTES].contains(&column.as_str())) {
         Some(column) => Err(format!(
@@ -104,10 +104,10 @@ pub fn check_position(cells: &Cells) -> Result<(), String> {
     }
 }
 
-/// Complete position, with missing fields from the current one.
+/// Complete position. Missing fields are taken from the current position.
 ///
 /// # Errors
-/// Which field is missing or wrong.
+/// If a field is missing or wrong. The error names the field.
 pub fn merge_over(cells: &Cells, kind: VariableKind, old: Option<&Value>) -> Result<Value, String> {
     let mut merged = old.and_then(PositionData::of).map(|data| data.fields()).unwrap_or_default();
     let is_other_type = cells.get(position::TYPE).is_some_and(|given| merged.get(position::TYPE) != Some(given));
@@ -132,7 +132,7 @@ pub fn merge_over(cells: &Cells, kind: VariableKind, old: Option<&Value>) -> Res
     ))
 }
 
-/// Two values that differ in all unknown fields, for a dry run.
+/// Two values that differ in all fields that are unknown, for a dry run.
 pub fn zero_bytes(cells: &Cells, kind: VariableKind) -> Option<[Value; 2]> {
     if !kind.is_position() {
         let all = |byte| Value::parse(kind, &vec![byte; kind.size()]).ok();

@@ -1,4 +1,4 @@
-//! `yerc var`: variables, one or many.
+//! `yerc var`: one or several variables.
 
 mod cells;
 #[cfg(test)]
@@ -28,7 +28,7 @@ commands! {
         Get(Get<Variables>),
         /// Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…
         Set(set::Set),
-        /// List the variables that hold something
+        /// List the variables that are not empty
         List(List<Variables>),
         /// Print each change of variables
         Watch(Watch<Get<Variables>>),

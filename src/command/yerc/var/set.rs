@@ -41,7 +41,7 @@ pub struct Set {
     form: StringForm,
 }
 
-/// An assignment such as `B0=255`, checked as far as possible without the robot's settings.
+/// An assignment such as `B0=255`. It is checked as far as possible without the settings of the robot.
 #[derive(Debug, Clone, PartialEq)]
 struct Assignment {
     reference: Reference,
@@ -51,9 +51,9 @@ struct Assignment {
 #[derive(Debug, Clone, PartialEq)]
 enum Input {
     Ready(Value),
-    /// String, with an encoding that is not known yet.
+    /// A string. Its encoding is not known yet.
     Text(String),
-    /// Position in a JSON file.
+    /// A position in a JSON file.
     File(PathBuf),
     /// One word of a position.
     Word(Word),
@@ -66,7 +66,7 @@ impl FromStr for Assignment {
         let (name, value) = typed::setting(text, "a variable", "a value", "B0=255")?;
         let (reference, field) = reference_of(name)?;
         let Some(reference) = reference else {
-            // The variable of a name decides which values are valid.
+            // The values that are valid depend on the variable of the name, which is not known yet.
             return Ok(Self { reference: ANY, input: Input::Text(value.to_owned()) });
         };
         if let Some(field) = field {
@@ -91,11 +91,11 @@ impl FromStr for Assignment {
 /// Placeholder for a name that is not resolved yet.
 const ANY: Reference = Reference::new(VariableKind::B, 0);
 
-/// Parses a variable or its name, and the part after it; no variable yet for a name.
+/// Parses a variable or its name, and the part after it. A name gives no variable yet.
 fn reference_of(text: &str) -> Result<(Option<Reference>, Option<&str>), String> {
     let parts = text.rsplit_once('.').map(|(name, field)| (name, Some(field)));
     let address = |name: &str| name.parse::<Reference>().map_err(message);
-    // A name may contain a dot; the part is after the last dot.
+    // A name may contain a dot, so the part is after the last dot.
     let (name, field) = match parts {
         Some((name, field)) if is_part(field.unwrap_or_default()) || address(name).is_ok() => (name, field),
         _ => (text, None),
@@ -117,7 +117,7 @@ fn in_range(what: &str, number: u32) -> Result<u32, String> {
     }
 }
 
-/// Parses a single word (3.3.16 to 3.3.18).
+/// Parses a value for a single word of a position (3.3.16 to 3.3.18).
 fn word(reference: Reference, field: &str, value: &str) -> Result<Word, String> {
     let kind = reference.kind;
     if !kind.is_position() {
@@ -158,7 +158,7 @@ impl Command for Set {
     const INTENT: &'static str = "overwrite taught positions";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    /// Only positions are taught.
+    /// Only positions contain taught data.
     fn risk(&self) -> Risk {
         let is_position = self.assignments.iter().any(|assignment| assignment.reference.kind.is_position());
         if is_position { Risk::Destroy } else { Risk::Write }
@@ -175,7 +175,8 @@ impl Command for Set {
 }
 
 impl Set {
-    /// The new content of each variable. Words of a position that is written completely are merged into it.
+    /// New content of each variable. If a position is written completely, single words for it are merged into the
+    /// position.
     fn rows(&self, table: &Variables) -> Result<Vec<Row<Variables>>, Failure> {
         let mut rows: Vec<Row<Variables>> = Vec::new();
         let repeated = |key| Failure::usage(format!("{key} appears twice")).hint("type one value for each variable");

@@ -12,7 +12,7 @@ fn findings(text: impl AsRef<[u8]>) -> Vec<String> {
     check(text.as_ref(), MOST_STEPS).findings.iter().map(ToString::to_string).collect()
 }
 
-/// The only finding of this line, followed by END.
+/// The only finding for a program of this line and END.
 fn finding(line: &str) -> String {
     let found = findings(format!("{line}\nEND\n"));
     assert_eq!(found.len(), 1, "{found:?}");
@@ -274,7 +274,7 @@ fn a_listing_reads_back() {
         let program = check(listing.text.as_bytes(), MOST_STEPS).program.unwrap();
         assert_eq!(program.steps.len(), steps.len() - 2);
         let same = program.steps.iter().zip(&steps).filter(|(step, record)| step.record == **record).count();
-        // All except RSMV, which always passes.
+        // All steps are equal except RSMV, whose arrival mode is always PASS.
         assert_eq!(same, program.steps.len() - 1);
     }
 }
@@ -348,7 +348,7 @@ fn a_part_is_checked_with_the_tags_outside_it() {
     let around = |tags: Option<&[i32]>| Part { first: 100, tags: tags.map(|tags| tags.iter().copied().collect()) };
     let part = |text: &str, tags| check_part(text.as_bytes(), 10, &around(tags));
     let text = "here: CAL TAG=5\nJMP TAG=here\n";
-    // No finding about a missing END, which is outside the part.
+    // The findings contain no missing END, because the END is outside the part.
     let checked = part(text, Some(&[1, 2, 5]));
     assert_eq!(checked.findings, []);
     let program = checked.program.unwrap();

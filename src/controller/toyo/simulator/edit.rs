@@ -77,7 +77,7 @@ pub(super) fn write_step(world: &mut World, step: usize, record: Record) -> Resu
     world.memory.set_step(task, step, record).map_err(|NoRoom| format!("task {} has {size} steps (E22)", task + 1))
 }
 
-/// MINT: except for `everything`, only data of the current task is cleared.
+/// Executes MINT. It clears only data of the current task, except with `everything`.
 fn clear(world: &mut World, what: &str) -> Result<(), NoRoom> {
     let task = world.current;
     let memory = &mut world.memory;

@@ -19,24 +19,25 @@ pub struct Row {
     pub word: &'static str,
     /// Effect.
     pub about: &'static str,
-    /// Risk of the command; a JOG that moves no axis has a lower one.
+    /// Risk of the command. A JOG that moves no axis has a lower risk.
     pub risk: Risk,
-    /// Whether it requires host ON (TO 2-1, note 1; ambiguities C13 and C14).
+    /// Whether the command requires host ON (TO 2-1, note 1; ambiguities C13 and C14).
     pub needs_host: bool,
-    /// Whether it writes the EEPROM: it is refused while a program runs, and wears the EEPROM (TO 2-1, note 2).
+    /// Whether the command writes the EEPROM. Such a command is refused while a program runs, and it wears the EEPROM
+    /// (TO 2-1, note 2).
     pub writes_eeprom: bool,
     /// Forms of the request, without `@`.
     pub requests: &'static [Layout],
-    /// Forms of the answer; empty for `@OK`. The first that fits counts.
+    /// Forms of the answer; empty if the answer is `@OK`. The first form that fits is used.
     pub answers: &'static [Layout],
-    /// Controllers that support it; empty for all.
+    /// Controllers that support the command; empty for all controllers.
     pub only_on: Models,
     /// Section of the manual.
     pub section: &'static str,
 }
 
 impl Row {
-    /// The row of a word. HTSK is another name of CTSK in the list of commands (ambiguity C1).
+    /// The row of a command word. HTSK is another name of CTSK in the list of commands (ambiguity C1).
     pub fn named(word: &str) -> Option<&'static Self> {
         let word = if word == "HTSK" { "CTSK" } else { word };
         ROWS.iter().find(|row| row.word == word)
@@ -121,7 +122,7 @@ const ROBOT_TYPE: Field = digits("robot_type", 6, 0, 999_999, "robot type");
 const AXIS_NUMBER: Field = digits("axis", 1, 1, 4, "axis");
 const BODY: Field = Field::new("body", Form::Text, "the parameter, row or data, with its values");
 const INSTRUCTION: Field = Field::new("text", Form::Text, "instruction");
-/// 0 is the step in execution (ambiguity C4).
+/// Step 0 is the step in execution (ambiguity C4).
 const STEP_OR_CURRENT: Field = digits("step", 4, 0, 5000, "step, 0 for the current step");
 const PALLET: Field = digits("program", 2, 1, 16, "palletizing program");
 const RECORD: Field = digits("record", 2, 1, 16, "record");
@@ -187,7 +188,7 @@ const fn starred(name: &'static str, width: u8, most: i32, about: &'static str) 
     digits(name, width, 0, most, about).starred()
 }
 
-/// The answer numbers its ports, and so do the field names.
+/// The answer has numbered ports, so the field names have the same numbers.
 const P1: (Field, Field) = (port("port1"), bits("bits1", "bits 8 to 1"));
 const P2: (Field, Field) = (port("port2"), bits("bits2", "bits 8 to 1"));
 const P3: (Field, Field) = (port("port3"), bits("bits3", "bits 8 to 1"));

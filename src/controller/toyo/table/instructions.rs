@@ -21,12 +21,12 @@ pub struct Instruction {
     pub about: &'static str,
     /// Example in user notation.
     pub example: &'static str,
-    /// Controllers that support it; empty for all.
+    /// Controllers that support the instruction; empty for all controllers.
     pub only_on: Models,
 }
 
 impl Instruction {
-    /// The row of a word.
+    /// The row of an instruction word.
     pub fn named(word: &str) -> Option<&'static Self> {
         INSTRUCTIONS.iter().find(|row| row.word == word)
     }
@@ -47,7 +47,7 @@ impl Instruction {
         form
     }
 
-    /// Whether it needs axes: a task without axes cannot run it (TO 2-4, E19).
+    /// Whether the instruction needs axes. A task without axes cannot run such an instruction (TO 2-4, E19).
     pub const fn moves(&self) -> bool {
         matches!(
             self.op,
@@ -56,7 +56,7 @@ impl Instruction {
     }
 }
 
-/// Section of the manual with all instructions.
+/// Section of the manual that contains all instructions.
 pub const SECTION: &str = "2-5";
 
 macro_rules! instructions {
@@ -95,7 +95,7 @@ const LOGIC: Field = words("logic", &[plain("AND"), plain("OR")], "how bits and 
 /// One digit (ambiguity R18).
 const INTERNAL: Field = digits("port", 1, 1, 9, "internal port");
 const OTHER_TASK: Field = digits("task", 2, 2, 4, "task");
-/// One digit, 0 included: the key is TA (ambiguity R3).
+/// One digit, including 0: the key of the field is TA (ambiguity R3).
 const ANY_TASK: Field = digits("task", 1, 0, 4, "task");
 const RAMP: Field = digits("ramp", 2, 1, 20, "row of the acceleration table");
 const AXIS_OF: Field = words("axis", AXIS, "axis");

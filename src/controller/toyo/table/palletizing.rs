@@ -30,7 +30,7 @@ impl Pallet {
     }
 }
 
-/// Which side has a matrix of positions (ambiguity of the words: source and destination).
+/// Which side has a matrix of positions. The manual uses the words source and destination ambiguously.
 pub const MODE: Field = words(
     "mode",
     &[

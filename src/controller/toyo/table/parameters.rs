@@ -18,7 +18,7 @@ pub enum Group {
     Mode,
     /// `P`, parameter 1: axes.
     Axis,
-    /// `E`, parameter 2: machine. After a change only communication works until a power cycle.
+    /// `E`, parameter 2: machine. After a change, only communication works until a power cycle.
     Machine,
     /// `U`, parameter 3: not for normal use.
     Special,
@@ -44,15 +44,15 @@ impl Group {
 pub struct Parameter {
     /// Id of the manual: `P01`, `T1`; a sheet of the MVM table is `T4.S1`.
     pub id: &'static str,
-    /// Name for user input: `soft-limit-plus`.
+    /// Name for user input, such as `soft-limit-plus`.
     pub name: &'static str,
-    /// Content.
+    /// Description of the content.
     pub about: &'static str,
     /// Text of a write, after `WPAR`.
     pub layout: Layout,
     /// Text of a read, after `RPAR`: the id and, for a table, the row.
     pub key: Layout,
-    /// Controllers that support it; empty for all.
+    /// Controllers that support the parameter; empty for all controllers.
     pub only_on: Models,
 }
 
@@ -68,12 +68,12 @@ impl Parameter {
         PARAMETERS.iter().find(|row| {
             let id = row.key.text.split(" {}").next().and_then(|text| text.split("{}").next()).unwrap_or_default();
             let mut words = text.split(' ').filter(|word| !word.is_empty());
-            // `T2 V` and similar ids end in letters followed directly by a number, or in a key.
+            // Ids such as `T2 V` end in letters that a number or a key follows directly.
             id.split(' ').all(|word| words.next().is_some_and(|words| words == word || is_key(word, words)))
         })
     }
 
-    /// What it belongs to.
+    /// Group of the parameter.
     pub fn group(&self) -> Group {
         match self.id.as_bytes()[0] {
             b'M' => Group::Mode,
@@ -84,17 +84,17 @@ impl Parameter {
         }
     }
 
-    /// Field of the row number, for tables.
+    /// Field of the row number; `None` for a parameter without rows.
     pub const fn row(&self) -> Option<&'static Field> {
         self.key.fields.first()
     }
 
-    /// Values, without the row number.
+    /// Fields of the values, without the row number.
     pub fn fields(&self) -> &'static [Field] {
         &self.layout.fields[self.key.fields.len()..]
     }
 
-    /// Layout of the values only, for dumps and messages: `AX1=… AX2=…`.
+    /// Layout of the values without the id, for dumps and messages: `AX1=… AX2=…`.
     pub fn body(&self) -> Layout {
         let text = self.layout.text.strip_prefix(self.key.text).unwrap_or(self.layout.text);
         Layout { text: text.trim_start_matches([' ', '=']), fields: self.fields() }
@@ -168,7 +168,7 @@ const PLACE: Form = Form::Number(Number::signed(4, 2, -800_000, 800_000));
 const PLACES: &[Field] = &axes(PLACE, "mm", "coordinate");
 const OFFSETS: &[Field] = &axes(PLACE, "mm", "offset");
 const GAINS: &[Field] = &axes(Form::Number(Number::digits(2, 0, 15)), "", "gain");
-/// The manual gives neither range nor unit (ambiguity R13).
+/// The manual gives neither a range nor a unit (ambiguity R13).
 const PASS_AREAS: &[Field] = &axes(Form::Number(Number::digits(4, 0, 9999)), "", "pass area");
 const RANKS: &[Field] = &axes(Form::Number(Number::digits(1, 1, 4)), "", "rank in the sequence");
 const JOG_SPEEDS: &[Field] = &[speed("low", "low speed"), speed("high", "high speed")];
@@ -176,7 +176,7 @@ const ORIGIN_SPEEDS: &[Field] =
     &[speed("low", "low speed"), speed("middle", "middle speed"), speed("high", "high speed")];
 const INCHES: &[Field] = &axes(Form::Number(Number::fixed(2, 2, 0, 6500)), "mm", "distance");
 const AREA: &[Field] = &[SIDE, place("place", "coordinate"), STATION, PORT, BIT];
-/// The template has two decimals, the range three (ambiguity R8).
+/// The template has two decimals, but the range has three (ambiguity R8).
 const SYNC_OFFSETS: &[Field] = &axes(Form::Number(Number::signed(3, 2, -99_990, 99_990).with_spare(1)), "mm", "offset");
 const SYNC_ERRORS: &[Field] = &axes(Form::Number(Number::fixed(2, 2, 100, 9999)), "mm", "allowed error");
 const LETTERS: &[Field] = &axes(Form::Word(AXIS), "", "letter of the axis");
@@ -209,7 +209,8 @@ const TASK_STEPS: &[Field] = &[
     digits("task3", 4, 0, 5000, "steps"),
     digits("task4", 4, 0, 5000, "steps"),
 ];
-/// Axes per task, one digit each: 0 none, 1 and 2 that number, 3 three in a plane, 4 three in space, 5 four.
+/// Axes per task, one digit for each task: 0 is none, 1 and 2 are this number of axes, 3 is three axes in a plane, 4 is
+/// three in space, 5 is four.
 const COMBINATIONS: &[Word] = &[
     plain("1000"),
     plain("1100"),

@@ -17,12 +17,12 @@ mod robot;
 
 pub use added::{AddedRow, Class, added, all_added, is_absent, is_busy};
 
-/// A status code. Only the DX200 manual has a list (chapter 4); FS100 is expected to use the same codes.
+/// A status code. Only the DX200 manual has a list (chapter 4); an FS100 probably uses the same codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StatusRow {
     /// The code.
     pub code: u8,
-    /// Models whose manual contains it.
+    /// Models whose manual contains the code.
     pub models: &'static [Model],
     /// Short name.
     pub name: &'static str,
@@ -74,7 +74,7 @@ static STATUSES: [StatusRow; 5] = [
     },
 ];
 
-/// The row of a status code, if known.
+/// The row of a status code; `None` if the code is unknown.
 pub fn status(code: u8) -> Option<&'static StatusRow> {
     STATUSES.iter().find(|row| row.code == code)
 }
@@ -87,9 +87,10 @@ pub fn all_statuses() -> impl Iterator<Item = &'static StatusRow> {
 /// Description of a code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explanation {
-    /// The more specific code in hexadecimal: `0x2060` for an added status, `0x28` for a status without one.
+    /// The more specific code, in hexadecimal: `0x2060` for an added status, `0x28` for a status without an added
+    /// status.
     pub code_text: String,
-    /// Class; `None` for status codes and unknown ones.
+    /// Class of the code; `None` for status codes and for unknown codes.
     pub class: Option<Class>,
     /// Models whose manual contains the code.
     pub models: &'static [Model],
@@ -103,11 +104,11 @@ pub struct Explanation {
     pub remedy: Cow<'static, str>,
 }
 
-/// Describes the result code of an answer, also an unknown one.
+/// Describes the result code of an answer. Unknown codes also have a description.
 ///
-/// An added status is more specific than its status, even than status 0 (DX 3.1: 0xE29C and 0xE2A7 come with 0).
-/// Codes in the manual have 16 bits. Of a two-word added status the lower word is looked up, because the manual does
-/// not define the upper one (DX 3.1).
+/// An added status is more specific than its status, even than status 0 (DX 3.1: 0xE29C and 0xE2A7 come with status 0).
+/// Codes in the manual have 16 bits. If an added status has two words, only the lower word is looked up, because the
+/// manual does not define the upper word (DX 3.1).
 pub fn explain(result: Status) -> Explanation {
     if result.added_size == 0 || result.added == 0 {
         return status(result.code).map_or_else(|| unknown_status(result.code), of_status);
@@ -130,7 +131,7 @@ pub struct NoCode {
 }
 
 /// Looks up a code in user notation: `2060`, `0x2060`, `e29c`, `1F`, `0x1f`. Codes are hexadecimal, with or without
-/// prefix. The result is never empty; it has two entries only if a short code is in both tables.
+/// prefix. The result is never empty. It has two entries only if a short code is in both tables.
 pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
     let trimmed = text.trim();
     let code: u32 = typed::code(trimmed).ok_or_else(|| NoCode { text: text.to_owned() })?;

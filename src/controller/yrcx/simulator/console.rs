@@ -61,7 +61,7 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     Ok(summary(world))
 }
 
-/// Leaving AUTO mode stops programs.
+/// Sets the mode. Leaving AUTO mode stops programs.
 fn set_mode(world: &mut World, mode: Mode) {
     if world.switches.mode != mode {
         world.switches.mode = mode;

@@ -1,4 +1,4 @@
-//! Commands that store, compute and read back (4.3, 4.4, 4.5).
+//! Commands that store data, compute, or read data back (4.3, 4.4, 4.5).
 
 use super::alarms::{AlarmSource, Fault, NO_HAND, PAYLOAD};
 use super::commands::not_here;
@@ -188,7 +188,7 @@ fn port(world: &mut World, request: &Request) -> Values {
         }
         _ => return [(Key::Value, i32::from(world.memory.port(kind, port)))].into_iter().collect(),
     }
-    // A program may wait for the port.
+    // A program may wait for this port, so another scan is needed.
     world.restless = true;
     Values::default()
 }

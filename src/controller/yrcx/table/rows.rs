@@ -31,13 +31,13 @@ macro_rules! commands {
 
 const READ: (Risk, Pace) = (Risk::Read, Pace::Quick);
 const WRITE: (Risk, Pace) = (Risk::Write, Pace::Quick);
-/// Overwrites work of a person.
+/// Overwrites data that a person made.
 const DESTROY: (Risk, Pace) = (Risk::Destroy, Pace::Quick);
 /// Power on, power off, or brake release: an axis may drop.
 const POWER: (Risk, Pace) = (Risk::Motion, Pace::Power);
 const MOTION: (Risk, Pace) = (Risk::Motion, Pace::Motion);
 const JOG: (Risk, Pace) = (Risk::Motion, Pace::Jog);
-/// Starts a program; ends when the start is accepted.
+/// Starts a program. The command ends when the controller accepts the start.
 const START: (Risk, Pace) = (Risk::Motion, Pace::Quick);
 
 commands! {
@@ -202,7 +202,7 @@ commands! {
 impl Command {
     /// Row of the table.
     pub const fn row(self) -> &'static Row {
-        // The macro keeps rows and variants in the same order.
+        // The macro puts rows and variants into the same order.
         &ROWS[self as usize]
     }
 }

@@ -19,7 +19,7 @@ fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
 }
 
-/// Payloads of the controller's cyclic frames with their times.
+/// Returns the payloads of the cyclic frames of the controller, with their times.
 fn outputs(world: &World) -> Vec<(std::time::Duration, Vec<u8>)> {
     let is_data = |bytes: &[u8]| {
         let frame = Frame::parse(bytes).unwrap();

@@ -1,18 +1,18 @@
-//! PNIOStatus: error codes of a device and their texts.
+//! PNIOStatus: error codes of a device, and the texts of these codes.
 
 use std::fmt;
 
-/// PNIOStatus.
+/// Error code of a device (PNIOStatus).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Status(
-    /// Error code, decode, code 1, code 2, from the highest byte.
+    /// The bytes, from the highest: error code, decode, code 1, code 2.
     pub u32,
 );
 
-/// Fields of a block, by code 2.
+/// Names of the fields of a block, by code 2.
 type Fields = &'static [(u8, &'static str)];
 
-/// Blocks by code 1, with their fields by code 2.
+/// Names of the blocks by code 1, each with its fields by code 2.
 const BLOCKS: [(u8, &str, Fields); 8] = [
     (
         0x01,
@@ -195,12 +195,12 @@ impl Status {
         Self(u32::from_be_bytes([code, decode, code1, code2]))
     }
 
-    /// Status of an abort with this reason.
+    /// Returns the status of an abort for this reason.
     pub const fn abort(reason: u8) -> Self {
         Self::new(0xCF, 0x81, 0xFD, reason)
     }
 
-    /// Error code, decode, code 1, code 2.
+    /// Returns error code, decode, code 1 and code 2.
     pub const fn parts(self) -> [u8; 4] {
         self.0.to_be_bytes()
     }
@@ -210,12 +210,12 @@ impl Status {
         matches!(self.parts(), [_, 0x81, 0x40, 0x04])
     }
 
-    /// Whether the device does not know the connection any more.
+    /// Whether the connection does not exist in the device any more.
     pub const fn is_unknown_ar(self) -> bool {
         matches!(self.parts(), [_, 0x81, 0x40, 0x05])
     }
 
-    /// Name of the refused call or alarm.
+    /// Name of the call or alarm that was refused.
     pub const fn call(self) -> &'static str {
         match self.parts()[0] {
             0xDB => "Connect",
@@ -229,7 +229,7 @@ impl Status {
         }
     }
 
-    /// Remedies, if known.
+    /// Remedies; empty if none is known.
     pub const fn remedies(self) -> &'static [&'static str] {
         match self.parts() {
             [_, 0x81, 0x40, 0x04] => &["end the other controller's connection, or wait until its watchdog ends it"],
@@ -246,7 +246,7 @@ impl Status {
         }
     }
 
-    /// Text without the four codes; `None` if unknown.
+    /// Text of the status, without the four codes; `None` if the status is unknown.
     pub fn meaning(self) -> Option<String> {
         let [_, decode, code1, code2] = self.parts();
         let named = |list: &[(u8, &'static str)], code| list.iter().find(|entry| entry.0 == code).map(|entry| entry.1);
@@ -267,7 +267,7 @@ impl Status {
 }
 
 impl fmt::Display for Status {
-    /// Text and the four codes, because some devices number fields differently.
+    /// Writes the text and the four codes. The codes are included, because some devices number the fields differently.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [code, decode, code1, code2] = self.parts();
         if let Some(meaning) = self.meaning() {

@@ -38,7 +38,7 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &RobotRo
     format_interval(painter, line, model);
 }
 
-/// Everything else, from the top, as far as there is room.
+/// The rest of the screen, from the top, as far as there is room.
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRow, now: Moment) {
     let Some(sample) = seen.sample() else { return draw_fault(painter, area, seen) };
     let Some(whole) = &sample.full else {

@@ -1,4 +1,4 @@
-//! Robots and memory from a start state.
+//! Robots and memory that a start state defines.
 
 use std::collections::BTreeMap;
 
@@ -136,7 +136,7 @@ fn arm(entry: ArmEntry) -> Arm {
     }
 }
 
-/// Adds everything else to the existing content.
+/// Adds everything except the robots to the existing content.
 pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     let last_point = usize::from(POINTS) - 1;
     source.each_of(&entries.points, |number, entry| {
