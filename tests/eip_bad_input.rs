@@ -1,5 +1,5 @@
-//! The binary against faulty boards: wrong numbers in the URL, an existing owner, a target that is silent, resets, or
-//! answers nonsense. Each case has its message, hint and exit code.
+//! Runs the binary with faulty boards: wrong numbers in the URL, an existing owner, a target that is silent, resets
+//! connections, or sends invalid answers. Each case has its message, hint and exit code.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -18,7 +18,7 @@ fn armctl(target: &str, line: &str) -> Command {
     command
 }
 
-/// Exit code, kind, code, message and hint of a failure, which must be the only output.
+/// Exit code, kind, code, message and hint of a failure. The failure must be the only output.
 fn error_of(target: &str, line: &str) -> (i32, String, String, String, String) {
     let Output { status, stdout, stderr } = armctl(target, line).output().unwrap();
     let stderr = String::from_utf8(stderr).unwrap();
@@ -30,7 +30,7 @@ fn error_of(target: &str, line: &str) -> (i32, String, String, String, String) {
     (status.code().unwrap(), text("kind"), text("code"), message, text("hint"))
 }
 
-/// Asserts the failure without its kind.
+/// Asserts all parts of a failure except its kind.
 #[track_caller]
 fn assert_error(target: &str, line: &str, exit: i32, code: &str, message: &str, hint: &str) {
     let (found_exit, _, found_code, found_message, found_hint) = error_of(target, line);
@@ -38,7 +38,7 @@ fn assert_error(target: &str, line: &str, exit: i32, code: &str, message: &str, 
     assert_eq!(found, (exit, code, message, hint), "{line} on {target}");
 }
 
-/// `armctl sim yrcx` on free ports; it ends with the test.
+/// `armctl sim yrcx` on free ports. The process ends with the test.
 struct Board {
     process: Child,
     target: String,
@@ -105,7 +105,7 @@ fn reports_wrong_instance_numbers() {
         assert_eq!((exit, &*kind, &*found), (3, "refused", code), "{query}: {message}");
         assert!(message.contains(part) && !hint.is_empty(), "{query}: {message}; {hint}");
     }
-    // The board still works afterwards.
+    // The board still works after this.
     assert!(armctl(&board.target, "yrcx info servo").output().unwrap().status.success());
 }
 
@@ -156,7 +156,8 @@ fn reports_an_existing_owner() {
     assert_eq!(owner.wait().unwrap().code(), Some(130));
 }
 
-/// Layer `owner` of `robots check`, and the owner in the report of `yrcx eip probe` without and with `--try`.
+/// State of the layer `owner` in `robots check`, and the owner in the report of `yrcx eip probe`, without and with
+/// `--try`.
 fn owner(target: &str) -> (Value, Value, Value) {
     let data = |line: &str| {
         let output = armctl(target, line).output().unwrap();
@@ -171,7 +172,7 @@ fn owner(target: &str) -> (Value, Value, Value) {
 
 #[test]
 fn finds_the_owner_from_a_single_report() {
-    // A read shows the state that the board reports. Only a try shows what the board refuses.
+    // A read shows the state that the board reports. Only `--try` shows what the board refuses.
     for (fault, is_said) in [("trailing", true), ("unowned", false)] {
         let board = Board::start(&["--fault", fault]);
         assert_eq!(owner(&board.target), ("ok".into(), false.into(), false.into()), "{fault}");
@@ -187,7 +188,7 @@ fn finds_the_owner_from_a_single_report() {
     }
 }
 
-/// Relays connections to a board one by one, and returns the bytes from the clients.
+/// Relays connections to a board, one after the other. Records the bytes from the clients.
 fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
     let (_, place) = board.target.split_once("://").unwrap();
     let board = place.split('?').next().unwrap().to_owned();
@@ -217,14 +218,15 @@ fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
     (target, sent)
 }
 
-/// A board that accepts an owner connection is commanded from then on, so monitoring commands must never request one.
+/// A board that accepts an owner connection is under the control of this client. Therefore, monitoring commands must
+/// never request such a connection.
 #[test]
 fn only_try_requests_an_owner_connection() {
     let board = Board::start(&[]);
     let (target, sent) = recorded(&board);
     let opens = || {
         let sent = std::mem::take(&mut *sent.lock().unwrap());
-        // ForwardOpen and LargeForwardOpen, for the connection manager (volume 1, 3-5.5.2).
+        // ForwardOpen and LargeForwardOpen requests to the connection manager (volume 1, 3-5.5.2).
         [0x54, 0x5B].map(|service| sent.windows(6).filter(|bytes| **bytes == [service, 2, 0x20, 6, 0x24, 1]).count())
     };
     for line in ["yrcx eip probe", "robots check", "yrcx eip identity", "yrcx status"] {
@@ -287,7 +289,8 @@ fn reports_faults_of_the_board() {
         assert!(exit == 5 && message.contains("cannot decode"), "{line}: {exit} {message}");
         assert_eq!(hint, "check that this is the address of an EtherNet/IP device");
     }
-    // Stale, duplicate and miscounted images are skipped; a counter that does not change counts as silence.
+    // The client skips duplicate images and images with an old or wrong counter. If all images are skipped, the board
+    // counts as silent.
     for (fault, works) in [("double", true), ("half-rate", true), ("stale", false), ("wrong-sequence", false)] {
         let board = Board::start(&["--fault", fault]);
         let output = armctl(&board.target, "yrcx info servo").output().unwrap();
@@ -302,7 +305,7 @@ fn never_repeats_a_change_whose_answer_is_lost() {
     let (exit, kind, _, message, hint) = error_of(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(hint, "`yrcx status` shows whether servos and motor power are on");
-    // The old value is read first; without an answer nothing is written.
+    // The old value is read first. Without an answer to this read, nothing is written.
     let board = Board::start(&["--fault", "reset"]);
     let (exit, kind, _, message, _) = error_of(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (4, "no_answer"), "{message}");
@@ -317,7 +320,7 @@ fn never_repeats_a_change_whose_answer_is_lost() {
     assert_eq!(hint, "read the value with `yrcx eip get 0xf5 1 3`");
 }
 
-/// A TCP server that runs `serve` for each connection; it ends with the process.
+/// A TCP server that calls `serve` for each connection. The server ends with the process.
 fn other_server(serve: fn(TcpStream)) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("eip://{}", listener.local_addr().unwrap());
@@ -341,7 +344,7 @@ fn reports_a_target_that_is_not_a_board() {
     for line in ["yrcx info servo", "yrcx io get", "yrcx eip identity", "status", "yrcx eip set 0xF5 1 3 00"] {
         for target in [&http, &closes, &silent] {
             let (exit, kind, _, message, hint) = match line {
-                // For discovery, an unreachable address is a line of the report.
+                // `status` reports an unreachable address as a result.
                 "status" => {
                     let output = armctl(target, line).output().unwrap();
                     let envelope: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -359,7 +362,7 @@ fn reports_a_target_that_is_not_a_board() {
     assert_error("eip://board.invalid", "yrcx io get", 4, "", "cannot find host 'board.invalid'", hint);
 }
 
-/// An answer to ListIdentity (volume 2, 2-4.2) with a name that would clear a terminal.
+/// An answer to ListIdentity (volume 2, 2-4.2) with a product name that would clear a terminal.
 fn hostile_identity(context: &[u8]) -> Vec<u8> {
     let name = b"\x1b[2J\x07evil\r\n\"<&\xff";
     let mut item = [&[1, 0][..], &[0, 2, 0xAF, 0x12, 10, 0, 0, 9], &[0; 8]].concat();
@@ -405,7 +408,7 @@ fn escapes_the_identity_of_unknown_devices() {
 #[cfg(target_os = "linux")]
 #[test]
 fn discovers_all_devices_of_a_network() {
-    // A board on all addresses receives broadcasts of the loopback network.
+    // A board that listens on all addresses receives broadcasts of the loopback network.
     let Ok(socket) = UdpSocket::bind("0.0.0.0:0") else { return println!("skipped: no port") };
     let port = socket.local_addr().unwrap().port();
     thread::spawn(move || {

@@ -340,7 +340,7 @@ proptest! {
     }
 }
 
-/// Data of an answer in which the first byte of each element is `first_byte` of its number.
+/// Data of an answer. The first byte of each element is the result of `first_byte` for the number of the element.
 fn answer(step: &impl Query, first_byte: impl Fn(u16) -> u8) -> Vec<u8> {
     let request = step.request();
     let size = request.row().unwrap().size();

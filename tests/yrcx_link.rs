@@ -1,4 +1,4 @@
-//! The binary against its own simulator over real sockets: faults of the link, ownership of the controller, Ctrl-C.
+//! Runs the binary with its own simulator over real sockets: faults of the link, ownership of the controller, Ctrl-C.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 

@@ -1,4 +1,4 @@
-//! Reads the sources: paths that a file uses, without comments and texts.
+//! Reads the source files: the paths that a file uses, without comments and texts.
 
 use std::path::{Path, PathBuf};
 
@@ -72,7 +72,7 @@ impl Source {
         paths
     }
 
-    /// `crate::output::jq` for `output/jq.rs`, `crate::output` for `output/mod.rs`.
+    /// Path of the module: `crate::output::jq` for `output/jq.rs`, `crate::output` for `output/mod.rs`.
     pub fn module(&self) -> Vec<String> {
         let stem = self.name.trim_end_matches(".rs");
         let stem = stem.strip_suffix("/mod").unwrap_or(stem);
@@ -84,7 +84,7 @@ fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// Splits `a::{b, c::{d}}` into `a::b` and `a::c::d`.
+/// Splits a `use` tree: `a::{b, c::{d}}` becomes `a::b` and `a::c::d`.
 fn expand_tree(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
@@ -128,7 +128,7 @@ fn resolve(module: &[String], path: &str) -> String {
     module.join("::")
 }
 
-/// Path as if all members of the workspace were modules of one crate, as in `lib.rs`.
+/// Path as if all members of the workspace were modules of one crate.
 fn is_in_crate(module: &[String], path: &str) -> String {
     const MEMBERS: [&str; 4] = ["client", "controller", "files", "transport"];
     let (first, rest) = path.split_once("::").unwrap_or((path, ""));
@@ -169,7 +169,7 @@ fn strip_code(text: &str) -> String {
     stripped
 }
 
-/// `r##` of a raw string that begins here.
+/// The prefix of a raw string that begins here, such as `r##`.
 fn raw_fence<'a>(rest: &'a str, before: &str) -> Option<&'a str> {
     let hashes = rest.strip_prefix('r')?;
     let count = hashes.len() - hashes.trim_start_matches('#').len();
@@ -191,7 +191,7 @@ fn closing(rest: &str, quote: char) -> usize {
     rest.len()
 }
 
-/// Whether a character literal begins here, not a lifetime.
+/// Whether a character literal begins here. Otherwise the quote begins a lifetime.
 fn is_character(rest: &str) -> bool {
     let mut next = rest.chars().skip(1);
     match next.next() {
@@ -210,7 +210,7 @@ fn finds_paths_in_sources() {
     assert_eq!(paths, expected.map(|(line, path)| (line, path.to_owned())));
 }
 
-/// Whether the text contains the word, not as the end of a longer one.
+/// Whether the text contains the word. The end of a longer word does not count.
 pub fn has_word(text: &str, word: &str) -> bool {
     let ends = |at: usize| text[..at].ends_with(|before: char| before.is_alphanumeric() || before == '_');
     text.match_indices(word).any(|(at, _)| !ends(at))
@@ -220,7 +220,7 @@ pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every file of the project, without those of cargo and git.
+/// Every file of the project, except for the files of cargo and git.
 pub fn committed(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).expect("the folder is readable").filter_map(Result::ok) {

@@ -1,4 +1,4 @@
-//! No bytes cause a panic, and messages round-trip.
+//! No bytes cause a panic, and messages can be written and read again without a change.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::Arc;

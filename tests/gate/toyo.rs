@@ -1,4 +1,5 @@
-//! Toyo: an overwrite needs a confirmation, dry runs go to their end, a stop is always allowed.
+//! Rules for Toyo controllers: an overwrite needs a confirmation, dry runs reach their end, and a stop is always
+//! allowed.
 
 use super::desk::Workspace;
 use crate::support::simulator::Simulator;
@@ -39,7 +40,7 @@ fn overwriting_user_data_needs_confirmation() {
     assert_eq!(desk.data("-r cell toyo point get 7")["items"][0]["value"]["z_mm"], 3.0);
     assert_eq!(desk.data("-r cell toyo easy get 1")["items"][0]["value"]["loops"], 6);
     assert!(desk.run("-r cell toyo program get --to 1").stdout.contains("TAG TAG=005"));
-    // Equal values need no confirmation.
+    // Writing equal values needs no confirmation.
     assert_eq!(desk.run("-r cell toyo point set 7 1 2 3 4").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo point set 7 z=5 --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo program delete 1 --yes").exit, Some(0));
@@ -60,7 +61,7 @@ fn the_confirmation_of_a_move_shows_positions_and_speed() {
         }
         terminal.wait_for_text("Continue?");
         terminal.press(key);
-        // Without the origin, the controller refuses.
+        // The origin is not set, so the controller refuses a confirmed motion.
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
     }
 }
