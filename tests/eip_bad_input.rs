@@ -115,7 +115,7 @@ fn monitor_connections_report_the_same_errors() {
     let (exit, _, _, message, hint) = error_of(&board.start_with("in=101"), "yrcx io get");
     assert_eq!(exit, 3);
     assert!(message.contains("to a read-only client") && hint.contains("role=input_only"), "{message}; {hint}");
-    let hint = "check in and in_size of the URL: `yrcx eip probe` finds both";
+    let hint = "check in and in_size of the URL; use `yrcx eip probe` to find the values";
     assert_error(&board.start_with("in=1"), "yrcx io get", 5, "", "the input assembly has 0 bytes, not 48", hint);
     assert_error(
         &board.start_with("in_size=50"),
@@ -138,8 +138,8 @@ fn reports_an_existing_owner() {
         3,
         "0x0106",
         "another master, such as a PLC, commands the controller: ForwardOpen was refused: ownership conflict (0x01/0x0106)",
-        "`yrcx io get` and `yrcx status` can read its signals at the same time. To command the controller, stop the owner's \
-         connection first: remove the controller from the PLC's scan list, or close the session",
+        "stop the owner's connection first: remove the controller from the PLC's scan list, or close the session. \
+         `yrcx io get` and `yrcx status` can read the signals at the same time",
     );
     let (exit, _, code, message, _) =
         error_of(&board.target, &format!("yrcx eip set 4 150 3 {} --yes", "00".repeat(48)));
@@ -257,11 +257,12 @@ fn serializes_concurrent_connections() {
     }
 }
 
-const NO_ADDRESS: &str = "check the address; check that the controller is on and its EtherNet/IP board enabled";
+const NO_ADDRESS: &str = "check the address; check that the controller is on, and that its EtherNet/IP board is \
+                          enabled";
 
 #[test]
 fn reports_faults_of_the_board() {
-    const LINK: &str = "check the connection: `-v` counts received packets";
+    const LINK: &str = "check the connection: use `-v` to count received packets";
     for (fault, line, message, hint) in [
         ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NO_ADDRESS),
         ("mute", "yrcx io get", "no answer to RegisterSession within 400 ms", NO_ADDRESS),
@@ -275,8 +276,8 @@ fn reports_faults_of_the_board() {
         (
             "frozen",
             "yrcx info servo",
-            "no answer to servo-status: the controller did not start it",
-            "`yrcx status` shows the state of the controller",
+            "no answer to servo-status: the controller did not start the command",
+            "use `yrcx status` to see the state of the controller",
         ),
         ("stall", "yrcx info servo", "the controller sends no data", LINK),
         ("wrong-id", "yrcx info servo", "the controller sends no data", LINK),
@@ -304,7 +305,7 @@ fn never_repeats_a_change_whose_answer_is_lost() {
     let board = Board::start(&["--fault", "frozen"]);
     let (exit, kind, _, message, hint) = error_of(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
-    assert_eq!(hint, "`yrcx status` shows whether servos and motor power are on");
+    assert_eq!(hint, "use `yrcx status` to see whether servos and motor power are on");
     // The old value is read first. Without an answer to this read, nothing is written.
     let board = Board::start(&["--fault", "reset"]);
     let (exit, kind, _, message, _) = error_of(&board.target, "yrcx eip set 0xF5 1 3 0200");

@@ -308,7 +308,7 @@ fn stops_the_jog_of_a_killed_client() {
     let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
     jogging.wait_for_message("<- WO 0100");
     jogging.signal("KILL");
-    session.wait_for_message("armctl sends its stop signals");
+    session.wait_for_message("armctl sends the stop signals of the client");
     desk.until(|session| session["under_way"] == false);
     let next = desk.run("-r cell yrcx info servo");
     assert!(next.status.success() && stderr(&next).contains("12.400 stopped by the stop input"), "{}", stderr(&next));

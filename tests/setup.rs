@@ -51,8 +51,8 @@ fn adds_a_checked_named_read_only_robot() {
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", &address.to_string())]);
     answer(&mut setup, &[("Which controller is it?", "")]);
-    setup.wait_for_text("answers a status request");
-    setup.wait_for_text("dx200, by its software");
+    setup.wait_for_text("the controller answers a status request");
+    setup.wait_for_text("dx200, read from the software");
     answer(&mut setup, &[("Name [cell1]:", "cell 3"), ("Name [cell1]:", "cell3"), ("Read-only", "")]);
     setup.wait_for_text("read_only = true");
     answer(&mut setup, &[("Write this to robots.toml? [Y/n]", "")]);

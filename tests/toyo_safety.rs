@@ -381,7 +381,7 @@ fn a_host_switched_on_by_another_client_is_reported() {
     send_as_other_client(&url, "@HSON");
     let message = messages("status");
     assert!(message.contains("another client switched the host ON, which disables the start input"), "{message}");
-    assert!(message.contains("`toyo host off` releases the host"), "{message}");
+    assert!(message.contains("use `toyo host off` to release the host"), "{message}");
     assert_eq!(
         messages("status --watch=20ms --count 3").matches("another client switched the host ON").count(),
         1,
@@ -392,7 +392,7 @@ fn a_host_switched_on_by_another_client_is_reported() {
     send_as_other_client(&url, "@SPST 0001");
     let message = messages("status");
     assert!(message.contains("another client switched the host ON and started a program"), "{message}");
-    assert!(message.contains("`toyo stop` stops it and `toyo host off` releases the host"), "{message}");
+    assert!(message.contains("`toyo stop` stops it and use `toyo host off` to release the host"), "{message}");
     messages("stop");
     messages("host off");
     assert_eq!(messages("status"), "");

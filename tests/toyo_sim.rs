@@ -153,6 +153,6 @@ fn a_line_has_a_baud_rate_and_an_address_has_one_simulator() {
 fn a_simulator_on_all_interfaces_prints_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 0.0.0.0:0");
-    assert_eq!(served.next_message(), "warning: others on the network can reach this simulator\n");
+    assert_eq!(served.next_message(), "warning: other computers on the network can reach this simulator\n");
     assert_eq!(served.end("-INT"), Some(0));
 }

@@ -130,7 +130,7 @@ fn parses_misprinted_commands_literally() {
     // The manual prints five digits here, which is not a valid word.
     assert_eq!(printed("4.2.1-direct-pulse"), None);
     let refusal = printed("4.6.3-reset").unwrap().unwrap_err();
-    assert_eq!(refusal.to_string(), "WI1: bits 0x0100 are set, which must be 0 here");
+    assert_eq!(refusal.to_string(), "WI1: bits 0x0100 must be 0 here, but are set");
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn refuses_invalid_commands_before_sending() {
         ),
         (
             Command::ProgramRun.order().with(Key::ProgramName, "pick"),
-            "WI6 program_name: 'pick' does not fit; allowed: 1 to 16 of A-Z, 0-9 and _",
+            "WI6 program_name: 'pick' is not valid; allowed: 1 to 16 characters from A-Z, 0-9 and _",
         ),
         (
             Command::ProgramRun.order(),

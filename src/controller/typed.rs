@@ -219,7 +219,7 @@ mod tests {
     fn settings_and_states_say_what_is_expected() {
         assert_eq!(setting("B0=7=8", "a variable", "a value", "B0=255"), Ok(("B0", "7=8")));
         let error = setting("B0", "a variable", "a value", "B0=255").unwrap_err();
-        assert_eq!(error, "write a variable, '=' and a value, as in B0=255");
+        assert_eq!(error, "write a variable, '=' and a value, for example B0=255");
         assert_eq!((state("on"), state("0")), (Ok(true), Ok(false)));
         assert_eq!(state("2").unwrap_err(), "'2' is not a valid state; use on or off");
     }

@@ -423,9 +423,9 @@ mod tests {
         let names = inventory.robots[0].names.iter().map(|name| format!("{}={}", name.name, name.address));
         assert_eq!(names.collect::<Vec<_>>(), ["FILTER CLEAN=#10011", "clamp=#27010", "parts=B5", "speed=M10"]);
         for (names, place, why) in [
-            ("clamp = 27018", ":6:9:", "'27018' is not an address that can have a name on a yerc robot"),
+            ("clamp = 27018", ":6:9:", "'27018' is not a valid address for a name on a yerc robot"),
             ("clamp = \"SO(20)\"", ":6:9:", "yerc"),
-            ("B5 = 27010", ":6:6:", "'B5' cannot be a name: it looks like an address"),
+            ("B5 = 27010", ":6:6:", "'B5' cannot be a name: it has the form of an address"),
             ("clamp = true", ":6:9:", "'true'"),
             ("\"a,b\" = 27010", ":6:9:", "comma"),
         ] {

@@ -542,8 +542,8 @@ mod tests {
             ("sim:?baud=9600", Family::Yerc, Some("'baud' in a sim: URL is for toyo, not for yerc")),
             ("sim:?model=fs100", Family::Toyo, Some("'model' in a sim: URL is for yerc, not for toyo")),
             ("sim:?move_words=25", Family::Toyo, Some("'move_words' in a sim: URL is for yerc, not for toyo")),
-            ("tcp://h:1", Family::Yerc, Some("a yerc robot has no tcp: URL")),
-            ("udp://h", Family::Toyo, Some("a toyo robot has no udp: URL")),
+            ("tcp://h:1", Family::Yerc, Some("a yerc robot cannot have a tcp: URL")),
+            ("udp://h", Family::Toyo, Some("a toyo robot cannot have a udp: URL")),
         ] {
             assert_eq!(target(url).check(family).err().as_deref(), why, "{url}");
         }

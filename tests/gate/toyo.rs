@@ -86,8 +86,8 @@ fn the_confirmation_of_a_start_shows_program_step_position_and_speed() {
         assert_eq!(desk.run(&format!("-r cell --yes toyo {line}")).exit, Some(0), "{line}");
     }
     for (line, which) in [
-        ("run sequential 1", "It is the program of task 1; it begins at step 1: TAG TAG=005."),
-        ("run sequential", "It is the program of task 1; it begins at step 1: TAG TAG=005."),
+        ("run sequential 1", "The program of task 1 begins at step 1: TAG TAG=005."),
+        ("run sequential", "The program of task 1 begins at step 1: TAG TAG=005."),
         ("run palletizing", "It is palletizing program 3, at step"),
         ("run palletizing 4", "It is palletizing program 4; now the controller is at program 3, step"),
         ("run easy", "It is easy program 2, at step"),

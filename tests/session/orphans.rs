@@ -194,7 +194,7 @@ fn wait_for_stop(motion: &Motion, signals: &[&str], ways: &[(StartKind, bool)]) 
             let messages = moving.has_ended(&desk, session.as_ref());
             assert_eq!(*signal == "STOP", messages.contains("did not respond for 2 s"), "{way:?}: {messages}");
             if let Some(mut session) = session {
-                session.wait_for_message("it moved the robot");
+                session.wait_for_message("the client moved the robot");
                 session.wait_for_message("the robot was stopped");
                 if motion.family == "yrcx" {
                     desk.until(|session| session["under_way"] == false);
@@ -345,7 +345,7 @@ fn move_with_on_interrupt_leave_continues_after_a_kill() {
         moving.signal("KILL");
         assert_eq!(moving.end().0, None);
         if let Some(session) = &mut session {
-            session.wait_for_message("it moved the robot");
+            session.wait_for_message("the client moved the robot");
         }
         let status = desk.data("-r a yerc status");
         assert_eq!((&status["held"], &status["running"]), (&false.into(), &true.into()), "{status}");
@@ -388,7 +388,7 @@ fn stop_bypasses_an_unresponsive_session() {
         session.signal("STOP");
         let blocked_session = desk.run(&format!("-r a {}", motion.state_command));
         assert_eq!(blocked_session.status.code(), Some(4), "{}", stderr(&blocked_session));
-        for part in [format!("its session (process {pid}) does not respond"), format!("`kill -CONT {pid}`")] {
+        for part in [format!("the session (process {pid}) does not respond"), format!("`kill -CONT {pid}`")] {
             assert!(stderr(&blocked_session).contains(&part), "{part}: {}", stderr(&blocked_session));
         }
         let stopped = desk.run(&format!("-r a {stop}"));

@@ -194,7 +194,7 @@ mod tests {
         assert!(malformed.is_malformed() && !no_answer.is_malformed());
         assert_eq!(malformed.to_string(), "unexpected answer '@M': unknown command 'M'");
         let message = Error::HostNotReleased(None).to_string();
-        assert_eq!(message, "armctl switched host control ON and could not switch it OFF again: @NG");
+        assert_eq!(message, "armctl switched host control ON, but could not switch it OFF again: @NG");
         let refusal = Error::from(Refusal(Request::bare(Command::Home)));
         assert_eq!(refusal.to_string(), "the controller refused HOME (@NG)");
         let unseen = Error::StopUnconfirmed(Box::new(Error::StatusRefused)).to_string();

@@ -319,7 +319,7 @@ mod tests {
         let frames = client.take_plan().frames;
         assert_eq!(frames.len(), 3, "{frames:?}");
         assert!(frames[0]["depends_on"].is_null());
-        assert_eq!(frames[1]["about"], "which model the controller is");
+        assert_eq!(frames[1]["about"], "the model of the controller");
         assert!(frames[1]["depends_on"].is_null(), "{}", frames[1]);
         assert_eq!(frames[2]["depends_on"], "the model of the controller; shown for a dx200");
     }

@@ -176,7 +176,7 @@ mod tests {
         );
         let outcome = sequence::Outcome::Broken { signal: output::ALARM };
         let broken = Error::Unfinished { name: "run", outcome };
-        assert_eq!(broken.to_string(), "run: alarm (SO(03)) went on during the procedure");
+        assert_eq!(broken.to_string(), "run: alarm (SO(03)) switched on during the procedure");
         let busy = Error::Session(SessionBusy::Busy(None));
         assert_eq!(busy.to_string(), "another client uses the connection");
     }

@@ -276,7 +276,8 @@ mod tests {
         assert_eq!(
             never("idle"),
             Some(
-                "'idle': the key .data.held does not exist, so this may never be true; available: running, position"
+                "'idle': the key .data.held does not exist, so this condition may never be true; available keys: \
+                 running, position"
                     .to_owned()
             )
         );

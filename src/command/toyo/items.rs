@@ -278,7 +278,7 @@ mod tests {
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
                 assert!(failure.message.contains("'ax2=+0000.5' is not in the manual"), "{failure}");
-                assert_eq!(failure.hint.unwrap(), "nothing was written; type all values");
+                assert_eq!(failure.hint.unwrap(), "type all values; nothing was written");
             }
             let folder = tempfile::tempdir().unwrap();
             let dumped = bench.data(&["param", "dump", folder.path().join("p.csv").to_str().unwrap(), id]);

@@ -309,7 +309,7 @@ mod tests {
             Bench::with_faults("", |block, _| if block == "@MPLE" { Fault::Answered("@OK") } else { Fault::None });
         let failure = bench.run(&["mode", "palletizing"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the command was accepted, but the mode did not change within 1s");
+        assert_eq!(failure.message, "the controller accepted the command, but the mode did not change within 1s");
         assert!(failure.hint.unwrap().contains("M10"));
     }
 

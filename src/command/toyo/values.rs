@@ -463,14 +463,14 @@ mod tests {
     #[test]
     fn error_messages_name_range_unit_and_choices() {
         let error = |name, typed: &[&str]| read(name, typed).unwrap_err();
-        assert_eq!(error("P01", &["1", "2"]), "P01: 4 values needed, 2 given");
+        assert_eq!(error("P01", &["1", "2"]), "P01: 4 values needed, but 2 typed");
         assert_eq!(
             error("P01", &["9000", "0", "0", "0"]),
             "P01: ax1: 9000.00 is out of range (a number, -8000.00 to 8000.00 mm)"
         );
         assert_eq!(error("P08", &["lwo=1"]), "P08: unknown value 'lwo'; did you mean low?");
         assert_eq!(error("P08", &["low=1", "low=2"]), "P08: low appears twice");
-        assert_eq!(error("P08", &["low=1", "2"]), "P08: '2' has no name, but other values have");
+        assert_eq!(error("P08", &["low=1", "2"]), "P08: '2' has no name, but other values have names");
         assert_eq!(error("M09", &["french"]), "M09: language: 'french' is not J (japanese) or E (english)");
         assert_eq!(error("M01", &["3"]), "M01: port: '3' is not STATION/PORT/BIT, such as 0/01/3");
         assert!(error("M01", &["9/01/3"]).starts_with("M01: station: 9 is out of range"));

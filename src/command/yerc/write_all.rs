@@ -117,7 +117,7 @@ mod tests {
         let lost = Failure::new(Kind::OutcomeUnknown, "no answer");
         assert_eq!(
             message(&lost, 1),
-            "no answer; written: register 0..2; written or not: register 10; not written: register 20..21"
+            "no answer; written: register 0..2; possibly written: register 10; not written: register 20..21"
         );
         let read_only = Failure::new(Kind::Rejected, "cell3 is read-only").hint("x");
         assert_eq!(

@@ -140,6 +140,10 @@ mod tests {
         let failure = Failure::from(WordError { alarm: Some(INPUT_FORMAT), ..error });
         assert_eq!(failure.kind, Kind::Usage);
         assert_eq!(failure.message, "point: 30000 is out of range; allowed: 0 to 29999");
-        assert_eq!(failure.hint.unwrap(), "the controller would refuse it with alarm 4.202, input format error");
+        assert_eq!(
+            failure.hint.unwrap(),
+            "correct the value; the controller would refuse this value with alarm \
+                                           4.202, input format error"
+        );
     }
 }

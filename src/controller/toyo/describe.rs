@@ -346,7 +346,7 @@ mod tests {
 
     #[test]
     fn requests_and_answers_are_explained() {
-        assert_eq!(meanings("@HSON\r\n"), ["command host ON: the host commands, the start input does not"]);
+        assert_eq!(meanings("@HSON\r\n"), ["command host ON: the host has control, and the start input is disabled"]);
         assert_eq!(
             meanings("@STAS SNO=0 ST1=22 ST2=00")[1..],
             ["page 0", "st1 in execution, positioning complete", "st2 00"]
@@ -356,7 +356,7 @@ mod tests {
         assert_eq!(meanings("@EHTR NO=01 ER=** AL=** H=*** M=** S=**")[2], "error the power was switched off");
         assert_eq!(meanings("@NG"), ["verdict refused"]);
         assert_eq!(explain("@STAS SNO=0").section.as_deref(), Some("TO 2-2"));
-        assert_eq!(explain("@HTSK TASK=02").title, "request: CTSK, choose the current task");
+        assert_eq!(explain("@HTSK TASK=02").title, "request: CTSK, select the current task");
     }
 
     #[test]

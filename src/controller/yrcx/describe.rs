@@ -240,12 +240,12 @@ mod tests {
     fn a_command_is_explained_field_by_field() {
         // Example of 4.2.1, linear interpolation.
         let linear = command(&words(&[0x0003, 0x8026, 0, 0x00C8, 0x0064, 0, 0, 0, 0, 0, 0x0032]));
-        assert_eq!(linear.title, "0xR003 move to a point in a line");
+        assert_eq!(linear.title, "0xR003 move to a point on a straight line");
         assert_eq!(linear.section, Some("4.2.1"));
         assert_eq!(
             lines(&linear),
             [
-                "WI0 bits 11-0: command code 0x0003 = move-linear: move to a point in a line",
+                "WI0 bits 11-0: command code 0x0003 = move-linear: move to a point on a straight line",
                 "WI0 bits 15-12: robot 0x0000 = none (robot 1)",
                 "WI1 bit 0: axes flag 0x0000 = all axes",
                 "WI1 bits 2-1: speed flag 0x0003 = mm/s",
@@ -271,7 +271,7 @@ mod tests {
             problems(&[0x0001, 0x0004, 0, 101]),
             ["WI3 speed_percent: 101 is out of range; allowed: 1 to 100 %"]
         );
-        assert_eq!(problems(&[0x0406, 0x0100]), ["WI1: bits 0x0100 are set, which must be 0 here"]);
+        assert_eq!(problems(&[0x0406, 0x0100]), ["WI1: bits 0x0100 must be 0 here, but are set"]);
         assert_eq!(problems(&[0x0999]), ["0x0999 is not a remote command code; known: 111"]);
     }
 

@@ -233,8 +233,8 @@ mod tests {
 
     #[test]
     fn errors_name_the_key_and_the_form() {
-        let share = "a percentage from 0% to 100% with at most two decimals, as in 2.5%";
-        let time = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
+        let share = "a percentage from 0% to 100% with at most two decimals, for example 2.5%";
+        let time = "a time or range of up to 60s in us, ms or s, for example 20ms or 0..50ms";
         let names = "the faults are drop, dup, delay, reorder, corrupt, busy, seed";
         let cases: [(&str, &str); 15] = [
             ("", &format!("unknown fault ''; {names}")),

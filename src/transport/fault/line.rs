@@ -192,11 +192,11 @@ mod tests {
     #[test]
     fn errors_name_the_key_and_the_form() {
         for (text, message) in [
-            ("echo=on", "echo has no value, but got 'on'"),
+            ("echo=on", "echo takes no value, but has the value 'on'"),
             ("echo,echo", "echo appears twice"),
-            ("noise", "noise needs a value: a percentage from 0% to 100% with at most two decimals, as in 2.5%"),
+            ("noise", "noise needs a value: a percentage from 0% to 100% with at most two decimals, for example 2.5%"),
             ("reorder=1%", "unknown fault 'reorder'; the faults are noise, parity, drop, dup, delay, busy, echo, seed"),
-            ("noise=1", "noise: '1' is not a percentage from 0% to 100% with at most two decimals, as in 2.5%"),
+            ("noise=1", "noise: '1' is not a percentage from 0% to 100% with at most two decimals, for example 2.5%"),
         ] {
             assert_eq!(text.parse::<LineFaultSpec>().unwrap_err().to_string(), message, "{text}");
         }

@@ -324,7 +324,7 @@ mod tests {
             ("loud", format!("unknown fault 'loud'; {names}")),
             ("stall=1", format!("unknown fault 'stall'; {names}")),
             ("busy=5%", format!("unknown fault 'busy'; {names}")),
-            ("stall,mute", "stall and mute exclude each other".to_owned()),
+            ("stall,mute", "stall and mute cannot be used together".to_owned()),
             ("mute,mute", "mute appears twice".to_owned()),
         ] {
             assert_eq!(parsed(text), Err(message), "{text}");

@@ -553,7 +553,7 @@ mod tests {
             let (mut session, now) = connected(version);
             session.handle(now, &connack.repeat(4096));
             let Some(Event::Lost(loss)) = session.next_event() else { panic!("it goes on") };
-            assert_eq!(loss.to_string(), "it breaks the MQTT protocol: a second CONNACK");
+            assert_eq!(loss.to_string(), "it does not follow the MQTT protocol: a second CONNACK");
             assert!(session.next_event().is_none());
         }
     }

@@ -345,7 +345,7 @@ EndModule
         for (from, to, message) in [
             ("0x1234", "0x12345", "line 6: Ident_Number: it must have two bytes"),
             ("Ident_Number = 0x1234", "", "line 1: Ident_Number: it is missing"),
-            ("0x10, 0x20", "0x10, 0x200", "line 18: Ext_User_Prm_Data_Const(3): '0x200' is more than a byte"),
+            ("0x10, 0x20", "0x10, 0x200", "line 18: Ext_User_Prm_Data_Const(3): '0x200' does not fit in one byte"),
             (
                 "Const(3)",
                 "Const(300)",
@@ -356,7 +356,7 @@ EndModule
                 "0xC0",
                 "line 19: Module: length of an identifier at offset 1: needs 1 bytes, but only 0 are present",
             ),
-            ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks is expected"),
+            ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks is missing"),
             ("0x71\nEndModule", "0x71", "line 25: Module: it has no EndModule"),
             (
                 "#Profibus_DP",

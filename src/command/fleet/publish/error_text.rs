@@ -123,7 +123,7 @@ mod tests {
             Refusal { version: Version::V5, code: 0x9d, reason: Some("sorry".into()), server: Some("b:1".into()) };
         assert_eq!(
             refusal(&url(), &refused).message,
-            "mqtt://broker:1883 refuses this client: it has a new address (sorry): b:1"
+            "mqtt://broker:1883 refuses this client: the broker has a new address (sorry): b:1"
         );
     }
 

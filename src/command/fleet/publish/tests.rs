@@ -352,7 +352,7 @@ async fn pauses_grow_as_well_where_each_connection_begins_well() {
     counts.unwrap();
     let attempts = fake.attempts.borrow();
     assert!((12..22).contains(&attempts.len()), "{attempts:?}");
-    assert!(said.iter().any(|line| line.contains("it breaks the MQTT protocol: noise")), "{said:?}");
+    assert!(said.iter().any(|line| line.contains("it does not follow the MQTT protocol: noise")), "{said:?}");
 }
 
 #[tokio::test(start_paused = true)]

@@ -188,7 +188,11 @@ fn another_robot_is_refused() {
     let mut other = controller(&format!("robot_types = [7]\n{EMPTY}"));
     let failed = failure(&mut other, &["restore", &folder]);
     assert_eq!(failed.kind, Kind::Rejected);
-    assert_eq!(failed.message, "the backup is of another machine: robot type is 000000 in the backup and 000007 here");
+    assert_eq!(
+        failed.message,
+        "the backup is from another machine: robot type is 000000 in the backup and 000007 on \
+                                this controller"
+    );
     other.data(&["restore", &folder, "--force", "--only", "program"]);
 }
 
@@ -308,17 +312,17 @@ fn axes_of_another_machine_are_refused_before_anything_is_written() {
     let desk = Desk::new();
     let folder = desk.saved();
     for (other, told) in [
-        ("write = [\"WPAR E19 1100\"]\n", "E19 (task-axes) is 2000 in the backup and 1100 here"),
+        ("write = [\"WPAR E19 1100\"]\n", "E19 (task-axes) is 2000 in the backup and 1100 on this controller"),
         (
             "axes = 2\nwrite = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\n",
-            "E01 (axis-letters) is X Y Z R in the backup and X Z Y R here",
+            "E01 (axis-letters) is X Y Z R in the backup and X Z Y R on this controller",
         ),
     ] {
         let (mut bench, heard) = Bench::with_faults(other, |_, _| Fault::None);
         let failed = failure(&mut bench, &["restore", &folder, "--only", "parameters"]);
         assert_eq!(
             (failed.kind, &*failed.message),
-            (Kind::Rejected, &*format!("the backup is of another machine: {told}"))
+            (Kind::Rejected, &*format!("the backup is from another machine: {told}"))
         );
         assert!(!heard.borrow().iter().any(|block| block.starts_with("@W")));
         bench.data(&["restore", &folder, "--only", "parameters", "--force"]);

@@ -22,7 +22,7 @@ fn parameters_are_read_by_name_or_id() {
     let error = objection(&["param", "get", "soft-limit-pluss"]);
     assert!(error.contains("unknown parameter; did you mean soft-limit-plus?"), "{error}");
     let error = objection(&["param", "get", "t4.s1"]);
-    assert!(error.contains("mvm-points is a table; `toyo mvm get` reads its rows"), "{error}");
+    assert!(error.contains("mvm-points is a table; use `toyo mvm get` to read its rows"), "{error}");
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn wrong_arguments_send_nothing() {
 #[test]
 fn the_confirmation_names_the_effects_of_machine_parameters() {
     let told = |id| machine::consequence_of(&[Parameter::named(id).unwrap()]);
-    assert_eq!(told("E06"), "after a change of E06 (max-speed) the controller executes nothing before a restart");
+    assert_eq!(told("E06"), "after a change of E06 (max-speed), the controller executes no command until a restart");
     assert!(told("E22").contains("easy programs"));
 }
 
@@ -210,8 +210,8 @@ fn a_dump_names_values_that_cannot_be_written_back() {
     let left_out = dumped["left_out"].as_array().unwrap().iter().find(|row| row["name"] == "cc-link").unwrap();
     assert_eq!(
         left_out["why"],
-        "its value station=0 rate=156K options=0 cannot be written back: cc-link: station: 0 is out of range (a number, \
-         1 to 61)"
+        "the value station=0 rate=156K options=0 cannot be written back: cc-link: station: 0 is out of range (a \
+         number, 1 to 61)"
     );
     assert!(!std::fs::read_to_string(&file).unwrap().contains("cc-link"));
 }

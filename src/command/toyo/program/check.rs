@@ -284,7 +284,7 @@ b.txt: 2 steps, 1 label
         assert_eq!(findings("NOP\nTSTR TASK=2\nEND\n"), [("note", 2, error("63: task cannot be started"))]);
         assert_eq!(
             findings("NOP\nIN STN=0 PN1=.......1 AND\nEND\n"),
-            [("note", 2, "in an offline run everything waits here after 0.001 s".to_owned())]
+            [("note", 2, "in an offline run all tasks wait here after 0.001 s".to_owned())]
         );
         for text in ["RET\n", "a: SPD V=1\nJMP TAG=a\n", "SPD V=1\nEND\n"] {
             assert_eq!(findings(text), [], "{text}: it is said already, or nothing stops");

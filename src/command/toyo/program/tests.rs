@@ -100,7 +100,11 @@ fn a_part_takes_tags_that_are_free() {
     );
     let failure = desk.put("TAG TAG=2\n", &["--at", "2"]).unwrap_err();
     assert_eq!(failure.kind, Kind::Usage);
-    assert!(failure.message.contains("tag 002 already exists in a step before or after these"), "{}", failure.message);
+    assert!(
+        failure.message.contains("tag 002 already exists in a step before or after the steps of this file"),
+        "{}",
+        failure.message
+    );
     assert!(desk.put("JMP TAG=7\n", &["--at", "2"]).is_err(), "there is no such tag around it");
     assert!(desk.put("JMP TAG=2\n", &["--at", "2"]).is_ok());
 }
@@ -149,7 +153,7 @@ fn nothing_falls_out_at_the_end() {
     let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"END\"] }");
     let failure = desk.failure(&["insert", "1", "--task", "2"]);
     assert_eq!(failure.kind, Kind::Rejected);
-    assert_eq!(failure.message, "step 2, the last of task 2, would be lost: END");
+    assert_eq!(failure.message, "step 2, the last step of task 2, would be lost: END");
     assert_eq!(desk.text(&["--task", "2"]), "NOP\nEND\n");
 }
 

@@ -54,7 +54,7 @@ fn a_program_that_never_shows_execution_has_an_unknown_outcome() {
     let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
     let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential", "--wait"]).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.contains("the status never showed execution"), "{}", failure.message);
+    assert!(failure.message.contains("the status never showed that the controller executed it"), "{}", failure.message);
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn after_a_lost_connection_the_outcome_is_unknown() {
     let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
     assert!(failure.message.starts_with("the start was accepted, but its result is unknown: "), "{}", failure.message);
-    assert!(failure.hint.unwrap().starts_with("do not send the command again: keep clear; `toyo status`"));
+    assert!(failure.hint.unwrap().starts_with("do not send the command again; keep clear; `toyo status`"));
 }
 
 #[test]

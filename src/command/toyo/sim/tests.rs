@@ -100,7 +100,7 @@ fn a_program_that_waits_forever_is_reported_with_its_step() {
     let (message, hint) = (failure.message, failure.hint.unwrap());
     assert!(message.contains("all tasks wait for an input without end: "), "{message}");
     assert!(message.ends_with("a.txt:2, task 1, step 2: IN STN=0 PN01=.....1.. AND"), "{message}");
-    assert_eq!(hint, "set it with --input \"at 2s 0/01/3 on\"");
+    assert_eq!(hint, "set the input with --input \"at 2s 0/01/3 on\"");
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn the_run_ends_at_its_time_limit() {
         (&data["end"], &data["elapsed_s"], &data["rows_left_out"]),
         (&"time_up".into(), &2.0.into(), &1998.into())
     );
-    assert!(failure.unwrap().message.starts_with("after 2.000 s, it still runs: "));
+    assert!(failure.unwrap().message.starts_with("after 2.000 s, the program still runs: "));
 }
 
 #[test]

@@ -242,8 +242,7 @@ mod tests {
         assert_eq!((*only_line_endings, hunks.as_ref().map(Vec::len)), (Some(true), Some(1)));
         assert_eq!(
             render::text(&found.view(), 80, false),
-            "only line endings differ: on the controller 2 with CR LF where a.jbi has 1 with LF, 1 with no line \
-             ending\n"
+            "only line endings differ: the controller has 2 with CR LF, a.jbi has 1 with LF, 1 with no line ending\n"
         );
     }
 

@@ -316,7 +316,7 @@ mod tests {
         assert_eq!(end(9, true).kind, Kind::OutcomeUnknown);
         assert_eq!(
             end(9, true).hint.as_deref(),
-            Some("`yerc file diff A.JBI a.jbi` shows what the controller has now")
+            Some("use `yerc file diff A.JBI a.jbi` to see what the controller has now")
         );
         assert_eq!(end(9, false).kind, Kind::Refused);
         assert_eq!(end(0, true).kind, Kind::Refused);

@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn rejects_read_only_signals_with_the_writable_ones() {
         let failure = writable(Model::Dx200, 1001).unwrap_err();
-        assert_eq!(failure.message, "group 1001 (#10010) is robot user output, which can only be read on a dx200");
+        assert_eq!(failure.message, "group 1001 (#10010) is robot user output, which a PC can only read on a dx200");
         assert!(failure.hint.unwrap().contains("#27010 to #29567 (network input)"));
         assert!(writable(Model::Fs100, 2501).is_ok());
         assert!(writable(Model::Fs100, 2701).unwrap_err().message.ends_with("does not exist on a fs100"));

@@ -234,10 +234,10 @@ mod tests {
     #[test]
     fn checks_values_before_sending() {
         assert_eq!(error("B0=256"), "'256' is not a number from 0 to 255");
-        assert_eq!(error("B0"), "write a variable, '=' and a value, as in B0=255");
+        assert_eq!(error("B0"), "write a variable, '=' and a value, for example B0=255");
         assert_eq!(
             error("X0=1"),
-            "'X0' is not a variable; use B, I, D, R, S, P, BP or EX with a number, e.g. B0 or B0..B99"
+            "'X0' is not a variable; use B, I, D, R, S, P, BP or EX with a number, for example B0 or B0..B99"
         );
         assert!(error("P1=base:x=1").starts_with("axis 'y' is missing"));
         assert_eq!(error("P1=pulse:s=0,l=0,u=0,r=0,b=0,t=0,tool=64"), "tool: 64 is not a number from 0 to 63");

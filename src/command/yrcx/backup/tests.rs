@@ -243,7 +243,7 @@ fn nothing_is_written_while_the_program_runs() {
     desk.data("run");
     let failure = desk.failure("restore @/saved");
     assert_eq!(failure.kind, Kind::Rejected);
-    assert_eq!(failure.message, "the robot program is running and may use the data to be written");
+    assert_eq!(failure.message, "the robot program is running, and may use the data that the restore writes");
 }
 
 #[test]

@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(sent[0][..8], ["0x0100", "0x0005", "0x0000", "0x0000", "0x03E8", "0x0000", "0xF63C", "0xFFFF"]);
         for (line, part) in [
             ("point set 1", "--mm"),
-            ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, as in 10,-20,5,-18; 3 given"),
+            ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, such as 10,-20,5,-18; 3 given"),
             ("point set 1 --mm 1,2,3,4 --pulse 1,2,3,4", "cannot be used with"),
             ("point set 1 --pulse 1,2,3,4 --hand left", "cannot be used with"),
             ("point set 30000 --mm 1,2,3,4", "allowed: 0 to 29999"),

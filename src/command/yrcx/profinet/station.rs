@@ -127,9 +127,9 @@ mod tests {
     fn what_two_stations_share_is_remarked_at_both() {
         let all = Station::all(&[found(1, "a", 5), found(2, "a", 6), found(3, "", 5), found(4, "", 7)]);
         let remarks: Vec<_> = all.iter().map(|station| station.remarks.join("; ")).collect();
-        assert_eq!(remarks[0], "02:00:00:00:00:02 has its name too; 02:00:00:00:00:03 has its address too");
-        assert_eq!(remarks[1], "02:00:00:00:00:01 has its name too");
-        assert_eq!(remarks[2], "02:00:00:00:00:01 has its address too");
+        assert_eq!(remarks[0], "02:00:00:00:00:02 has the same name; 02:00:00:00:00:03 has the same address");
+        assert_eq!(remarks[1], "02:00:00:00:00:01 has the same name");
+        assert_eq!(remarks[2], "02:00:00:00:00:01 has the same address");
         assert_eq!(remarks[3], "", "no name is not the same name");
     }
 

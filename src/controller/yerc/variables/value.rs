@@ -140,7 +140,7 @@ mod tests {
         assert_eq!(error(VariableKind::R, "nan"), "'nan' is not a number that fits 32-bit floating point");
         assert_eq!(
             error(VariableKind::S16, "12345678901234567"),
-            "the text has 17 bytes in the controller's encoding; at most 16 fit"
+            "the text has 17 bytes in the controller's encoding; it can have at most 16"
         );
         assert_eq!(Value::from_text(VariableKind::D, b"-5"), Ok(Value::Double(-5)));
         assert_eq!(Value::from_text(VariableKind::B, b"0xFF"), Ok(Value::Byte(255)));

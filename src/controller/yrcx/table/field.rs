@@ -485,7 +485,7 @@ impl Charset {
         if fits && text.len() <= TEXT_CHARS {
             Ok(())
         } else {
-            Err(format!("'{}' is not allowed; {}", text.chars().take(40).collect::<String>(), self.allowed()))
+            Err(format!("'{}' is not valid; {}", text.chars().take(40).collect::<String>(), self.allowed()))
         }
     }
 }

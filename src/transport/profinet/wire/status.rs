@@ -288,7 +288,7 @@ mod tests {
             (0xDB81_01FF, "it refuses the connection (ARBlockReq): field 0xff (DB 81 01 FF)"),
             (0xDE80_B000, "no such record (DE 80 B0 00)"),
             (0xCF81_FD05, "no cyclic data came in time (watchdog or data hold) (CF 81 FD 05)"),
-            (0xDC81_4005, "unknown connection: it has ended (DC 81 40 05)"),
+            (0xDC81_4005, "the connection is unknown or has ended (DC 81 40 05)"),
             (0x1234_5678, "(12 34 56 78)"),
         ];
         for (status, text) in cases {
