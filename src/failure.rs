@@ -49,11 +49,7 @@ impl Kind {
         (Self::Refused, 3, "the controller refused"),
         (Self::NoAnswer, 4, "no answer, or port absent or busy"),
         (Self::Malformed, 5, "malformed or unexpected answer"),
-        (
-            Self::OutcomeUnknown,
-            6,
-            "outcome unknown: a request that changes the state was sent, and the answer was lost",
-        ),
+        (Self::OutcomeUnknown, 6, "outcome unknown: armctl sent a change, but the answer was lost"),
         (Self::Rejected, 7, "rejected by armctl: not confirmed, or a read-only robot"),
         (Self::ConditionNotMet, 8, "condition not met (--until, --check, diff)"),
         (Self::Mixed, 9, "some robots or items failed, some did not"),

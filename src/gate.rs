@@ -3,7 +3,7 @@
 //! A command declares its maximum risk ([`Risk`]). The loop that runs all commands checks the risk here before anything
 //! is sent. The command then gets a [`Grant`], and its link checks each frame against this grant. A command can
 //! therefore not do more than was authorized. A command that overwrites data raises its grant later, when it has read
-//! the data that it would overwrite and the user has confirmed the change.
+//! this data and the user has confirmed the change.
 
 pub use crate::client::Grant;
 use crate::client::NotAuthorized;

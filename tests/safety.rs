@@ -409,7 +409,7 @@ fn second_ctrl_c_ends_the_process_at_once() {
         }
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-        assert!(stderr(&output).contains("again: ended at once"), "{}", stderr(&output));
+        assert!(stderr(&output).contains("again: armctl ended at once"), "{}", stderr(&output));
     }
 }
 

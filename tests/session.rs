@@ -363,10 +363,10 @@ fn killed_session_makes_the_outcome_unknown() {
         "{said}"
     );
     assert_eq!((desk.files("sock").len(), desk.listed_sessions()["link"].as_str()), (1, Some("dead")));
-    assert!(stderr(&desk.run("-r cell yrcx status")).contains(
-        "the session process has ended, so the command runs \
-        without it"
-    ));
+    assert!(
+        stderr(&desk.run("-r cell yrcx status"))
+            .contains("the session process has ended, so the command runs without a session")
+    );
     // A stale socket does not prevent a new session. The adapter needs a moment to detect the lost owner.
     while !desk.run("-r cell session open --background").status.success() {}
     assert_eq!(desk.listed_sessions()["link"], "up");
@@ -555,5 +555,5 @@ fn does_not_trust_a_folder_of_another_user() {
     std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();
     fails(&desk.run("-r x session open"), 1, "other users have access to it");
     let output = desk.run("-r x yrcx status");
-    assert!(output.status.success() && stderr(&output).contains("sessions are not used"), "{}", stderr(&output));
+    assert!(output.status.success() && stderr(&output).contains("armctl does not use sessions"), "{}", stderr(&output));
 }

@@ -348,7 +348,7 @@ fn changes_of_a_killed_command_are_reported_until_they_are_undone() {
     signal(&jog, "KILL");
     jog.wait().unwrap();
     let messages = || errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(messages().contains("the host is still ON and was OFF before; `toyo host off`"));
+    assert!(messages().contains("the host is still ON, and was OFF before; use `toyo host off`"));
     // The guardian stops the jog.
     assert!((0..1000).any(|_| !messages().contains("the robot still runs")), "{}", messages());
     let messages = errors(&toyo(&url, state.path(), "position").output().unwrap());
@@ -392,7 +392,10 @@ fn a_host_switched_on_by_another_client_is_reported() {
     send_as_other_client(&url, "@SPST 0001");
     let message = messages("status");
     assert!(message.contains("another client switched the host ON and started a program"), "{message}");
-    assert!(message.contains("`toyo stop` stops it and use `toyo host off` to release the host"), "{message}");
+    assert!(
+        message.contains("use `toyo stop` to stop the program and `toyo host off` to release the host"),
+        "{message}"
+    );
     messages("stop");
     messages("host off");
     assert_eq!(messages("status"), "");
@@ -417,7 +420,7 @@ fn a_task_selected_by_another_client_is_reported() {
     send_as_other_client(&url, "@CTSK TASK=02");
     let message = messages("task get");
     assert!(message.contains("another client selected task 2"), "{message}");
-    assert!(message.contains("`toyo task set 1` selects task 1"), "{message}");
+    assert!(message.contains("use `toyo task set 1` to select task 1"), "{message}");
     messages("task set 2");
     assert_eq!(messages("task get"), "");
     send_as_other_client(&url, "@CTSK TASK=03");

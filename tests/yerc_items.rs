@@ -328,7 +328,7 @@ fn warns_about_a_renamed_job_and_verifies_a_plain_last_ack() {
         .output()
         .unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
-    assert!(told.contains("B.JBI has //NAME OTHER but is sent as B"), "{told}");
+    assert!(told.contains("B.JBI has //NAME OTHER, but armctl sends it as B"), "{told}");
 
     let unlisted = controller("plain_last_ack = true", |request| {
         let is_list = request.division == Division::File && request.service == 0x32;

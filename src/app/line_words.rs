@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(expand_variables("${job}", value).unwrap(), "WELD 1");
         assert_eq!(expand_variables("B${n}=${n}", value).unwrap(), "B3=3");
         assert_eq!(expand_variables(".a as $x | $${n}", value).unwrap(), ".a as $x | ${n}");
-        assert!(expand_variables("${job", value).unwrap_err().contains("no }"));
+        assert!(expand_variables("${job", value).unwrap_err().contains("no closing }"));
         assert!(expand_variables("${none}", value).unwrap_err().contains("--set none="));
         assert!(expand_variables("${a b}", value).is_err());
     }

@@ -506,7 +506,7 @@ mod tests {
         }
         let absent = tip("armctl yerc origin").unwrap();
         assert!(
-            absent.starts_with("the protocol has no return to origin") && !absent.contains("job start"),
+            absent.starts_with("the protocol has no command for a return to origin") && !absent.contains("job start"),
             "{absent}"
         );
     }

@@ -419,7 +419,7 @@ mod tests {
         assert!(errors("point;x_mm;remark\n")[0].contains("unknown column 'remark'"));
         assert!(errors("point;x_mn\n")[0].contains("did you mean x_mm?"));
         assert!(errors("point,x_mm,X_mm\n")[0].contains("appears twice"));
-        assert!(errors("point,x_mm\n1\n")[0].contains("1 cells for 2 columns"));
+        assert!(errors("point,x_mm\n1\n")[0].contains("the row has 1 cells, but the table has 2 columns"));
         assert!(errors("point,x_mm\n1,\"2\n")[0].contains("wrong quotes"));
         assert!(errors("")[0].contains("the file is empty"));
     }

@@ -327,7 +327,7 @@ mod tests {
         models.store(&address, ReportedModel::now(Model::Dx200, "DN2.07.00A(EN)-00".to_owned())).unwrap();
         let damage = robot().all().damage.clone().unwrap();
         assert!(
-            damage.message.contains("YAS2.80") && damage.message.contains("this controller has DN2.07"),
+            damage.message.contains("YAS2.80") && damage.message.contains("this controller has software DN2.07"),
             "{damage}"
         );
     }

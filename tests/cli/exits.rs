@@ -122,9 +122,9 @@ fn describes_exit_6() {
     snapbox::assert_data_eq!(
         stderr,
         snapbox::str![[r#"
-error: udp://127.0.0.1:10040: sent once, no answer within 100ms: the result is unknown
+error: udp://127.0.0.1:10040: the request was sent once, with no answer within 100ms: the result is unknown
 
-hint: check before you repeat it: `yerc status` shows the state
+hint: check before you repeat the command: use `yerc status` to see the state
 
 "#]]
     );
@@ -190,7 +190,7 @@ fn interrupted_during_a_move() {
         read_output(&mut child),
         snapbox::str![[r#"
 stopping the robot: HOLD on
-interrupted: the robot was stopped: HOLD is on; `yerc hold off` releases it
+interrupted: the robot was stopped: HOLD is on; use `yerc hold off` to release HOLD
 
 "#]]
     );

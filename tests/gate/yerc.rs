@@ -214,7 +214,7 @@ fn question_of_a_motion_has_numbers() {
         let written = String::from_utf8_lossy(&terminal.written).into_owned();
         assert_eq!(exit_code, Some(exit), "{written}");
         assert!(written.contains("\u{1b}[1;31mREAL CONTROLLER:\u{1b}[0m"), "{written}");
-        assert_eq!(written.contains("has moved since the question"), exit == 7 && meanwhile.is_some(), "{written}");
+        assert_eq!(written.contains(" moved after the confirmation"), exit == 7 && meanwhile.is_some(), "{written}");
     }
     assert_eq!(desk.data("-r cell yerc position --coordinates base")["positions"][0]["y_mm"], 40.0);
 }

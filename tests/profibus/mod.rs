@@ -184,7 +184,10 @@ fn listener_reads_images_and_sends_nothing() {
         assert!(seen.0.contains(expected) && seen.1 == Some(0), "{seen:?}");
     }
     let checked = run(&listens, &["robots", "check"]);
-    assert!(checked.0.contains("nothing is sent") && checked.0.contains("received from its answers"), "{checked:?}");
+    assert!(
+        checked.0.contains("armctl sends nothing") && checked.0.contains("received from the answers of the slave"),
+        "{checked:?}"
+    );
     let refused = run(&listens, &["--yes", "yrcx", "info", "servo"]);
     assert!(refused.0.contains("needs a connection that commands") && refused.1 == Some(2), "{refused:?}");
     let closed = run(&owner, &["session", "close"]);

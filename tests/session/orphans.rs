@@ -394,7 +394,7 @@ fn stop_bypasses_an_unresponsive_session() {
         let stopped = desk.run(&format!("-r a {stop}"));
         if motion.family == "yerc" {
             assert!(stopped.status.success(), "{}", stderr(&stopped));
-            assert!(stderr(&stopped).contains("so the stop is sent directly"), "{}", stderr(&stopped));
+            assert!(stderr(&stopped).contains("so armctl sends the stop directly"), "{}", stderr(&stopped));
             assert_eq!(desk.data("-r a --no-session yerc status")["held"], true);
         } else {
             assert_eq!(stopped.status.code(), Some(4), "{}", stderr(&stopped));

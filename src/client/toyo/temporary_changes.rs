@@ -170,8 +170,7 @@ impl Client {
     }
 
     /// Reads whether the host is ON, after an order of this client to switch it. During the read, the host state is
-    /// [`HostState::SwitchedOn`], so that the event names this client, and no other host, as the one that switched the
-    /// host ON.
+    /// [`HostState::SwitchedOn`], so that the event names this client as the one that switched the host ON.
     async fn is_host_on(&mut self) -> Result<bool, Error> {
         let old = std::mem::replace(&mut self.host, HostState::SwitchedOn);
         let status = self.status_of(&[HOST_PAGE]).await;

@@ -118,7 +118,8 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Options for a connection that commands the controller, read only, with the default limits: 3 s, 3 retries.
+    /// Options for a connection that can command the controller. The grant authorizes only reads. The default limits
+    /// are a timeout of 3 s and 3 retries.
     fn default() -> Self {
         Self { commands: true, is_held: false, grant: Grant::default(), timeout: Policy::default().accept, retries: 3 }
     }

@@ -85,7 +85,7 @@ pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Scre
 pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
     let folder = SessionFolder::create().map_err(|error| folder_failure(&error))?;
     let log = folder.location(&session_key(robot)).log();
-    let mut child = detach(words, &log).context("armctl in the background")?;
+    let mut child = detach(words, &log).context("cannot start armctl in the background")?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {
         Ok(line) => line.map_err(|error| Failure::local(format!("armctl in the background: {error}")))?,
@@ -94,7 +94,7 @@ pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Resu
             return Err(interrupt);
         }
     };
-    let line = line.context("the background")?;
+    let line = line.context("no answer from armctl in the background")?;
     match serde_json::from_str(&line) {
         Ok(Start::Opened(opened)) => Ok(opened),
         Ok(Start::Failed(failure)) => Err(failure),

@@ -247,7 +247,7 @@ mod tests {
             data["items"][2]["error"]["message"]
                 .as_str()
                 .unwrap()
-                .starts_with("@MCNT CN=03 was not sent after a lost answer")
+                .starts_with("@MCNT CN=03 was not sent, because an earlier answer was lost")
         );
         assert_eq!(failure.unwrap().kind, Kind::Mixed);
         let failure = with_faults("@MCNT CN=01", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap_err();

@@ -141,7 +141,7 @@ mod tests {
     fn refusal_during_motion_hints_at_the_running_motion() {
         let to = RefusedRequest::Robot { command: 0x8B, instance: 1 };
         let hint = |added, risk| refused(Refusal { status: Status::refused(added), to }, risk).hint.unwrap();
-        assert!(hint(0x2010, Risk::Motion).contains("duplicated it"));
+        assert!(hint(0x2010, Risk::Motion).contains("duplicated the request"));
         assert!(!hint(0x2060, Risk::Motion).contains("duplicated"));
         assert!(!hint(0x2010, Risk::Write).contains("duplicated"));
     }

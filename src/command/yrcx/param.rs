@@ -304,9 +304,9 @@ mod tests {
             assert!(failure.message.contains(part), "{line}: {failure}");
         }
         for (line, part) in [
-            ("param set TOLE 1", "'TOLE' names several parameters"),
+            ("param set TOLE 1", "'TOLE' selects several parameters"),
             ("param set WEIGHT.1 1", "WEIGHT belongs to the robot, not to an axis"),
-            ("param set TOLE.1-2 1", "names several"),
+            ("param set TOLE.1-2 1", "selects several"),
             ("param get TOLL.1", "259 = TOLE"),
             ("param get 261", "261"),
             ("param get TOLE.5", "the axes are 1 to 4"),

@@ -499,7 +499,7 @@ mod tests {
         assert_eq!(error("@XXXX"), "unknown command 'XXXX'");
         assert_eq!(error("@STAS SNO=x"), "page: 'x' is not a number, 0 to 4 at column 11");
         assert_eq!(error("@STAS\tSNO=0"), "character \\t at column 6 is not allowed");
-        assert!(error(&format!("@{}", "A".repeat(130))).starts_with("131 characters"));
+        assert!(error(&format!("@{}", "A".repeat(130))).starts_with("the block has 131 characters"));
         assert!(Request::parse("@STAS SNO=9").unwrap().check().is_err());
         assert_eq!(Request::parse("@HTSK TASK=01").unwrap().text(), "@CTSK TASK=01");
     }

@@ -391,7 +391,7 @@ async fn a_broker_that_acknowledges_nothing_is_left() {
     .await;
     assert_eq!(fake.places("press"), (0..100).map(f64::from).collect::<Vec<_>>());
     assert!(counts.unwrap().reconnects >= 1);
-    assert!(said.iter().any(|line| line.contains("does not answer any more")), "{said:?}");
+    assert!(said.iter().any(|line| line.contains("does not answer any longer")), "{said:?}");
 }
 
 const REFUSALS: [(Mood, &str); 4] = [

@@ -285,7 +285,7 @@ mod tests {
     #[test]
     fn wrong_arguments_are_rejected_before_any_block_is_sent() {
         for (words, why) in [
-            (["io", "set", "1"], "as in OUT1.3=on"),
+            (["io", "set", "1"], "for example OUT1.3=on"),
             (["io", "set", "1.9=on"], "bits 1 to 8"),
             (["io", "set", "1.0=on"], "bits 1 to 8"),
             (["io", "set", "1.1=yes"], "on or off"),
@@ -338,7 +338,10 @@ mod tests {
             |block: &str, count| if block.starts_with("@MOUT") && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert!(failure.message.contains("DOUT STN=0 PN01=.....1.. was accepted, but not read back"), "{failure}");
+        assert!(
+            failure.message.contains("DOUT STN=0 PN01=.....1.., but the value could not be read back"),
+            "{failure}"
+        );
         assert!(failure.message.ends_with("; not set: PN02"), "{failure}");
     }
 }

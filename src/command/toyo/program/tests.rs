@@ -193,7 +193,7 @@ fn what_was_written_before_a_failure_is_told() {
     assert_eq!(failure.kind, Kind::Malformed);
     assert!(failure.message.contains("; step 1 equals "), "{}", failure.message);
     assert!(failure.message.ends_with("3 steps are still to be written"), "{}", failure.message);
-    assert!(failure.hint.unwrap().contains("use --resume=2 to continue there"));
+    assert!(failure.hint.unwrap().contains("use --resume=2 to continue at that step"));
     assert_eq!(desk.bench.data(&["status"])["mode"], "automatic", "the mode is put back after a failure, too");
     let stored = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &["--resume=3"]).unwrap();
     assert_eq!(stored["cells_written"], 2);

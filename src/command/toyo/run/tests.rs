@@ -126,7 +126,9 @@ fn after_a_lost_connection_the_outcome_is_unknown() {
     let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
     assert!(failure.message.starts_with("the start was accepted, but its result is unknown: "), "{}", failure.message);
-    assert!(failure.hint.unwrap().starts_with("do not send the command again; keep clear; `toyo status`"));
+    assert!(
+        failure.hint.unwrap().starts_with("do not send the command again; keep clear of the robot; use `toyo status`")
+    );
 }
 
 #[test]

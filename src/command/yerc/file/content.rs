@@ -281,7 +281,10 @@ mod tests {
         let job = b"/JOB\r\nNOP\n\r\nEND\n";
         let failure = check(job, JobRules { force: true, ..JobRules::default() }).unwrap_err();
         assert_eq!(failure.kind.exit(), 2);
-        assert!(failure.message.ends_with("line 2 ends in a bare LF (2 lines in total); jobs need CR LF"), "{failure}");
+        assert!(
+            failure.message.ends_with("line 2 ends in LF without CR (2 lines in total); jobs need CR LF"),
+            "{failure}"
+        );
         assert!(failure.hint.unwrap().starts_with("add --fix-line-endings"));
         assert_eq!(check(job, FIX).unwrap(), b"/JOB\r\nNOP\r\n\r\nEND\r\n");
     }

@@ -243,7 +243,7 @@ mod tests {
         assert_eq!(error("P1=pulse:s=0,l=0,u=0,r=0,b=0,t=0,tool=64"), "tool: 64 is not a number from 0 to 63");
         assert!(error("B0.tool=1").starts_with("B0 has no parts"));
         assert!(error("P1.form=1").contains("tool, user, axis1 to axis8"));
-        assert!(error("BP1.tool=1").ends_with("there are axis1 to axis8"));
+        assert!(error("BP1.tool=1").ends_with("the parts are axis1 to axis8"));
         assert!(error("EX1.axis9=1").contains("axis1 to axis8"));
         let tool = "P1.tool=0x2".parse::<Assignment>().map(|it| it.input);
         assert_eq!(tool, Ok(Input::Word(Word::Tool(2))));

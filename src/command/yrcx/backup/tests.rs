@@ -169,7 +169,7 @@ fn a_backup_that_was_cut_off_goes_on() {
     let saved = list["files"].as_array().unwrap().len();
     assert!(saved > 2 && saved < 9 && list["complete"] == false, "{saved}");
     let failure = desk.failure("backup @/cut");
-    assert!(failure.message.contains("holds an incomplete backup"), "{failure}");
+    assert!(failure.message.contains("contains an incomplete backup"), "{failure}");
     let other = desk.failure("backup @/cut --resume --points 0..9");
     assert_eq!(other.kind, Kind::Usage, "{other}");
     let data = desk.data("backup @/cut --resume");

@@ -98,7 +98,7 @@ fn a_controller_that_takes_nothing_is_told_as_such() {
     let (servos, peer) = run_on(Scripted::new([]), &["info", "servo"]);
     let failure = servos.unwrap_err();
     assert_eq!(failure.kind, Kind::NoAnswer);
-    assert!(failure.message.contains("did not start it"), "{failure}");
+    assert!(failure.message.contains("did not start the command"), "{failure}");
     assert!(!peer.taken.is_empty());
     let (moved, _) = run_on(Scripted::new([]), MOVE);
     assert_eq!(moved.unwrap_err().kind, Kind::OutcomeUnknown);

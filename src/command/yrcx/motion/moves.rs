@@ -167,7 +167,7 @@ mod tests {
         let mut no = [0; 16];
         no[..3].copy_from_slice(&[0x4000, 5, 1]);
         let (refused, peer) = run_on(Scripted::new([Reply::Ends(1, no)]), &line);
-        assert!(refused.unwrap_err().message.starts_with("not moved"));
+        assert!(refused.unwrap_err().message.starts_with("the robot did not move"));
         assert_eq!(peer.taken.len(), 1);
         assert_eq!(frames(&["move", "--to", "1=1,2=2"]).unwrap().len(), 1);
     }
@@ -177,11 +177,11 @@ mod tests {
         for (line, part) in [
             ("move --to 1,2,3", "3 numbers for 4 axes"),
             ("move --to 1,2 --axes 1", "2 numbers for 1 axes"),
-            ("move --to 1 --axes 5", "axes of 1 to 4"),
+            ("move --to 1 --axes 5", "axes from 1 to 4"),
             ("move --to 1,2 --axes 1,1", "axis 1 appears twice"),
             ("move --to 1=1,1=2", "axis 1 appears twice"),
-            ("move --to 1=1,2", "some numbers name their axis"),
-            ("move --to 1=1 --axes 1", "named twice: by --axes"),
+            ("move --to 1=1,2", "some numbers have an axis"),
+            ("move --to 1=1 --axes 1", "typed twice: with --axes"),
             ("move --to 5=1", "'5' is not a valid axis"),
             ("move --to 1.0005,2,3,4", "axis_1"),
             ("move --point 30000", "point: 30000 is out of range; allowed: 0 to 29999"),
@@ -207,7 +207,7 @@ mod tests {
             ("move --point 1 --linear --arch 1:1", "cannot be used with"),
             ("move --point 1,2 --circular --axes 1", "cannot be used with"),
             ("move --point 1 --arch-start 1", "--arch"),
-            ("move --point 1 --arch 5", "as in 3:10.0"),
+            ("move --point 1 --arch 5", "such as 3:10.0"),
             ("move --point 1 --hand left", "cannot be used with"),
             ("move --point 1 --unit 5", "0..=4"),
         ] {

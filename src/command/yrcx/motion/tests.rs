@@ -214,7 +214,7 @@ fn a_relative_motion_that_breaks_off_tells_of_its_target() {
     for line in ["movei --point 1", "drivei --axis 1 --by 5"] {
         let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split(line));
         let hint = outcome.unwrap_err().hint.unwrap();
-        assert!(hint.contains("release it") && hint.contains("moves to the old target"), "{hint}");
+        assert!(hint.contains("release the emergency stop") && hint.contains("moves to the old target"), "{hint}");
     }
     let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split("move --point 1"));
     assert!(!outcome.unwrap_err().hint.unwrap().contains("old target"));

@@ -196,6 +196,6 @@ mod tests {
         let error = of("profinet://robot@eth0", Duration::ZERO).unwrap_err();
         assert!(error.cause().advice.as_ref().unwrap().contains("set gsdml= to"), "{error:?}");
         let error = of("profinet://robot@eth0?layout=1:1:i48,2:2:o32", Duration::ZERO).unwrap_err();
-        assert!(error.to_string().contains("48 bytes from the controller and 32 bytes to it"), "{error}");
+        assert!(error.to_string().contains("48 bytes from the controller and 32 bytes to the controller"), "{error}");
     }
 }

@@ -136,7 +136,7 @@ instructions! {
     Jmpt "JMPT", "JMPT TAG={} TN{}{}{}", &[TAG, TIMER, COMPARE, TIME],
         "jump if the comparison of a timer is true", "JMPT TAG=1 TN1>2.5";
     Loop "LOOP", "LOOP GRP={} THEN={} ELSE={}", &[GROUP, TAG.named("then"), TAG.named("else")],
-        "count to the next position of an MVM group; jump depending on whether positions remain",
+        "count to the next position of an MVM group, then jump to THEN or ELSE",
         "LOOP GRP=1 THEN=1 ELSE=2";
     Mini "MINI", "MINI GRP={}", &[GROUP], "reset an MVM group to its first position", "MINI GRP=1";
     Mov "MOV", "MOV {} X={} Y={} Z={} R={} {} V={} {}", &[AIM, X, Y, Z, R, COURSE, SPEED, ARRIVAL],

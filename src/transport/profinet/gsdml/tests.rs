@@ -110,8 +110,8 @@ fn mistakes_are_named_with_line_and_element() {
         ("FixedInSlots=\"1\"", "FixedInSlots=\"0..65535 0..65535\"", 8, "ModuleItemRef", "more than 4096"),
         ("ID=\"MS\"", "FixedInSubslots=\"1..600\"", 15, "VirtualSubmoduleItem", "at most 512 submodules are possible"),
         ("Data=\"0x01,0x02\"", "Data=\"0x01,0x200\"", 18, "Const", "is not a list of bytes"),
-        ("ByteOffset=\"5\"", "ByteOffset=\"8\"", 20, "Ref", "too long for its record"),
-        ("DefaultValue=\"258\"", "DefaultValue=\"65536000\"", 19, "Ref", "is no Unsigned16"),
+        ("ByteOffset=\"5\"", "ByteOffset=\"8\"", 20, "Ref", "does not fit in the record"),
+        ("DefaultValue=\"258\"", "DefaultValue=\"65536000\"", 19, "Ref", "is not a valid Unsigned16"),
         ("</ModuleList>", "", 24, "file", "not XML"),
     ];
     for (from, to, line, element, problem) in cases {

@@ -80,7 +80,7 @@ mod tests {
             let cyclic = Cyclic { data: &[], counter: 0, status, transfer: 0 };
             let usable = status & 1 != 0 && status & 4 != 0 && status & 0x10 != 0 && status & 0x80 == 0;
             assert_eq!(cyclic.is_usable(), usable, "{status:#x}");
-            assert_eq!(describe_status(status, 0) == "it is good", usable, "{status:#x}");
+            assert_eq!(describe_status(status, 0) == "the data is good", usable, "{status:#x}");
             assert!(!Cyclic { transfer: 1, ..cyclic }.is_usable());
         }
         assert!(Cyclic { data: &[], counter: 0, status: 0x15, transfer: 0 }.is_usable(), "a diagnosis is no stop");
