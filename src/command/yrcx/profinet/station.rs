@@ -137,12 +137,8 @@ mod tests {
     fn numbers_and_roles_are_told() {
         let station = Station::from(&found(1, "a", 5));
         assert_eq!(station.roles, ["device", "supervisor"]);
-        assert_eq!(
-            (station.ip.as_deref(), station.gateway),
-            (Some("192.168.0.5"), None),
-            "its own address is not a \
-            duplicate"
-        );
+        let (ip, gateway) = (station.ip.as_deref(), station.gateway);
+        assert_eq!((ip, gateway), (Some("192.168.0.5"), None), "its own address is not a duplicate");
         assert_eq!(station.vendor.as_deref(), Some("0x0123"));
     }
 }
