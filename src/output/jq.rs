@@ -119,8 +119,8 @@ mod tests {
         let made = |filter: &str| outputs(filter, &rows);
         assert_eq!(made(".[0] | @csv").unwrap(), [json!("1,2.5,,\"say \"\"hi\"\"\",true")]);
         assert_eq!(made(".[1] | @tsv").unwrap(), [json!("tab\\tand\\nline \\\\")]);
-        assert!(made("@csv").unwrap_err().message.contains("array is no cell"));
-        assert!(made("{} | @tsv").unwrap_err().message.contains("object is no row"));
+        assert!(made("@csv").unwrap_err().message.contains("array cannot be a cell"));
+        assert!(made("{} | @tsv").unwrap_err().message.contains("object is not a row"));
     }
 
     #[test]

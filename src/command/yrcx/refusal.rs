@@ -142,8 +142,7 @@ mod tests {
         assert_eq!(failure.message, "point: 30000 is out of range; allowed: 0 to 29999");
         assert_eq!(
             failure.hint.unwrap(),
-            "correct the value; the controller would refuse this value with alarm \
-                                           4.202, input format error"
+            "correct the value; the controller would refuse this value with alarm 4.202, input format error"
         );
     }
 }

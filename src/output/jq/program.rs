@@ -13,8 +13,8 @@ use serde_json::{Map, Number, Value};
 
 /// Definitions of jq functions that the library does not have.
 const DEFS: &str = r#"
-def row(f): if isarray then . else error("\(type) is no row: an array is expected") end
-  | map(if . == null then "" elif isstring then f elif isarray or isobject then error("\(type) is no cell of a row")
+def row(f): if isarray then . else error("\(type) is not a row: use an array") end
+  | map(if . == null then "" elif isstring then f elif isarray or isobject then error("\(type) cannot be a cell of a row")
         else tostring end);
 def @csv: row("\"" + gsub("\""; "\"\"") + "\"") | join(",");
 def @tsv: row(gsub("\\\\"; "\\\\") | gsub("\t"; "\\t") | gsub("\n"; "\\n") | gsub("\r"; "\\r")) | join("\t");

@@ -190,8 +190,7 @@ fn another_robot_is_refused() {
     assert_eq!(failed.kind, Kind::Rejected);
     assert_eq!(
         failed.message,
-        "the backup is from another machine: robot type is 000000 in the backup and 000007 on \
-                                this controller"
+        "the backup is from another machine: robot type is 000000 in the backup and 000007 on this controller"
     );
     other.data(&["restore", &folder, "--force", "--only", "program"]);
 }

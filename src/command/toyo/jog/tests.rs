@@ -91,10 +91,11 @@ fn inching_steps_are_sent_one_by_one() {
         |_, _| Fault::None,
     );
     let failure = bench.run(&["jog", "x", "+", "inch", "--steps", "3"]).unwrap_err();
-    assert!(failure.message.starts_with(
-        "step 1 of 3: the controller accepted the step, but the axis did not move; the axis was \
-                          stopped"
-    ));
+    assert!(
+        failure.message.starts_with(
+            "step 1 of 3: the controller accepted the step, but the axis did not move; the axis was stopped"
+        )
+    );
     assert_eq!(count(&received, "@JGST X=+C Y=SP Z=SP R=SP"), 1);
     assert_stop_is_last(&received);
 }

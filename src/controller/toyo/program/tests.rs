@@ -109,8 +109,7 @@ fn errors_have_a_position_and_a_suggestion() {
         ("SVON W", "line 1, column 6: error: axes: 'W' is not ALL, X, Y, Z or R"),
         (
             "OUT STN=0 PN1=.......2",
-            "line 1, column 15: error: data: '.......2' is not eight characters, each 0, 1 or \
-                                    .",
+            "line 1, column 15: error: data: '.......2' is not eight characters, each 0, 1 or .",
         ),
         ("JMP TAG=", "line 1, column 9: error: tag is missing: a number, 1 to 999, or a label (write JMP TAG=<tag>)"),
         ("JMP TAG=7", "line 1, column 9: error: the program has no tag 007 (a controller stops with error A1)"),
