@@ -72,7 +72,7 @@ const SIZE: &str = "set the sizes that a probe of the target finds";
 #[test]
 fn reports_wrong_instance_numbers() {
     let board = Board::start(&[]);
-    let point = "exchange the instances of input and output, or probe the target for those it has";
+    let point = "swap the instances of input and output, or probe the target to find its assemblies";
     for (query, code, message, hint) in [
         (
             "in_size=50",
@@ -316,7 +316,7 @@ fn never_repeats_a_change_whose_answer_is_lost() {
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(
         message,
-        "sent once; the result is unknown: the TCP connection ended before the answer to Set_Attribute_Single"
+        "the request was sent once, and the result is unknown: the TCP connection ended before the answer to Set_Attribute_Single"
     );
     assert_eq!(hint, "read the value with `yrcx eip get 0xf5 1 3`");
 }

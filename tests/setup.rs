@@ -145,7 +145,7 @@ fn offers_a_choice_for_a_missing_name() {
     select.reads_keys();
     select.press("WAIT\r");
     // The command line is longer than a line of the terminal, so it wraps.
-    select.wait_for_text("question:\n  armctl --config robots.toml --sim yerc");
+    select.wait_for_text("this list:\n  armctl --config robots.toml --sim yerc");
     select.wait_for_text("WAITIN is selected");
     assert_eq!(select.end().code(), Some(0));
     assert_terminal_restored(&select, "chosen");

@@ -467,7 +467,7 @@ fn a_busy_serial_port_names_the_process_that_uses_it() {
     assert_eq!(stop.status.code(), Some(4), "{}", errors(&stop));
     for part in [
         format!("another armctl, process {pid}, uses "),
-        format!("hint: use `kill {pid}`: it stops its motion and ends"),
+        format!("hint: use `kill {pid}` to stop its motion and end it"),
     ] {
         assert!(errors(&stop).contains(&part), "{part}: {}", errors(&stop));
     }

@@ -90,7 +90,10 @@ fn gives_up_a_flooding_slcan_adapter() {
         let target = format!("slcan://127.0.0.1:{}?mac=5", tcp(text, FloodKind::Floods));
         for line in ["yrcx devicenet identity", "yrcx status", "yrcx stop"] {
             let result = run(&desk, &target, line);
-            assert!(result.exit == Some(5) && result.stderr.contains("sends without end"), "{line}: {result:?}");
+            assert!(
+                result.exit == Some(5) && result.stderr.contains("sends data without a pause"),
+                "{line}: {result:?}"
+            );
         }
     }
 }

@@ -75,7 +75,7 @@ fn an_offline_run_ends_at_its_time_limit() {
     std::fs::write(&program, "TAG TAG=001\nTIM TM=001.0\nJMP TAG=001\nEND\n").unwrap();
     let output = desk.run(&format!("toyo sim run {} --for 5s", program.display()));
     assert_eq!(output.exit, Some(8), "{output:?}");
-    assert!(output.stderr.contains("after 5.000 s, it still runs"), "{output:?}");
+    assert!(output.stderr.contains("after 5.000 s, the program still runs"), "{output:?}");
 }
 
 #[test]

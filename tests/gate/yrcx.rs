@@ -147,7 +147,7 @@ fn read_only_controller_accepts_stops_and_reads() {
 #[test]
 fn refuses_effects_that_end_with_the_connection_before_the_question() {
     let desk = Workspace::new(&entry("eip://127.0.0.1:1", ""));
-    desk.fails("-r cell yrcx move --point 1 --no-wait", 2, "the connection would end now");
+    desk.fails("-r cell yrcx move --point 1 --no-wait", 2, "the connection ends with this command");
 }
 
 #[test]

@@ -365,8 +365,8 @@ fn reports_peers_that_are_not_brokers() {
         (b"HTTP/1.1 400 Bad Request\r\n\r\n", false, 4, "not send MQTT"),
         (b"SSH-2.0-OpenSSH_9.2\r\n", true, 4, "not send MQTT"),
         (&[0x30, 3, 0, 1, b'a'], false, 4, "not send MQTT"),
-        (&[0x20, 0xff, 0xff, 0xff, 0x7f, 0, 0], false, 4, "packet of more than"),
-        (&[0x20, 2, 0, 0, 0x30, 0xff, 0xff, 0xff, 0x7f], false, 4, "packet of more than"),
+        (&[0x20, 0xff, 0xff, 0xff, 0x7f, 0, 0], false, 4, "packet that is longer than"),
+        (&[0x20, 2, 0, 0, 0x30, 0xff, 0xff, 0xff, 0x7f], false, 4, "packet that is longer than"),
         (&[], true, 4, "closed the connection"),
     ] {
         let url = hostile(answer, closes);
