@@ -1,40 +1,41 @@
-//! armctl talks to industrial robot controllers.
+//! armctl controls industrial robot controllers from a terminal, from a script, or from a Rust program.
 //!
-//! A map of the crate, in the order a command line travels:
+//! Modules of the crate, in the order in which a command line passes through them:
 //!
-//! | module | holds |
+//! | module | content |
 //! |---|---|
-//! | [`app`] | from the words of a command line to an exit code; the prompt, command files, completion |
+//! | [`app`] | the program: from the words of a command line to an exit code; prompt, command files, completion |
 //! | [`cli`] | the command line: global flags and the first word |
-//! | [`settings`] | which robots, and every setting with where it came from; target URLs; the inventory |
-//! | [`gate`] | what stands between a typed command and a machine |
-//! | [`command`] | what the operator types: arguments, report, run; no bytes, no sockets |
-//! | [`client`] | asks controllers and orders them: one driver a family, with typed errors; no words for people, no clap |
-//! | [`controller`] | what each controller understands: tables, codecs, sessions, simulators; no sockets, no clock, no clap |
-//! | [`transport`] | moves bytes or images, knows no meaning |
-//! | [`output`] | the only writer to stdout and stderr; text made harmless for terminals |
-//! | [`failure`] | how a command can fail, and the only place with exit numbers |
-//! | [`files`] | the one way to read local files: regular ones, up to a limit |
+//! | [`settings`] | the selected robots; every setting with its origin; target URLs; the inventory |
+//! | [`gate`] | authorization of a command before anything is sent to a robot |
+//! | [`command`] | the commands: arguments, report, execution; no bytes, no sockets |
+//! | [`client`] | clients of controllers: one driver per family, with typed errors; no texts for people, no clap |
+//! | [`controller`] | protocol of each controller: tables, codecs, sessions, simulators; no sockets, no clock, no clap |
+//! | [`transport`] | transmission of bytes or images, without interpreting them |
+//! | [`output`] | the only module that writes to stdout and stderr; text made safe for terminals |
+//! | [`failure`] | failures of commands, and the only place with exit codes |
+//! | [`files`] | reading of local files: only regular files, up to a size limit |
 //!
-//! Dependencies run one way: command to client, controller, transport and output; client to controller and transport;
-//! controller and transport never see each other. A test holds that.
+//! Dependencies have one direction. `command` depends on `client`, `controller`, `transport` and `output`. `client`
+//! depends on `controller` and `transport`. `controller` and `transport` do not depend on each other. A test checks
+//! these rules.
 //!
 //! # As a library
 //!
-//! [`client`] is all that a program needs that talks to a controller itself. `examples/` has one for each family.
-//! This is `examples/yerc.rs`:
+//! A program that communicates with a controller itself needs only [`client`]. `examples/` has one example for each
+//! family. This is `examples/yerc.rs`:
 //!
 //! ```rust,ignore
 #![doc = include_str!("../examples/yerc.rs")]
 //! ```
 //!
-//! and this is `examples/yrcx.rs`:
+//! This is `examples/yrcx.rs`:
 //!
 //! ```rust,ignore
 #![doc = include_str!("../examples/yrcx.rs")]
 //! ```
 //!
-//! and this is `examples/toyo.rs`:
+//! This is `examples/toyo.rs`:
 //!
 //! ```rust,ignore
 #![doc = include_str!("../examples/toyo.rs")]

@@ -1,4 +1,4 @@
-//! Watches of several robots with an unreachable one.
+//! Watches of several robots, one of which is unreachable.
 
 #![cfg(unix)]
 
@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use crate::support::simulator::Simulator;
 
-/// A user with two robots: `here`, and `late` at a closed port.
+/// The environment of a user with two robots: `here`, and `late`, whose port is closed.
 struct Desk {
     folder: TempDir,
     _here: Simulator,

@@ -1,10 +1,10 @@
-//! What the operator types. No bytes and no sockets in here: those are behind each family's link.
+//! Commands of the program. Bytes and sockets are in the links of the families, not here.
 //!
-//! | folder | holds |
+//! | folder | contents |
 //! |---|---|
-//! | [`frame`] | what runs every command: the traits, the one loop, dry run, questions, Ctrl-C, printing |
-//! | [`face`] | what the rest of the house may ask of a family |
-//! | [`backup`], [`decode`], [`serve`] | what backups, decoding and simulators have in common in every family |
+//! | [`frame`] | execution of every command: traits, command loop, dry run, confirmations, Ctrl-C, output |
+//! | [`face`] | interface of a family for the rest of the program |
+//! | [`backup`], [`decode`], [`serve`] | common parts of backups, decoding and simulators |
 //! | [`yerc`], [`yrcx`], [`toyo`] | the commands of a family, its link, and its [`face`] |
 //! | [`families`] | the list of families |
 //! | [`fleet`] | commands for robots of any family: status, top, backup, robots, session |

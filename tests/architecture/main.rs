@@ -1,6 +1,6 @@
-//! Rules of the architecture: allowed dependencies, printing, size of files and of module cycles, and current generated
-//! files. A failure has file and line. `ARMCTL_BLESS=1 cargo test --test architecture` rewrites `man/` and
-//! `docs/schemas/`.
+//! Rules of the architecture: allowed dependencies, printing, maximum size of files and of module cycles, and current
+//! generated files. A failure names the file and the line. `ARMCTL_BLESS=1 cargo test --test architecture` rewrites
+//! `man/` and `docs/schemas/`.
 
 mod circles;
 mod concepts;
@@ -14,9 +14,9 @@ use source::{Source, committed, has_word, root, sources};
 use armctl::settings::target::BUSES;
 use armctl::settings::target::bus::Scheme;
 
-/// A part of `src/` (a folder or a file) and its forbidden paths.
+/// Parts of `src/` (folders or files), each with the paths that it must not use.
 const BORDERS: [(&str, &[&str]); 7] = [
-    // Bytes and their meaning: no sockets, clock, command line, files or printing.
+    // Bytes and their meaning: this part uses no sockets, clock, command line, files or printing.
     (
         "controller/",
         &[
@@ -40,7 +40,7 @@ const BORDERS: [(&str, &[&str]); 7] = [
             "std::time::SystemTime",
         ],
     ),
-    // Clients are a library: typed errors without texts, no command line, printing or files.
+    // Clients are a library with typed errors. They use no texts for users, command line, printing or files.
     (
         "client/",
         &[
@@ -58,7 +58,7 @@ const BORDERS: [(&str, &[&str]); 7] = [
             "std::process",
         ],
     ),
-    // Bytes without meaning.
+    // Transports move bytes and do not know their meaning.
     (
         "transport/",
         &[
@@ -101,7 +101,7 @@ const BORDERS: [(&str, &[&str]); 7] = [
             "tokio",
         ],
     ),
-    // Every module can use this one, so it uses none.
+    // Every module can use this module, so it must not use any other.
     (
         "failure.rs",
         &[
@@ -118,12 +118,12 @@ const BORDERS: [(&str, &[&str]); 7] = [
             "tokio",
         ],
     ),
-    // Commands use the link of their family; only the link opens connections.
+    // Commands use the link of their family. Only the link opens connections.
     ("command/", &["crate::app", "tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"]),
 ];
 
-/// Commands that use a transport: links with their traces and faces, capture readers, sessions, simulator servers, the
-/// list of ports, the broker connection, and test peers.
+/// Modules below `command/` that may use a transport: links with their traces and faces, capture readers, sessions,
+/// simulator servers, the list of ports, the broker connection, and test peers.
 const LINKS: [&str; 45] = [
     "command/decode/capture/mod.rs",
     "command/decode/capture/report.rs",
@@ -172,16 +172,17 @@ const LINKS: [&str; 45] = [
     "command/yrcx/trace.rs",
 ];
 
-/// Words that write to the terminal or end the process, and the only folder that can contain them.
+/// Words that write to the terminal, which only `output/` may contain, and words that end the process with an exit
+/// code.
 const PRINTING: [&str; 8] = ["stdout()", "stderr()", "println!", "eprintln!", "print!", "eprint!", "Stdout", "Stderr"];
 const EXITING: [&str; 3] = ["process::exit", "process::abort", "ExitCode::from("];
 
-/// Ways to read a file, and the only modules that can contain them, because they check size and file type. The second
-/// one reads a lock file, the third is a test.
+/// Ways to read a file, and the only modules that may contain them. The first module checks size and file type, the
+/// second one reads a lock file, and the third one is a test.
 const READING: [&str; 5] = ["fs::read(", "read_to_string(", "File::open(", "File::options(", ".read(true)"];
 const READERS: [&str; 3] = ["files/mod.rs", "transport/session/socket.rs", "command/yerc/var/command_tests.rs"];
 
-/// Maximum lines of a source file.
+/// Maximum number of lines of a source file.
 const LONGEST: usize = 700;
 
 #[test]
@@ -207,7 +208,7 @@ fn finds_forbidden_dependencies() {
 #[test]
 fn only_output_prints() {
     let mut wrong = Vec::new();
-    // A skipped test must print a message.
+    // Tests may print, because a skipped test must print a message.
     for source in
         sources().iter().filter(|source| !source.name.starts_with("output/") && !source.name.contains("/tests/"))
     {
@@ -243,7 +244,7 @@ fn local_files_are_read_by_one_module() {
     let mut wrong = Vec::new();
     let is_test = |name: &str| name.contains("test") || READERS.contains(&name);
     for source in sources().iter().filter(|source| !is_test(&source.name)) {
-        // Some modules have a condition before their tests.
+        // Some modules have an additional condition on their tests.
         let code = source.code.split("#[cfg(test)]").next().unwrap_or_default();
         let code = code.split("#[cfg(all(test").next().unwrap_or_default();
         for (line, text) in code.lines().enumerate() {
@@ -267,7 +268,7 @@ fn limits_the_length_of_files() {
 
 #[test]
 fn no_file_names_a_development_machine() {
-    // Assembled here, so that this file does not match.
+    // The paths are assembled here, so that this file does not contain them.
     let machine_names = ["home", "root", "work", "Users"].map(|folder| format!("/{folder}/"));
     let mut wrong = Vec::new();
     for file in committed(&root()) {
@@ -289,7 +290,8 @@ fn both_licences_exist() {
     }
 }
 
-/// Places where the text after a failure replaces a hint: the usage, the caller, each use of a helper.
+/// Files in which a usage failure may have no hint. There, the usage follows the failure, or the caller or a helper
+/// adds the hint.
 const HINT_ELSEWHERE: [&str; 2] = ["app/repl.rs", "settings/inventory.rs"];
 
 #[test]
@@ -308,7 +310,7 @@ fn every_usage_failure_has_a_hint() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Forbidden paths that a source uses.
+/// Forbidden paths that a source file uses.
 fn forbidden_paths(source: &Source) -> Vec<String> {
     let mut wrong = Vec::new();
     for (line, path) in source.paths() {
@@ -318,7 +320,7 @@ fn forbidden_paths(source: &Source) -> Vec<String> {
                 wrong.push(format!("{place}: {part} must not mention {path}"));
             }
         }
-        // The folder of a fieldbus has its name.
+        // The folder of a fieldbus has the name of this fieldbus.
         let in_bus = |scheme: &Scheme| source.name.starts_with(&format!("command/yrcx/{}/", scheme.bus));
         let is_link = LINKS.contains(&source.name.as_str()) || BUSES.iter().any(in_bus);
         if source.name.starts_with("command/") && !is_link && is_within(&path, "crate::transport") {
@@ -328,7 +330,7 @@ fn forbidden_paths(source: &Source) -> Vec<String> {
     wrong
 }
 
-/// Whether `path` is `prefix`, or inside it.
+/// Whether `path` equals `prefix` or is inside it.
 fn is_within(path: &str, prefix: &str) -> bool {
     path.strip_prefix(prefix).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
 }

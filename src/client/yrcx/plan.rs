@@ -17,7 +17,7 @@ impl Client {
         matches!(self.transport, Transport::DryRun(_))
     }
 
-    /// Takes the plan so far.
+    /// Returns the plan so far and clears it.
     pub fn take_plan(&mut self) -> Plan {
         self.plan_mut().map(std::mem::take).unwrap_or_default()
     }
@@ -27,8 +27,8 @@ impl Client {
         self.plan_order(order, Reason::about(about));
     }
 
-    /// Dry run: plans an order that depends on an earlier answer. `other` is the order after another answer: words that
-    /// differ are unknown.
+    /// Dry run: plans an order that depends on an earlier answer. `other` is the order after a different answer. Words
+    /// that differ are shown as unknown.
     pub fn plan_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
         let word = |(one, other): (&u16, &u16)| if one == other { format!("0x{one:04X}") } else { "?".to_owned() };
         let words: Vec<String> = order.words().iter().zip(other.words()).map(word).collect();
@@ -43,7 +43,7 @@ impl Client {
         }
     }
 
-    /// Dry run: adds the planned action for a file or a part.
+    /// Dry run: adds the planned action for a file or a part of a long task.
     pub fn plan_item(&mut self, item: Value) {
         if let Some(plan) = self.plan_mut() {
             plan.items.push(item);
@@ -90,7 +90,7 @@ impl Client {
     }
 }
 
-/// Readable fields of a motion order, without absent ones.
+/// Returns the readable fields of a motion order, without absent fields.
 fn fields(order: &Order) -> Vec<ReadableField> {
     if order.risk() < Risk::Motion {
         return Vec::new();
@@ -99,7 +99,7 @@ fn fields(order: &Order) -> Vec<ReadableField> {
     notes.filter(|note| !note.meaning.starts_with("none")).map(|note| (note.name, note.meaning)).collect()
 }
 
-/// Words as text: `0x0604`.
+/// Formats words as text, for example `0x0604`.
 pub fn hex(words: &[u16]) -> Vec<String> {
     words.iter().map(|word| format!("0x{word:04X}")).collect()
 }

@@ -1,4 +1,4 @@
-//! Lines of the commands of `yerc`.
+//! Example lines of the `yerc` commands.
 
 use super::ExampleLine;
 use crate::controller::Risk::{Destroy, Motion, Read, Write};

@@ -33,7 +33,7 @@ pub struct Absent {
     pub failure: Failure,
     robot: Robot,
     access: Access,
-    /// Whether the reason was reported: the next command then tries again.
+    /// Whether the reason was reported. If so, the next command tries again to connect.
     is_asked: bool,
 }
 
@@ -53,7 +53,7 @@ impl Link {
                     *self = Self::Open(face, connection);
                     return Ok(());
                 }
-                // Other commands share its link, as they do from the start of a watch.
+                // Other commands can then share the link of this robot, as they can from the start of a watch.
                 connection.close(screen).await?;
                 let robot = open_shared_session(driver, &robot).await?;
                 *self = Fleet::connect(&robot, access, screen).await?;

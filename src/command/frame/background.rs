@@ -27,16 +27,16 @@ pub struct Opened {
     robot: String,
     family: String,
     target: String,
-    /// Process that holds the link.
+    /// Process that has the link.
     pid: u32,
-    /// Whether it runs in the background.
+    /// Whether the process runs in the background.
     background: bool,
     /// Log file of a background session.
     log: Option<String>,
 }
 
 impl Opened {
-    /// Session in this process.
+    /// A session in this process.
     pub fn here(robot: &Robot, background: bool, log: Option<&Path>) -> Self {
         Self {
             robot: robot.name.clone(),
@@ -49,11 +49,11 @@ impl Opened {
     }
 }
 
-/// Start message from the background process, one line.
+/// Start message of the background process, in one line.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Start {
-    /// The link is up.
+    /// The link is open.
     Opened(Opened),
     /// The link could not be opened.
     Failed(Failure),
@@ -66,7 +66,7 @@ impl Report for Opened {
     }
 }
 
-/// Opens a background session for a robot whose inventory entry has `hold = true`.
+/// Opens a background session for a robot. Its inventory entry has `hold = true`.
 pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
     let mut words: Vec<OsString> = Vec::new();
     if let Some(path) = inventory {
@@ -75,7 +75,7 @@ pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Scre
     words.extend(["-r", &robot.name, "session", "open", DETACHED].map(OsString::from));
     let opened = start(robot, words.into_iter()).await?;
     screen.note(&format!(
-        "{}: session opened (process {}); `armctl session close {}` closes it",
+        "{}: session opened (process {}); use `armctl session close {}` to close it",
         robot.label(),
         opened.pid,
         robot.name
@@ -96,20 +96,21 @@ pub fn close_inherited_files() {
     }
 }
 
-/// Starts this program in the background with these arguments, and waits until its link is up.
+/// Starts this program in the background with these arguments, and waits until the background process has opened its
+/// link.
 pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
     let folder = SessionFolder::create().map_err(|error| folder_failure(&error))?;
     let log = folder.location(&session_key(robot)).log();
-    let mut child = detach(words, &log).context("this program, in the background")?;
+    let mut child = detach(words, &log).context("cannot start armctl in the background")?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {
-        Ok(line) => line.map_err(|error| Failure::local(format!("the background: {error}")))?,
+        Ok(line) => line.map_err(|error| Failure::local(format!("armctl in the background: {error}")))?,
         Err(interrupt) => {
             terminate(pid);
             return Err(interrupt);
         }
     };
-    let line = line.context("the background")?;
+    let line = line.context("no answer from armctl in the background")?;
     match serde_json::from_str(&line) {
         Ok(Start::Opened(opened)) => Ok(opened),
         Ok(Start::Failed(failure)) => Err(failure),

@@ -1,4 +1,4 @@
-//! `io watch`, `var watch`, `alarm watch` and so on: initial values of a read command, then each change.
+//! `io watch`, `var watch`, `alarm watch` and so on: the initial values of a read command, and then each change.
 
 use std::cell::RefCell;
 use std::marker::PhantomData;
@@ -19,38 +19,38 @@ use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, View};
 use crate::settings::duration;
 
-/// Read interval, if there is no change notification.
+/// Read interval for families without change notifications.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
-/// If there are more items than this, only those that have a name or are on are printed at the start.
+/// If there are more items than this, only the items that have a name or are on are printed at the start.
 const MANY_ITEMS: usize = 24;
 
 /// Field of the user name, and heading of its column.
 const LABEL: &str = "label";
 /// Heading of the errors of items.
 const ERROR: &str = "error";
-/// Field of the user names of bits.
+/// Field for the user-defined names of bits.
 const LABEL_KEYS: &str = "labels";
 
-/// Location of the watched items in the data of a read: the list and its fields.
+/// Where the watched items are in the data of a read: the list and its fields.
 #[derive(Debug, Clone, Copy)]
 pub struct Watched {
-    /// `signals`.
+    /// Name of the list, such as `signals`.
     pub list: &'static str,
     /// Field that identifies an item.
     pub name: &'static str,
-    /// Prefix of the name, if that is only a number: `alarm `.
+    /// Text before the name, if the name is only a number: `alarm `.
     pub prefix: &'static str,
-    /// Field of the description.
+    /// Field for the description.
     pub label: &'static str,
-    /// Field of the value; none if only presence counts. A list of bits is watched bit by bit.
+    /// Field for the value; `None` if it only matters whether the item exists. A list of bits is watched bit by bit.
     pub value: Option<&'static str>,
-    /// Text at the start if there are no items.
+    /// Text that is printed at the start if there are no items.
     pub empty: &'static str,
 }
 
 impl Watched {
-    /// Items, as every family reports them.
+    /// Items as every family reports them.
     pub const ITEMS: Self =
         Self { list: "items", name: "name", prefix: "", label: "", value: Some("value"), empty: "nothing to watch" };
 }
@@ -60,12 +60,12 @@ impl Watched {
 pub trait Watchable: Command {
     /// Value of an item. The values of a list are watched one by one.
     type Value: Serialize + JsonSchema + 'static;
-    /// `yerc.io.watch`.
+    /// Name of the watch command in envelopes and schemas, such as `yerc.io.watch`.
     const WATCH: &'static str;
-    /// Location of the watched items in its data.
+    /// Where the watched items are in the data of the command.
     const WATCHED: Watched;
 
-    /// Waits until a new read is useful.
+    /// Waits until a new read can give new values.
     async fn changed(&self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
         tokio::time::sleep(POLL_INTERVAL).await;
         Ok(())
@@ -80,7 +80,7 @@ pub struct Watch<C: Args> {
     /// How long to continue
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
-    /// Items of the previous read.
+    /// Items of the read before the current one.
     #[arg(skip)]
     before: RefCell<Option<Vec<WatchedItem>>>,
 }
@@ -125,7 +125,7 @@ struct WatchedItem {
     name: String,
     label: Option<String>,
     value: Value,
-    /// Item with all fields of the read.
+    /// Item with all fields that were read.
     item: Value,
     /// Table cells of a value that consists of several values.
     cells: Vec<Cell>,
@@ -141,7 +141,7 @@ impl Watched {
 
     fn items_of_list(self, item: &Value, cells: impl Fn() -> Vec<Cell>) -> Vec<WatchedItem> {
         let name = format!("{}{}", self.prefix, plain(&item[self.name]));
-        // The user name is more informative than the description.
+        // The user-defined name is more informative than the description.
         let label = item[LABEL].as_str().or_else(|| item[self.label].as_str()).map(ToOwned::to_owned);
         let thing = |name: String, value: &Value| WatchedItem {
             name,
@@ -187,14 +187,14 @@ fn value_cells(table: &Table, row: usize) -> Vec<Cell> {
     value_columns(table).filter_map(|at| row.get(at).cloned()).collect()
 }
 
-/// Changes at the start: the current values.
+/// Changes to print at the start: the current values.
 fn describe_start<V>(now: &[WatchedItem]) -> Vec<Change<V>> {
     let is_off = |value: &Value| *value == false || *value == 0;
     let is_told = |thing: &&WatchedItem| now.len() <= MANY_ITEMS || thing.label.is_some() || !is_off(&thing.value);
     now.iter().filter(is_told).map(|thing| Change::new(thing, None, Some(thing))).collect()
 }
 
-/// Changed, new and removed items.
+/// Items that changed, were added, or were removed.
 fn differences<V>(before: &[WatchedItem], now: &[WatchedItem]) -> Vec<Change<V>> {
     let find = |things: &[WatchedItem], name: &str| things.iter().find(|thing| thing.name == name).cloned();
     let changed = now.iter().filter_map(|thing| {
@@ -206,13 +206,13 @@ fn differences<V>(before: &[WatchedItem], now: &[WatchedItem]) -> Vec<Change<V>>
     changed.chain(is_gone.map(|old| Change::new(old, Some(old), None))).collect()
 }
 
-/// Changes at one moment; in the first report, the current values.
+/// Changes at one time. The first report contains the current values.
 #[derive(Debug, Serialize, JsonSchema)]
 #[schemars(rename = "Changes", bound = "V: JsonSchema")]
 pub struct Changes<V> {
-    /// One entry per changed item.
+    /// One entry for each item that changed.
     changes: Vec<Change<V>>,
-    /// The same items with all fields of the read, under the name of its list.
+    /// The same items with all fields of the read, under the name of their list.
     #[serde(flatten)]
     items: Map<String, Value>,
     #[serde(skip)]
@@ -225,21 +225,21 @@ pub struct Changes<V> {
     is_first: bool,
 }
 
-/// A change.
+/// Change of one item.
 #[derive(Debug, PartialEq, Serialize, JsonSchema)]
 #[schemars(rename = "Change", bound = "V: JsonSchema")]
 struct Change<V> {
     /// Time of the read.
     #[schemars(with = "String", extend("format" = "date-time"))]
     time: Timestamp,
-    /// `#27010`, `B0`, `SO(02)`.
+    /// Name of the item, such as `#27010`, `B0`, `SO(02)`.
     name: String,
-    /// Name or description, if known.
+    /// User-defined name or description, if there is one.
     label: Option<String>,
     /// Old value; null at the start and for a new item.
     #[schemars(schema_with = "value_schema::<V>")]
     old: Value,
-    /// New value; null for a removed item, and if it could not be read.
+    /// New value; null for a removed item, and if the value could not be read.
     #[schemars(schema_with = "value_schema::<V>")]
     new: Value,
     #[serde(skip)]
@@ -323,7 +323,7 @@ impl<V> Changes<V> {
             change.time = now;
         }
         let mut items: Vec<Value> = changes.iter_mut().filter_map(|change| change.item.take()).collect();
-        // Several bits of one port refer to the same port.
+        // Several bits of one port refer to the same item.
         items.dedup();
         let items = Map::from_iter([(watched.list.to_owned(), Value::Array(items))]);
         Self { changes, items, watched, headings: Vec::new(), is_first: false }

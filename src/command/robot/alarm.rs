@@ -184,7 +184,7 @@ pub struct AllAlarms {
 }
 
 impl AllAlarms {
-    /// Present alarms.
+    /// Report of active alarms.
     pub fn present(alarms: Vec<Alarm>) -> Self {
         let row = |(index, alarm)| Row::new(index, "alarm", Ok(AlarmEntry { alarm, own: InWords::default() }));
         Self { alarms: (1..).zip(alarms).map(row).collect() }

@@ -97,7 +97,7 @@ pub struct Items<V, M = Plain> {
     /// Number of requested items; the table has only these.
     #[serde(skip)]
     asked: usize,
-    /// Reasons why items that were read have no value; they count if no item has one.
+    /// Reasons why items that were read have no value; used only if no item has a value.
     #[serde(skip)]
     undefined: Vec<ItemError>,
     #[serde(skip)]
@@ -110,13 +110,13 @@ impl<V, M> Items<V, M> {
         Self { asked: items.len(), items, undefined: Vec::new(), columns }
     }
 
-    /// Sets the number of items that were requested, if the others were not read because they would fail alike.
+    /// Sets the number of requested items, if the other items were not read because they would fail in the same way.
     #[must_use]
     pub fn asked(self, asked: usize) -> Self {
         Self { asked, ..self }
     }
 
-    /// Sets the reasons why items have no value. If no item has one, the command fails with these.
+    /// Sets the reasons why items have no value. If no item has a value, the command fails with these reasons.
     #[must_use]
     pub fn undefined(self, undefined: Vec<ItemError>) -> Self {
         Self { undefined, ..self }

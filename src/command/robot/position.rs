@@ -78,7 +78,7 @@ pub struct Joint {
     pub pulses: Option<i32>,
     /// Degrees.
     pub degrees: Option<f64>,
-    /// Millimetres; degrees for a rotary axis of a YRCX or Toyo.
+    /// Millimeters; degrees for a rotary axis of a YRCX or Toyo.
     pub mm: Option<f64>,
     /// Number of decimals of the controller.
     #[serde(skip)]
@@ -86,7 +86,7 @@ pub struct Joint {
 }
 
 impl Position {
-    /// Position of the axes in millimetres.
+    /// Position of the axes in millimeters.
     pub fn of_axes(names: [String; 4], mm: [f64; 4], decimals: usize) -> Self {
         let joints =
             names.into_iter().zip(mm).map(|(axis, mm)| Joint { axis, mm: Some(mm), decimals, ..Joint::default() });
@@ -108,7 +108,7 @@ impl Position {
         all.filter_map(|(name, value, unit, decimals)| Some((name, value?, unit, decimals)))
     }
 
-    /// All values: name, unit, decimals, value. Axes have priority, because they are equivalent.
+    /// All values: name, unit, decimals, value. Axes have priority, because coordinates and axes are equivalent.
     fn values(&self) -> Vec<(String, &'static str, usize, f64)> {
         let joint = |joint: &Joint| {
             let (value, unit, decimals) = match (joint.mm, joint.pulses) {
@@ -158,7 +158,7 @@ impl Position {
 }
 
 impl Joint {
-    /// Value in its unit: millimetres, or pulses.
+    /// Value in its unit: millimeters, or pulses.
     pub fn cell(&self) -> Cell {
         let Self { decimals, .. } = self;
         match (self.mm, self.pulses) {
@@ -243,7 +243,7 @@ impl Positions {
         self.positions.iter().filter_map(|row| row.error.as_ref())
     }
 
-    /// Replaces the table by a chart of the rounds so far, if requested; coordinates have priority over axes.
+    /// Replaces the table with a chart of the rounds so far, if requested; coordinates have priority over axes.
     #[must_use]
     pub fn plotted(self, is_asked: bool, past: &SeriesHistory) -> Self {
         let has_coordinates = |position: &&Position| position.joints.is_empty();

@@ -1,4 +1,5 @@
-//! Batch reads: each item has its own result, and one refusal does not hide the other answers.
+//! Reads of several items. Each item has its own result, so that a refusal does not prevent the report of the other
+//! answers.
 
 use super::eeprom::THERE;
 use super::link::{Link, Refusal};
@@ -9,11 +10,11 @@ use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// Answer to each request.
+/// The answer or the failure of each request.
 pub type Answers = Vec<Result<Record, Failure>>;
 
-/// Reads items in order, each with its own result. After a lost connection the remaining items are not read. A dry run
-/// records all requests and ends.
+/// Reads items in order. Each item has its own result. After a lost connection, the remaining items are not read. A dry
+/// run records all requests and ends.
 ///
 /// # Errors
 /// The first failure, if no item was answered.
@@ -21,7 +22,7 @@ pub async fn read_each(link: &mut Link, screen: &Screen, what: &str, requests: &
     read(link, screen, what, requests, 1, |_| false).await
 }
 
-/// Like [`read_each`], up to the first answer for which `is_last` holds.
+/// Like [`read_each`], but ends after the first answer for which `is_last` is true.
 ///
 /// # Errors
 /// Like [`read_each`].
@@ -35,7 +36,7 @@ pub async fn read_until(
     read(link, screen, what, requests, 1, is_last).await
 }
 
-/// Like [`read_each`], with a second attempt after a refusal, because a busy controller also refuses.
+/// Like [`read_each`], but a refused request is sent a second time, because a busy controller also refuses.
 ///
 /// # Errors
 /// Like [`read_each`].
@@ -95,15 +96,16 @@ async fn read(
     }
 }
 
-/// Records in a dry run a request with a second attempt after a refusal by a controller without the item.
+/// In a dry run, records a request that is sent a second time after a refusal, which a controller without the item
+/// sends.
 pub fn plan_twice(link: &mut Link, request: &Request) {
     link.plan(request, THERE);
     if request.parameter().is_some_and(|parameter| !parameter.only_on.is_empty()) {
-        link.plan_if(request, "if it is refused, because a busy controller also refuses");
+        link.plan_if(request, "whether the controller refuses the request, because a busy controller also refuses");
     }
 }
 
-/// Answer to one request, or the reason for a missing answer. A failure ends all the work.
+/// Answer to one request, or the reason why there is none. A failure ends the whole work.
 async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result<Record, Failure>, Failure> {
     for _ in 1..times {
         match link.try_ask(request).await {
@@ -119,13 +121,13 @@ async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result
     }
 }
 
-/// Whether a failure concerns only one request.
+/// Returns a failure as a result if it concerns only one request, otherwise as an error.
 fn of_one(failure: Failure) -> Result<Result<Record, Failure>, Failure> {
     if matches!(failure.kind, Kind::NoAnswer | Kind::Malformed) { Ok(Err(failure)) } else { Err(failure) }
 }
 
 fn not_asked(request: &Request, silence: &Failure) -> Failure {
-    let message = format!("{} was not sent after a lost answer: {}", request.text(), silence.message);
+    let message = format!("{} was not sent, because an earlier answer was lost: {}", request.text(), silence.message);
     Failure { message, ..silence.clone() }
 }
 
@@ -179,7 +181,7 @@ mod tests {
             data["items"][2]["error"]["message"]
                 .as_str()
                 .unwrap()
-                .starts_with("@MCNT CN=03 was not sent after a lost answer")
+                .starts_with("@MCNT CN=03 was not sent, because an earlier answer was lost")
         );
         assert_eq!(failure.unwrap().kind, Kind::Mixed);
         let failure = with_faults("@MCNT CN=01", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
@@ -206,11 +208,11 @@ mod tests {
             assert_eq!(odd[0]["raw"], raw, "{entry}");
             let others = data["items"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
             assert!(others.count() > 50);
-            // A value outside the manual is not written back.
+            // A value that is not in the manual is not written back.
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
                 assert!(failure.message.contains("'ax2=+0000.5' is not in the manual"), "{failure}");
-                assert_eq!(failure.hint.unwrap(), "nothing was written; type all values");
+                assert_eq!(failure.hint.unwrap(), "type all values; nothing was written");
             }
             let folder = tempfile::tempdir().unwrap();
             let dumped = bench.data(&["param", "dump", folder.path().join("p.csv").to_str().unwrap(), id]);

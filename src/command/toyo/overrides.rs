@@ -28,12 +28,12 @@ commands! {
 #[derive(Debug, Args)]
 pub struct Get {}
 
-/// Write the override if it differs.
+/// Write the override, if the new value differs.
 #[derive(Debug, Args)]
-#[command(after_help = "The EEPROM stores the value and takes about a million writes: do not set it in a loop. A \
-                        running program keeps its override.")]
+#[command(after_help = "The controller stores the value in an EEPROM cell, which wears out after about a million \
+                        writes: do not set the override in a loop. A running program keeps its override.")]
 pub struct Set {
-    /// 1 to 100
+    /// Override in percent, 1 to 100
     #[arg(value_name = "PERCENT", value_parser = percent)]
     percent: i32,
 }

@@ -1,4 +1,4 @@
-//! `yerc register`: 16-bit words that ladder program and PC share.
+//! `yerc register`: 16-bit words that the ladder program and a PC can both use.
 
 use std::collections::HashSet;
 use std::str::FromStr;
@@ -55,7 +55,7 @@ commands! {
 #[derive(Debug, Args)]
 #[command(after_help = WRITING)]
 pub struct Set {
-    /// 5=1000 or 5=0x03E8, or NAME=1000
+    /// 5=1000, 5=0x03E8 or NAME=1000
     #[arg(required = true, value_name = "N=VALUE", add = complete::REGISTER_VALUE)]
     assignments: Vec<Assignment>,
 }
@@ -72,7 +72,9 @@ impl FromStr for Assignment {
     fn from_str(text: &str) -> Result<Self, String> {
         let (number, value) = typed::setting(text, "a number", "a value", "5=1000")?;
         let numbers = names::parse_or_name(&[Kind::Register], &Registers::any(), number, Registers::keys)?;
-        let [number] = numbers[..] else { return Err(format!("'{number}' is a range; give each register its value")) };
+        let [number] = numbers[..] else {
+            return Err(format!("'{number}' is a range; type a value for each register"));
+        };
         Ok(Self { number, value: parse_word(value)? })
     }
 }
@@ -91,7 +93,8 @@ impl Command for Set {
         let Context { link, screen, robot, authority, .. } = context;
         let mut seen_numbers = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen_numbers.insert(assignment.number)) {
-            return Err(Failure::usage(format!("register {} appears twice", twice.number)).hint("give it one value"));
+            return Err(Failure::usage(format!("register {} appears twice", twice.number))
+                .hint("type one value for the register"));
         }
         let numbers: Vec<u16> = self.assignments.iter().map(|it| it.number).collect();
         let mut table = Registers::open(link, &Single {}).await?;
@@ -114,7 +117,7 @@ pub struct Registers {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Word {
     number: u16,
-    /// `0x03e8`; null if it was not read.
+    /// Value in hexadecimal, such as `0x03e8`; null if the register was not read.
     value_hex: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! `yrcx alarm list|history|reset` (4.7.7, 4.8.3).
+//! Commands `yrcx alarm list|history|watch|reset` (4.7.7, 4.8.3).
 
 use clap::Args;
 
@@ -26,7 +26,7 @@ use crate::output::view::View;
 use crate::settings::{Robot, alarms};
 
 commands! {
-    /// Alarms.
+    /// Commands for alarms.
     pub enum Alarm {
         /// Show the present alarm and what to do
         List(List),
@@ -42,7 +42,8 @@ commands! {
 /// Present alarm: the latest entry of the history while SO(03) or SO(15) is on.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. It may have been reset since."
+    after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. That alarm may have been \
+                  reset since."
 )]
 pub struct List {}
 
@@ -58,7 +59,7 @@ impl Command for List {
             link.plan_depending(
                 &latest,
                 &latest,
-                Reason::about("which").depending_on("the signals: it is read if SO(03) or SO(15) is on"),
+                Reason::about("which").depending_on("the signals: read only if SO(03) or SO(15) is on"),
             );
         }
         let image = link.look().await?;
@@ -74,12 +75,12 @@ impl Command for List {
     }
 }
 
-/// Latest entry of the history; `None` if it is empty or was not read. It has no time, so the same alarm a second time
-/// is the same entry.
+/// Reads the latest entry of the history; `None` if the history is empty or was not read. An entry has no time, so if
+/// an alarm occurs a second time, its entry is equal to the first entry.
 pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, Failure> {
     let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).build()?;
     if link.is_dry() {
-        link.plan(&latest, "latest alarm, to recognize a new one");
+        link.plan(&latest, "latest alarm, to recognize a new alarm");
         return Ok(None);
     }
     match link.ask(&latest).await {
@@ -162,10 +163,8 @@ impl Command for History {
 
 /// Resets the alarm.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works when remote commands \
-                  are not accepted."
-)]
+#[command(after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works while the \
+                        controller does not accept remote commands.")]
 pub struct Reset {}
 
 impl Command for Reset {
@@ -192,8 +191,8 @@ impl Command for Reset {
             } else {
                 let alarm = link.link_alarm();
                 screen.note(&format!(
-                    "hint: motor power is off, and closing this connection raises alarm {alarm} again. Keep it open \
-                     with `armctl session open`, then `yrcx alarm reset` and `yrcx recover`"
+                    "hint: keep a connection open with `armctl session open`, then use `yrcx alarm reset` and `yrcx \
+                     recover`. Motor power is off, and the close of this connection raises alarm {alarm} again"
                 ));
             }
         }
@@ -201,8 +200,9 @@ impl Command for Reset {
     }
 }
 
-/// Next step when an alarm has switched the motors off.
-const POWER_OFF: &str = "hint: motor power is off. `yrcx recover` clears the emergency stop and switches the servos on";
+/// Hint for the case that an alarm has switched the motors off.
+const POWER_OFF: &str = "hint: use `yrcx recover` to clear the emergency stop and switch the servos on. Motor power \
+                         is off";
 
 /// Result of an alarm reset.
 #[derive(Debug, Serialize, JsonSchema)]

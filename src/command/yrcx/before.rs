@@ -1,4 +1,5 @@
-//! Old values before a remote command that sets a value: the command that reads them, and the field of its answer.
+//! Reads old values before a remote command sets new values: which command reads them, and which field of its answer
+//! has them.
 
 use serde_json::Value as Json;
 
@@ -14,14 +15,16 @@ use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::gate::Change;
 
-/// Reads the values that a command replaces. Without an answer they stay unknown. A dry run notes the request.
+/// Reads the values that a command replaces. If the controller refuses the read, the old values stay unknown. A dry run
+/// only notes the request.
 pub async fn before(link: &mut Link, order: &Order) -> Result<Old, Failure> {
     let Some(read) = reader(order) else { return Ok(Old::UNREAD) };
     let values = there(link, &read.build()?, OLD_VALUE).await.map_err(nothing_written)?;
     Ok(Old::read(values.and_then(|values| told(order, &values))))
 }
 
-/// Question before a command that sets a value: the intent, and old and new values if the old value was read.
+/// Builds the confirmation question for a command that sets a value. The question shows old and new value only for
+/// servos, and only if the old value was read.
 pub fn question(order: &Order, intent: String, old: &Old) -> Change {
     let change = Change::new(if intent.is_empty() { order.row().name.to_owned() } else { intent });
     let new = match order.command() {
@@ -36,8 +39,8 @@ pub fn question(order: &Order, intent: String, old: &Old) -> Change {
     }
 }
 
-/// Read command for the values that a command sets. There is none for a torque limit, a selected shift or hand, and
-/// motor power.
+/// Returns the command that reads the values that `order` sets. The protocol has no such command for a torque limit, a
+/// selected shift or hand, and motor power.
 fn reader(order: &Order) -> Option<Draft> {
     let values = order.values();
     let (read, keys): (_, &[Key]) = match order.command() {
@@ -64,7 +67,7 @@ fn setting(order: &Order) -> Option<&'static Setting> {
     SETTINGS.iter().find(|setting| setting.write.0 == order.command())
 }
 
-/// Old values from an answer, under the names of the command's report.
+/// Takes the old values from an answer, in the form of the command's report.
 fn told(order: &Order, answer: &Values) -> Option<Json> {
     let number = |key| answer.int(key).map(Json::from);
     match order.command() {
@@ -82,8 +85,8 @@ fn told(order: &Order, answer: &Values) -> Option<Json> {
     }
 }
 
-/// `on`, `off` or `free` if all selected axes agree; otherwise one value per axis, null for an axis that does not
-/// exist.
+/// Returns `on`, `off` or `free` if all selected axes have the same state. Otherwise returns one value per axis, with
+/// null for an axis that does not exist.
 fn servo(order: &Values, answer: &Values) -> Option<Json> {
     let mask = order.int(Key::Axes).unwrap_or_default();
     let state = |key| match shown(Command::ServoStatus, answer, key).as_deref() {

@@ -33,7 +33,7 @@ commands! {
 
 const DATE: [Key; 3] = [Key::Year, Key::Month, Key::Day];
 const TIME: [Key; 3] = [Key::Hour, Key::Minute, Key::Second];
-/// The controller stores two digits of the year.
+/// Century of the controller's years: the controller stores only two digits of the year.
 const CENTURY: i16 = 2000;
 
 /// Reads date and time of the controller.
@@ -53,7 +53,7 @@ impl Command for Get {
         let mut of_next = || outcomes.next().unwrap_or_else(|| Err(Failure::local("the clock was not read")));
         let mut date = of_next().and_then(|values| date_of(&values));
         let time = of_next().and_then(|values| time_of(&values));
-        // Midnight may have passed between the two requests.
+        // Midnight may have passed between the two requests: read the date again.
         if let (Ok(_), Ok(moment)) = (&date, &time)
             && moment.hour() == 0
             && moment.minute() == 0
@@ -80,20 +80,20 @@ fn time_of(values: &Values) -> Result<Time, Failure> {
 }
 
 fn malformed(message: String) -> Failure {
-    Failure::new(Kind::Malformed, message).hint("`yrcx clock set now` sets its clock")
+    Failure::new(Kind::Malformed, message).hint("use `yrcx clock set now` to set the clock of the controller")
 }
 
 /// Clock reading.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Reading {
-    /// Local time of the controller, as in `2026-03-01T08:45:00`; null if the date or the time could not be read.
+    /// Local time of the controller, for example `2026-03-01T08:45:00`; null if the date or the time could not be read.
     time: Option<String>,
-    /// `2026-03-01`; null if it could not be read.
+    /// Date, for example `2026-03-01`; null if the date could not be read.
     date: Option<String>,
-    /// `08:45:00`; null if it could not be read.
+    /// Time of day, for example `08:45:00`; null if the time could not be read.
     time_of_day: Option<String>,
-    /// Difference to the clock of this computer in seconds; negative if the controller is behind; null if the date or
-    /// the time could not be read.
+    /// Difference to the clock of this computer in seconds; negative if the controller's clock is behind; null if the
+    /// date or the time could not be read.
     ahead_s: Option<i64>,
     /// Values that could not be read, and the reason.
     errors: Vec<ItemError>,
@@ -139,10 +139,10 @@ impl Report for Reading {
     }
 }
 
-/// Date and time.
+/// Number of values in a reading: date and time.
 const PARTS: usize = 2;
 
-/// `3 s`, `1:02:03`, `252 days 1:02:03`.
+/// Formats a duration, for example `3 s`, `1:02:03`, `252 days 1:02:03`.
 fn in_words(seconds: u64) -> String {
     let (days, hours, minutes) = (seconds / 86_400, seconds / 3600 % 24, seconds / 60 % 60);
     match (days, hours, minutes) {
@@ -152,9 +152,9 @@ fn in_words(seconds: u64) -> String {
     }
 }
 
-/// Sets date and time of the controller, or one of them.
+/// Sets the date of the controller, the time, or both.
 #[derive(Debug, Args)]
-#[command(after_help = "The controller clock has local time and the years 2000 to 2099.")]
+#[command(after_help = "The controller clock uses local time. It supports the years 2000 to 2099.")]
 pub struct Set {
     /// now, or a date, a time or both: 2026-03-01T08:45:00, 2026-03-01, 08:45
     #[arg(value_name = "TIME", value_parser = moment)]
@@ -204,7 +204,7 @@ fn parse_time(text: &str) -> Result<Time, String> {
     time.ok_or_else(|| format!("'{text}' is not a valid time, such as 08:45 or 08:45:00"))
 }
 
-/// A number with exactly `count` digits.
+/// Parses a number that has exactly `count` digits.
 fn digits<N: std::str::FromStr>(text: &str, count: usize) -> Option<N> {
     let fits = text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit());
     text.parse().ok().filter(|_| fits)
@@ -251,7 +251,7 @@ fn written(name: &str, outcome: Result<String, Failure>, old: Option<String>) ->
     Written::new(Item::new("clock", name, outcome.map(Some)), old, is_written)
 }
 
-/// Reads the current date and time, as far as they will be set. Unreadable values stay unknown.
+/// Reads the current date, time, or both: the values that armctl will set. Values that cannot be read stay unknown.
 async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<String>; 2], Failure> {
     let mut found = [None, None];
     if date {

@@ -56,7 +56,7 @@ impl Endpoint<'_> {
         screen: &Screen,
     ) -> Result<(ImageLink, Option<Recorder>), Failure> {
         let purpose = match self {
-            // Network faults need a network.
+            // Faults of the network can only be simulated on a simulated network.
             Self::Sim(sim) if sim.bus.is_none() && !simulated::has_faults(sim) => {
                 return Ok((ImageLink::in_process(Box::new(simulated::in_process(sim)?)), None));
             }
@@ -96,7 +96,7 @@ impl Endpoint<'_> {
                         if let Some(watch) = watch {
                             watch.show(screen);
                         }
-                        // The failure to open matters more than the failure to finish the recording.
+                        // The error of the connection is reported, so an error of the recording is ignored.
                         let _ = recorder.map_or(Ok(()), Recorder::finish);
                         Err(not_open(&robot.label(), bus.scheme, &error))
                     }
@@ -119,7 +119,7 @@ impl Endpoint<'_> {
         }
     }
 
-    /// Whether a link in control mode commands the controller.
+    /// Whether a connection in control mode sends commands to the controller.
     pub fn is_owner(&self) -> bool {
         match self {
             Self::Bus(bus, _) => bus.is_owner,
@@ -128,7 +128,7 @@ impl Endpoint<'_> {
     }
 }
 
-/// Fieldbus of a simulator.
+/// Returns the fieldbus that a simulator simulates.
 fn simulated_on(sim: &target::Sim) -> &'static Fieldbus {
     let named = sim.bus.and_then(|wanted| simulators().find(|(name, _)| *name == wanted));
     named.and_then(|(_, bus)| buses::by_name(bus)).unwrap_or(BUSES[0])

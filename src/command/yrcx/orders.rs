@@ -1,6 +1,6 @@
-//! Commands with one row of the table: speeds (4.2.14 to 4.2.16), torque limit (4.2.22), inching distance (4.2.8),
-//! shift, hand and arm (4.2.17 to 4.2.19), servos (4.2.13), motor power (4.2.20), the status of remote commands
-//! (4.1).
+//! Commands that send one remote command and change something: speeds (4.2.14 to 4.2.16), torque limit (4.2.22),
+//! inching distance (4.2.8), shift, hand and arm (4.2.17 to 4.2.19), servos (4.2.13), motor power (4.2.20), the status
+//! of remote commands (4.1).
 
 use clap::ValueEnum;
 use serde_json::Value as Json;
@@ -67,7 +67,7 @@ one_row! {
     with draft => draft.with(Key::Axes, self.axis.as_str()).with(Key::Torque, self.percent.trim_end_matches('%')),
     done as answer => {
         let percent = self.percent.trim_end_matches('%');
-        let words = format!("limited the torque of axis {} to {percent} % , starting with the next motion", self.axis);
+        let words = format!("limited the torque of axis {} to {percent} %, starting with the next motion", self.axis);
         NewValue::of(self.axis.as_str(), number(percent), words).into_item("torque limit", &answer.old)
     };
 
@@ -121,7 +121,7 @@ one_row! {
     Servo(self) "yrcx.servo" -> Done {
         /// New servo state
         state: ServoState,
-        /// Only this axis, 1 to 4
+        /// Apply only to this axis, 1 to 4
         #[arg(long, value_name = "AXIS")]
         axis: Option<String>,
         #[command(flatten)]
@@ -151,7 +151,7 @@ one_row! {
         done.with("axis", self.axis.as_deref().map_or(serde_json::Value::Null, number))
     };
 
-    /// Switches motor power, of all robots.
+    /// Switches the motor power of all robots.
     Motor(self) "yrcx.motor" -> Done {
         /// New motor power state
         state: MotorState,
@@ -176,9 +176,9 @@ one_row! {
 
     /// Resets the status of remote commands to ready.
     #[command(
-        after_help = "armctl resets the status before and after each command, so you rarely need this. Use it if \
-                      another client's command left an end status. It does not stop a motion or a running command, and \
-                      does not reset an alarm (`yrcx alarm reset`)."
+        after_help = "armctl resets the status before and after each command, so this command is rarely necessary. \
+                      Use it if another client's command left an end status. The command does not stop a motion or a \
+                      running command. It does not reset an alarm (`yrcx alarm reset`)."
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,
@@ -188,11 +188,11 @@ one_row! {
 /// Speed settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum SpeedSetting {
-    /// Of jogs and inching
+    /// Speed of jogs and inching
     Manual,
-    /// Of automatic operation; reduces all others
+    /// Speed of automatic operation; reduces all other speeds
     Auto,
-    /// Of programs, and of motions without a speed argument
+    /// Speed of programs, and of motions without a speed argument
     Program,
 }
 
@@ -210,11 +210,11 @@ impl SpeedSetting {
 /// Servo states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ServoState {
-    /// Controlled; motor power must be on
+    /// Servo on; motor power must be on
     On,
-    /// Off, brake on
+    /// Servo off, brake applied
     Off,
-    /// Off, brake off: an axis may drop
+    /// Servo off, brake released: an axis may drop
     Free,
 }
 

@@ -33,11 +33,11 @@ commands! {
 }
 
 /// Port names, for the help of get and set.
-const NAMES: &str = "DO12 is a port, DO2.1 and 'DO(21)' are its bit 1. DI, DO, MO, SI and SO have ports 0-7, 10-17 and \
-                     20-27, LO has 0 and 1, TO has 0. DO, MO, LO, TO and SO are writable; DO, MO and SO start with \
-                     port 2. `yrcx io` reads and switches SI and SO without remote commands.";
+const NAMES: &str = "DO12 is a port; DO2.1 and 'DO(21)' are bit 1 of port DO2. DI, DO, MO, SI and SO have ports 0-7, \
+                     10-17 and 20-27, LO has 0 and 1, TO has 0. DO, MO, LO, TO and SO are writable; DO, MO and SO are \
+                     writable from port 2. `yrcx io` reads and switches SI and SO without remote commands.";
 
-/// A port, or a signal of it.
+/// A port, or one signal of a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct PortSignal {
     /// Number of the port type.
@@ -46,7 +46,7 @@ struct PortSignal {
     bit: Option<i32>,
 }
 
-/// `DO12`, `DO12()`, `DO2.1`, `DO(21)`.
+/// Parses a port or a signal, for example `DO12`, `DO12()`, `DO2.1`, `DO(21)`.
 fn place(text: &str) -> Result<PortSignal, String> {
     let wrong = || format!("'{text}' is not a valid port, such as DO12, or signal, such as DO2.1");
     let (kind, rest) = text.split_at_checked(2).ok_or_else(wrong)?;
@@ -69,12 +69,12 @@ fn place(text: &str) -> Result<PortSignal, String> {
     place.order(table::Command::PortGet.order()).map(|_| place)
 }
 
-/// Parses ports, a range of them, or a name.
+/// Parses a port, a range of ports, or a name that the user assigned.
 fn places(text: &str) -> Result<Series<PortSignal>, String> {
     names::parse_or_name(KINDS, "DO2", text, Series::reader(place))
 }
 
-/// SI and SO names refer to signals; a port has eight of them.
+/// Kinds of names that are allowed. User names of SI and SO can name one signal of a port.
 const KINDS: &[Kind] = &[Kind::Port, Kind::Signal];
 
 fn signal_or_port(text: &str) -> Result<PortSignal, String> {
@@ -88,7 +88,7 @@ fn settable(text: &str) -> Result<PortSignal, String> {
 }
 
 impl PortSignal {
-    /// Command for the port.
+    /// Builds the command from `draft` for this port.
     fn order(self, draft: Draft) -> Result<Order, String> {
         if let Some(bit) = self.bit.filter(|bit| *bit > 7) {
             return Err(format!("a port has bits 0 to 7, not {bit}"));
@@ -166,7 +166,7 @@ pub enum Level {
 /// Attributes of a port.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Bits {
-    /// Bit 7 first: `00000111`; null for a signal.
+    /// Bits of the port, bit 7 first, for example `00000111`; null for a signal.
     bits: Option<String>,
 }
 
@@ -198,13 +198,13 @@ fn label(names: &Names, port: &str) -> Option<String> {
 }
 
 one_row! {
-    /// Switches all signals of a port, or one of them.
+    /// Switches all signals of a port, or one signal.
     #[command(after_help = NAMES)]
     Set(self) "yrcx.port.set" -> WrittenItems<Level, Bits> {
         /// Port or signal
         #[arg(value_name = "PORT", value_parser = signal_or_port, add = complete::OUTPUT_PORT)]
         place: PortSignal,
-        /// Port: 0 to 255, also as 0x07 or 0b00000111; signal: on or off
+        /// New value. For a port: 0 to 255, also written as 0x07 or 0b00000111; for a signal: on or off
         #[arg(value_name = "VALUE", value_parser = value)]
         value: u8,
     }

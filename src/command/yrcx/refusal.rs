@@ -1,4 +1,4 @@
-//! Conversion of rejected and refused commands to failures: rejected by armctl, or refused by the controller.
+//! Conversion of commands that armctl rejected or the controller refused to failures.
 
 use crate::client::yrcx::Refusal;
 use crate::controller::Risk;
@@ -9,23 +9,26 @@ use crate::controller::yrcx::table::{Pace, Row};
 use crate::controller::yrcx::value::{Key, Value};
 use crate::failure::{Failure, Kind};
 
-/// Words that the manual does not allow are an error of the command line.
+/// Words that the manual does not allow are a usage error.
 impl From<WordError> for Failure {
     fn from(error: WordError) -> Self {
-        // The field is what the user typed; the word index matters only for raw words.
+        // The user typed the field, so the message names the field. Only raw words need the word index.
         let message = match error.place.key {
             Some(key) => format!("{key}: {}", error.problem),
             None => error.to_string(),
         };
         let failure = Self::usage(message);
         match error.alarm {
-            Some(alarm) => failure.hint(format!("the controller would refuse it with alarm {alarm}, {}", alarm.text())),
+            Some(alarm) => failure.hint(format!(
+                "correct the value; the controller would refuse this value with alarm {alarm}, {}",
+                alarm.text()
+            )),
             None => failure.hint("see `--help` for the valid values"),
         }
     }
 }
 
-/// Refusal of a command by the controller, at once or during execution, with the name of the object.
+/// The controller refused the command, at once or during execution. The message names the object of the command.
 impl From<Refusal> for Failure {
     fn from(Refusal { order, alarm, .. }: Refusal) -> Self {
         refused_order(&order, alarm)
@@ -47,7 +50,7 @@ pub fn object(order: &Order) -> String {
     let instances = order.row().request().filter(|field| INSTANCES.contains(&field.key));
     let named = instances.filter_map(|field| {
         let value = order.values().value(field.key)?;
-        // Robot 0 means the first robot and is then not named.
+        // Robot 0 means the first robot, so the message does not name it.
         let is_named = field.key != Key::Robot || *value != Value::Int(0);
         is_named.then(|| format!("{} {}", field.key.name().replace('_', " "), field.show(value)))
     });
@@ -78,7 +81,7 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
     };
     let remedy = match alarm.known().and_then(|known| known.remedies.first()) {
         Some(remedy) => (*remedy).to_owned(),
-        None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` shows the source"),
+        None => format!("look up {alarm} in the controller's manual; use `yrcx info alarm` to see the source"),
     };
     let way_out = WAYS_OUT.iter().find(|(_, alarms)| alarms.contains(&alarm)).map(|(way, _)| *way).unwrap_or_default();
     let kept = kept(row, "if the robot had started to move, ");
@@ -87,11 +90,11 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
         .hint(format!("{remedy}{way_out}{kept}"))
 }
 
-/// Commands that remove the cause of an alarm.
+/// Hints with the commands that remove the cause of an alarm.
 const WAYS_OUT: [(&str, &[Alarm]); 2] =
-    [(": `yrcx io set stop=on`", &[STOP_INPUT]), ("; `yrcx recover` clears the alarm", &RECOVERABLE)];
+    [(": use `yrcx io set stop=on`", &[STOP_INPUT]), ("; use `yrcx recover` to clear the alarm", &RECOVERABLE)];
 
-/// Alarms of a lost link, on each fieldbus, and of an emergency stop.
+/// Alarms that `yrcx recover` clears: a lost link, with its numbers on each fieldbus, and an emergency stop.
 const RECOVERABLE: [Alarm; 9] = [
     Alarm::new(12, 541),
     Alarm::new(12, 542),
@@ -104,7 +107,7 @@ const RECOVERABLE: [Alarm; 9] = [
     Alarm::new(12, 600),
 ];
 
-/// Behavior of a repeated relative motion after a stop (4.2.2, 4.2.4); empty for other commands.
+/// Warns how a relative motion behaves if it is repeated after a stop (4.2.2, 4.2.4); empty for other commands.
 pub fn kept(row: &Row, condition: &str) -> String {
     if !row.keeps_target() {
         return String::new();
@@ -141,6 +144,9 @@ mod tests {
         let failure = Failure::from(WordError { alarm: Some(INPUT_FORMAT), ..error });
         assert_eq!(failure.kind, Kind::Usage);
         assert_eq!(failure.message, "point: 30000 is out of range; allowed: 0 to 29999");
-        assert_eq!(failure.hint.unwrap(), "the controller would refuse it with alarm 4.202, input format error");
+        assert_eq!(
+            failure.hint.unwrap(),
+            "correct the value; the controller would refuse this value with alarm 4.202, input format error"
+        );
     }
 }

@@ -26,10 +26,10 @@ pub struct ServeArgs {
     bus: Option<String>,
     #[command(flatten)]
     servers: TypedArguments<Servers>,
-    /// Faults, such as drop=5%,delay=0..50ms,seed=7 or stall; `armctl help simulator` lists them
+    /// Faults, for example drop=5%,delay=0..50ms,seed=7 or stall; `armctl help simulator` lists them
     #[arg(long, value_name = "FAULTS")]
     fault: Option<String>,
-    /// DeviceNet, PROFIBUS: create a symbolic link to the pseudo-terminal and remove it at the end
+    /// For DeviceNet and PROFIBUS: create a symbolic link to the pseudo-terminal, and remove the link at the end
     #[arg(long, value_name = "PATH", alias = "slcan-link")]
     link: Option<PathBuf>,
     /// Start state (TOML): robots, memory, programs, alarms, timed events
@@ -56,10 +56,10 @@ impl ServeArgs {
 
 fn misplaced(flag: &str, chosen: &str, right: &str) -> Failure {
     Failure::usage(format!("--{flag} has no effect with --bus {chosen}; use it with {right}"))
-        .hint("`armctl sim yrcx -h` lists the options of each fieldbus")
+        .hint("use `armctl sim yrcx -h` to list the options of each fieldbus")
 }
 
-/// Console line of a slave or device.
+/// Console command that restarts a simulated slave or device.
 const RESTART: (&str, &str) = ("restart", "switch the slave or device off and on (PROFIBUS, PROFINET)");
 
 impl serve::Serve for ServeArgs {

@@ -1,5 +1,5 @@
-//! Several read requests, one after the other, because a controller executes one remote command at a time. Each has
-//! its own result.
+//! Several read requests, sent one after the other, because a controller executes one remote command at a time. Each
+//! request has its own result.
 
 use super::link::Link;
 use super::refusal::{object, refused};
@@ -10,17 +10,19 @@ use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// Results of several requests, in their order.
+/// Results of several requests, in the order of the requests.
 #[derive(Debug)]
 pub struct Answers {
     /// Values or failure of each request.
     pub outcomes: Vec<Result<Values, Failure>>,
-    /// Number of requests sent. The others were not sent, because they would fail alike.
+    /// Number of requests that were sent. The other requests were not sent, because they would fail for the same
+    /// reason.
     pub asked: usize,
 }
 
-/// Sends all requests. A refusal is the result of its request. A link failure, or a refusal that would repeat, ends
-/// the loop and is the only failure of the whole. A dry run notes all requests and ends.
+/// Sends all requests. A refusal is the result of its own request only. A link failure, or a refusal that the next
+/// request would get too, ends the loop. If this happens at the first request, the function returns the failure. In a
+/// dry run, notes all requests and ends.
 pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<Answers, Failure> {
     plan_each(link, orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
@@ -56,7 +58,7 @@ pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<(), Failure> {
     Err(unknown())
 }
 
-/// Sends one of several requests, and returns whether the next one can succeed.
+/// Sends one of several requests. The flag says whether the next request can succeed.
 async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) {
     match link.try_ask(order).await {
         Ok(Err(refusal)) => (Err(refused(order.row(), refusal.alarm)), !is_about_commands(refusal.alarm)),
@@ -65,7 +67,7 @@ async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) 
     }
 }
 
-/// Whether a refusal concerns remote commands in general, so that the next command would be refused as well.
+/// Whether the controller refuses remote commands in general, so that it would refuse the next command too.
 pub fn is_about_commands(alarm: Alarm) -> bool {
     alarm.group == STOP_INPUT.group
 }
@@ -76,13 +78,13 @@ pub fn is_undefined(failure: &Failure) -> bool {
     failure.kind == Kind::Refused && alarm.is_some_and(|alarm| !is_about_commands(alarm))
 }
 
-/// Checks the fields that an answer repeats from its request.
+/// Checks that the fields that an answer repeats are equal to the fields of the request.
 pub fn check_echo(order: &Order, values: &Values) -> Result<(), Failure> {
     let differs = |(key, asked): &(Key, &Value)| values.value(*key).is_some_and(|told| told != *asked);
     match order.values().iter().find(differs) {
         Some((key, _)) => {
             let message = format!("{}: the answer is for another {key}", order.row().id);
-            Err(Failure::new(Kind::Malformed, message).hint("`-vvv` shows the words"))
+            Err(Failure::new(Kind::Malformed, message).hint("use `-vvv` to see the words"))
         }
         None => Ok(()),
     }

@@ -1,5 +1,5 @@
-//! Numbered data of the controller (4.3, 4.4.1) as tables: one declaration ([`Kind`]) each. The row access is common
-//! to all.
+//! Numbered data of the controller (4.3, 4.4.1) as tables. Each table has a declaration ([`Kind`]). All tables read and
+//! write rows in the same way.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -38,21 +38,21 @@ pub trait Kind: Debug + Send + Sync + 'static {
     const NUMBERS: &'static [&'static str];
     /// Fields of a row: column of a file, field of the commands, and heading.
     const FIELDS: &'static [(&'static str, Key, &'static str)];
-    /// Risk of an overwrite: whether the old data is the work of a person.
+    /// Risk of overwriting a row; [`Risk::Destroy`] if the old data is the work of a person.
     const RISK: Risk = Risk::Destroy;
     /// Whether the table is small enough to read completely by default.
     const IS_SMALL: bool = true;
     /// Whether a row is a text.
     const IS_TEXT: bool = false;
-    /// Type of the names that users assign to rows.
+    /// Kind of the names that users assign to rows; `None` if rows have no names.
     const LABELS: Option<Label> = None;
     /// Completion of row numbers.
     const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
 
-    /// Value of a row.
+    /// Converts the fields of a row to its value in reports.
     fn value(values: &Values) -> Option<Self::Value>;
 
-    /// A row in questions, if its fields are not enough.
+    /// Describes a row for confirmation questions, if the fields alone are not clear enough.
     fn line(_values: &Values) -> Option<String> {
         None
     }
@@ -63,7 +63,7 @@ pub trait Kind: Debug + Send + Sync + 'static {
     }
 }
 
-/// A table of `kind` as a store.
+/// The table of kind `K` as a store.
 #[derive(Debug)]
 pub struct Numbered<K>(PhantomData<K>);
 
@@ -79,7 +79,7 @@ pub struct Row {
     values: Values,
     /// Texts of the columns after the number.
     texts: Vec<String>,
-    /// Request that stores it; none if it was read.
+    /// Request that stores the row; `None` if the row was read from the controller.
     order: Option<Order>,
 }
 
@@ -228,7 +228,7 @@ pub fn is_number(key: Key) -> bool {
     !matches!(key, Key::Unit | Key::HandSystem | Key::Comment)
 }
 
-/// New content of a row: the text of each field, if given.
+/// New content of a row: a text for each field that the user gave.
 pub type Draft = Vec<Option<String>>;
 
 impl<K: Kind> Writable for Numbered<K> {
@@ -245,7 +245,7 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 
     fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
-        // Axes in another unit are not kept.
+        // If the unit changes, the old values of the axes are not kept.
         let unit = K::FIELDS.iter().position(|(_, key, _)| *key == Key::Unit);
         let has_unit = |old: &&Row| unit.is_none_or(|at| draft[at].as_ref().is_none_or(|unit| *unit == old.texts[at]));
         let old = old.filter(has_unit);
@@ -258,7 +258,7 @@ impl<K: Kind> Writable for Numbered<K> {
                 let unit =
                     unit.and_then(|at| draft[at].as_ref()).map_or_else(String::new, |unit| format!(" in {unit}"));
                 let message = format!("{one} {number} is not defined{unit}, so it has no {field} to keep");
-                Err(Failure::usage(message).hint("nothing was written; give all values"))
+                Err(Failure::usage(message).hint("type all values; nothing was written"))
             }
         };
         let texts = draft.iter().enumerate().map(kept).collect::<Result<Vec<String>, Failure>>()?;
@@ -275,7 +275,7 @@ impl<K: Kind> Writable for Numbered<K> {
                 Key::HandSystem if is_pulse => "",
                 key => samples(key, *number)[which],
             };
-            // Two rows that agree only in the given fields.
+            // Make two rows that are equal only in the given fields.
             let filled = |which: usize| {
                 let fields = draft.iter().zip(K::FIELDS);
                 let text = |(text, (_, key, _)): (&Option<String>, &(_, Key, _))| {
@@ -299,34 +299,34 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 }
 
-/// Two different texts of a field, for a dry run.
+/// Returns two different texts of a field, so that a dry run can mark the field as unknown.
 fn samples(key: Key, number: i32) -> [&'static str; 2] {
     match key {
         Key::Unit => ["mm", "pulse"],
-        // Only a point in millimetres has a hand system.
+        // Only points in millimeters have a hand system.
         Key::HandSystem => ["left", ""],
         Key::Comment => ["", "AAAAAAAAAAAAAAAA"],
-        // The robot number is part of the command word in a plan; the first robot is shown.
+        // In a plan, the robot number is part of the command word. The plan shows the first robot.
         Key::Owner => ["1", "1"],
         Key::CountX | Key::CountY | Key::CountZ | Key::FirstPoint => ["1", "2"],
         Key::Data4 => ["0", "1"],
-        // Real variables begin at 256.
+        // The numbers of real variables start at 256.
         Key::Value if number >= 256 => ["0", "-1.1"],
         _ => ["0", "-1"],
     }
 }
 
-/// Whole number in an answer.
+/// Takes a whole number from an answer.
 pub fn int(values: &Values, key: Key) -> i32 {
     values.int(key).unwrap_or_default()
 }
 
-/// Millimetres, from thousandths in an answer.
+/// Takes millimeters from an answer, which has thousandths of a millimeter.
 pub fn mm(values: &Values, key: Key) -> f64 {
     f64::from(int(values, key)) / 1000.0
 }
 
-/// Whether all of these fields are zero.
+/// Whether all of these fields are zero or missing.
 pub fn all_zero(values: &Values, keys: &[Key]) -> bool {
     keys.iter().all(|key| values.value(*key).is_none_or(|value| *value == Value::Int(0)))
 }

@@ -38,7 +38,7 @@ pub struct Open {
     /// Close the session after this time without a command
     #[arg(long, value_name = "TIME", value_parser = duration::parse_some)]
     idle: Option<Duration>,
-    /// The family, if armctl cannot infer it from the target
+    /// Family of the robot, if armctl cannot infer it from the target
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// This is the process that `--background` has started.
@@ -65,8 +65,8 @@ impl Open {
             let message = format!("{} is read-only, but a session takes control of the controller", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
                 .hint(
-                    "read without a session: `yrcx status`, `yrcx io get`, if the fieldbus allows more than one \
-                     client",
+                    "read without a session, if the fieldbus allows more than one client: `yrcx status`, `yrcx io \
+                     get`",
                 )
                 .into());
         }
@@ -145,8 +145,11 @@ async fn in_use_failure(robot: &Robot, location: &SessionPath) -> Failure {
         (_, Some(owner)) => format!("process {}, which does not answer", owner.pid),
         (_, None) => "a process that does not answer".to_owned(),
     };
-    Failure::new(Kind::NoAnswer, format!("{}: a session is already open: {who}", robot.label()))
-        .hint(format!("commands use it automatically; close it with `armctl session close {}`", robot.name))
+    Failure::new(Kind::NoAnswer, format!("{}: a session is already open: {who}", robot.label())).hint(format!(
+        "run commands as usual, because they use the session automatically; close the session with `armctl session \
+         close {}`",
+        robot.name
+    ))
 }
 
 /// Log of a session: on the terminal, or in a file.

@@ -1,4 +1,4 @@
-//! Repeated reads.
+//! Rounds of a repeated read.
 
 use std::time::Duration;
 
@@ -15,36 +15,36 @@ use crate::settings::{Robot, duration};
 /// Time that every look has, even if `--for` ends earlier: a robot that answers at once is not missed.
 const SHORTEST_LOOK: Duration = Duration::from_millis(250);
 
-/// `--watch`, `--count`, `--until`, `--for`.
+/// Repetition options: `--watch`, `--count`, `--until`, `--for`.
 #[derive(Debug, Default)]
 pub struct Repeat {
-    /// Interval from start to start.
+    /// Interval from the start of a run to the start of the next run.
     pub every: Option<Duration>,
     /// Maximum number of runs.
     pub count: Option<u64>,
     /// Condition that ends the repetition.
     pub until: Option<Condition>,
-    /// Condition that a single run must meet.
+    /// Condition that a command without repetition must meet.
     pub check: Option<Condition>,
-    /// Maximum wait for the condition.
+    /// Maximum time to wait for the condition.
     pub within: Option<Duration>,
-    /// Whether only the last round is shown.
+    /// Whether only the last round is printed.
     pub is_quiet: bool,
 }
 
 impl Repeat {
-    /// Whether any of the options was given.
+    /// Whether the user gave any of the options.
     pub fn is_wanted(&self) -> bool {
         self.every.is_some() || self.count.is_some() || self.until.is_some()
     }
 
-    /// Whether a wait ends with this failure of a robot: one in the first round, or another one than silence. Only a
-    /// robot that answered before may be silent for a while.
+    /// Whether a failure of a robot ends a wait. Any failure in the first round does. Later, a missing answer does not
+    /// end the wait, because a robot that answered before may be unreachable for a while.
     pub fn ends_with(&self, failure: &Failure, is_first: bool) -> bool {
         self.is_quiet && !self.allows(failure) && (is_first || failure.kind != Kind::NoAnswer)
     }
 
-    /// Whether the condition is about a robot that does not answer.
+    /// Whether the condition is about a robot that does not answer, so that this failure is allowed.
     pub fn allows(&self, failure: &Failure) -> bool {
         failure.kind == Kind::NoAnswer && self.until.as_ref().is_some_and(Condition::is_about_connection)
     }
@@ -75,7 +75,7 @@ impl Deadline {
     }
 }
 
-/// Rounds of a watch, at fixed intervals without drift.
+/// Rounds of a watch, at fixed intervals that do not drift.
 #[derive(Debug)]
 pub struct Rounds<'a> {
     repeat: &'a Repeat,
@@ -85,7 +85,7 @@ pub struct Rounds<'a> {
 }
 
 impl<'a> Rounds<'a> {
-    /// `every` is the default interval.
+    /// Creates the rounds. `every` is the default interval.
     pub fn new(repeat: &'a Repeat, every: Duration) -> Self {
         Self { repeat, every: repeat.every.unwrap_or(every), began: Instant::now(), completed: 0 }
     }
@@ -105,7 +105,8 @@ impl<'a> Rounds<'a> {
         self.completed == 0
     }
 
-    /// Whether the condition is true. A condition that can never be true is reported in the first round.
+    /// Whether the condition of `--until` is true. In the first round, a note is printed if the condition can never be
+    /// true.
     pub fn is_met(&self, value: &impl Serialize, screen: &Screen) -> Result<bool, Failure> {
         let Some(until) = &self.repeat.until else { return Ok(false) };
         let value = as_value(value)?;
@@ -127,14 +128,14 @@ impl<'a> Rounds<'a> {
             || self.repeat.within.is_some_and(|within| self.every.saturating_mul(done) > within)
     }
 
-    /// Waits for the next round; `false` if there is none.
+    /// Waits for the next round. Returns `false` if there is no further round.
     pub async fn next(&mut self) -> Result<bool, Failure> {
         let is_over = self.is_last();
         self.completed = self.completed.saturating_add(1);
         let next = self.began + self.every.saturating_mul(self.completed);
         if !is_over {
             let rest = async {
-                // Signals must be handled even without a pause.
+                // Signals must be handled even without a pause between rounds.
                 tokio::task::yield_now().await;
                 tokio::time::sleep_until(next).await;
             };
@@ -143,11 +144,11 @@ impl<'a> Rounds<'a> {
         Ok(!is_over)
     }
 
-    /// Result after the last round.
+    /// Result of the repetition after the last round.
     pub fn end(&self) -> Result<(), Failure> {
         let Some(until) = &self.repeat.until else { return Ok(()) };
         Err(Failure::new(Kind::ConditionNotMet, format!("the condition '{until}' was not met"))
-            .hint("--for sets how long to wait for it"))
+            .hint("use --for to set a longer wait"))
     }
 }
 

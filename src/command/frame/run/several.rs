@@ -1,4 +1,4 @@
-//! A command for several robots: in parallel, one connection each.
+//! A command for several robots. It runs in parallel, with one connection for each robot.
 
 use std::time::{Duration, Instant};
 
@@ -11,11 +11,12 @@ use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
 use crate::settings::Robot;
 
-/// Time between attempts of a watch to reach a robot that did not answer.
+/// Time after which a watch tries again to reach a robot that did not answer.
 const RECONNECT_EVERY: Duration = Duration::from_secs(2);
 
 impl Run {
-    /// Runs on several robots in parallel, one connection each, and reports in the order of the robots.
+    /// Runs on several robots in parallel, with one connection for each robot. Prints the reports in the order of the
+    /// robots.
     pub(super) async fn run_many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         if command.is_endless() && !self.gate.dry_run {
             return self.watch_each(command, robots).await;
@@ -56,7 +57,7 @@ impl Run {
                 reconnect_at = Instant::now() + RECONNECT_EVERY;
             }
             let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
-                // A robot that did not answer may be reachable now.
+                // A robot that did not answer before may be reachable now.
                 if matches!(link, Err(failure) if failure.kind == Kind::NoAnswer && reconnects) {
                     *link = self.connect(command, robot, end).await;
                 }
@@ -95,13 +96,13 @@ impl Run {
         }
     }
 
-    /// Common result of several robots.
+    /// Common result for several robots.
     fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
         let failures: Vec<Failure> = failures(outcomes).filter(|failure| !self.repeat.allows(failure)).collect();
         self.failed(&failures, outcomes.len())
     }
 
-    /// Common result of failures that were already reported.
+    /// Common result for failures that were already reported.
     fn failed(&self, failures: &[Failure], robots: usize) -> Result<(), RunError> {
         let Some(first) = failures.first() else { return Ok(()) };
         let failure = if failures.len() == robots && failures.iter().all(|failure| failure.kind == first.kind) {
@@ -112,7 +113,7 @@ impl Run {
         Err(RunError { failure, envelope: None, is_reported: !self.is_for_people() })
     }
 
-    /// Watches several robots in parallel, each on its own connection, until all watches have ended.
+    /// Watches several robots in parallel, each on its own connection. Returns when all watches have ended.
     async fn watch_each(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         let watches = robots.iter().map(|robot| async move {
             let watched = self.watch(command, robot, Some(ReportPosition::LineOf(robot))).await;
@@ -134,7 +135,7 @@ impl Run {
     }
 }
 
-/// Failures of robots and of their reports.
+/// Failures of robots, and failures that their reports state.
 fn failures(outcomes: &[Outcome]) -> impl Iterator<Item = Failure> {
     outcomes.iter().filter_map(failure_of)
 }

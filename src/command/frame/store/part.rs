@@ -1,4 +1,4 @@
-//! A table as a part of a backup: all rows as text, and back.
+//! A table as a part of a backup: converts all rows to text, and back.
 
 use std::fmt::Debug;
 
@@ -14,57 +14,57 @@ use crate::controller::sheet::{self, Dialect};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
-/// Text of a part.
+/// Content of a part as text.
 #[derive(Debug)]
 pub struct Text {
-    /// CSV.
+    /// Text as CSV.
     pub text: String,
-    /// Rows that are not in it.
+    /// Rows that are not in the text.
     pub left_out: Vec<LeftOut>,
     /// Rows that the controller refused because they are not defined, grouped by the reason.
     pub undefined: Vec<LeftOut>,
 }
 
-/// Result of the writes of a part.
+/// Result of writing a part.
 #[derive(Debug, Default)]
 pub struct PartResult {
     /// Number of written rows.
     pub written: usize,
-    /// Number of rows that were already equal.
+    /// Number of rows that were already equal on the controller.
     pub unchanged: usize,
     /// Rows that this controller does not have, or that it refused.
     pub left_out: Vec<LeftOut>,
-    /// First failure, with the account of all rows.
+    /// First failure, with the number of rows that were written and not written.
     pub failure: Option<Failure>,
 }
 
-/// A part of a backup, whatever the type of its rows.
+/// A part of a backup, for any type of rows.
 pub trait TablePart<F: Family>: Debug {
-    /// One row and several: `point`, `points`.
+    /// Singular and plural of the name of a row, such as `point`, `points`.
     fn nouns(&self) -> [&'static str; 2];
 
     /// Number of rows to write.
     fn count(&self) -> usize;
 
-    /// Reads all rows. A dry run notes the requests.
+    /// Reads all rows. A dry run records the requests.
     fn read<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<Text, Failure>>;
 
-    /// Compares the rows of the file with the controller. A dry run notes the requests.
+    /// Compares the rows of the file with the controller. A dry run records the requests.
     fn compare<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<(), Failure>>;
 
     /// Names of the rows that will be written.
     fn differing(&self) -> Vec<String>;
 
-    /// Values that a person wrote and that will be replaced: name, old value, new value.
+    /// User data that the write replaces: name, old value, new value.
     fn replaced(&self) -> Vec<[String; 3]>;
 
-    /// Consequences of the writes, for the question.
+    /// Consequences of the writes, for the question to the user.
     fn consequences(&self) -> Vec<String>;
 
-    /// Writes the rows that differ. A dry run notes the requests.
+    /// Writes the rows that differ. A dry run records the requests.
     ///
     /// # Errors
-    /// Where nothing was tried; a failure of a row is in the result.
+    /// If no row was tried. A failure of a row is in the result.
     fn write<'t>(
         &'t mut self,
         link: &'t mut F::Link,
@@ -82,29 +82,29 @@ pub struct Part<S: Writable> {
 }
 
 impl<S: Writable> Part<S> {
-    /// A table that is read, or written with these rows.
+    /// A table that is read, or to which these rows are written.
     pub fn new(table: S, rows: Vec<Row<S>>) -> Self {
         Self { table, rows, compared: Vec::new(), absent: Vec::new() }
     }
 
-    /// The rows of a file.
+    /// Parses the rows of a file.
     ///
     /// # Errors
-    /// All mistakes in the file.
+    /// If the file has mistakes. All of them are returned.
     pub fn parse(table: S, bytes: &[u8]) -> Result<Self, Vec<Finding>> {
         let mut findings = Findings::default();
         let rows = parse(&table, bytes, &mut findings);
         if findings.errors() > 0 { Err(findings.into_errors()) } else { Ok(Self::new(table, rows)) }
     }
 
-    /// Splits the rows into those for which `is_first` holds, and the others.
+    /// Splits the rows: the first part has the rows for which `is_first` is true, the second part has the others.
     #[must_use]
     pub fn split(self, other: S, is_first: impl Fn(S::Key) -> bool) -> [Self; 2] {
         let (first, second) = self.rows.into_iter().partition(|(key, _)| is_first(*key));
         [Self::new(self.table, first), Self::new(other, second)]
     }
 
-    /// First failure, with the account of all rows.
+    /// First failure, with the number of rows that were written and not written.
     fn failure(&self) -> Option<Failure> {
         let failed = self.compared.iter().filter(|row| row.outcome.is_err());
         let (written, unchanged) = self.counts();
@@ -115,7 +115,7 @@ impl<S: Writable> Part<S> {
         if written + unchanged > 0 {
             parts.push(format!("{written} written, {unchanged} unchanged"));
         }
-        // Only these failures prove that the row did not change.
+        // Only these kinds of failure prove that the row did not change.
         let is_unwritten =
             |failure: &Failure| matches!(failure.kind, Kind::Refused | Kind::NoAnswer | Kind::Rejected | Kind::Usage);
         let tried = || failed.clone().filter(|row| !row.is_skipped);
@@ -128,12 +128,12 @@ impl<S: Writable> Part<S> {
                 parts.push(format!("{state}: {}", span(&names)));
             }
         }
-        let again = "repeat the command: it continues and skips stored values".to_owned();
+        let again = "repeat the command to continue; it skips stored values".to_owned();
         let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
         Some(Failure { message: parts.join("; "), ..failure }.hint(hint))
     }
 
-    /// Number of written rows and of equal rows.
+    /// Number of written rows and of unchanged rows.
     fn counts(&self) -> (usize, usize) {
         let count = |wanted| self.compared.iter().filter(|row| row.outcome == Ok(wanted)).count();
         (count(true), count(false))
@@ -193,7 +193,7 @@ fn by_reason<S: Store>(rows: Vec<(S::Key, String)>) -> Vec<LeftOut> {
     groups.into_iter().map(|(why, keys)| LeftOut { name: S::names(&keys), why }).collect()
 }
 
-/// A few names, or the first and the last.
+/// Text for names: all names if they are few, otherwise the first and the last.
 fn span(names: &[String]) -> String {
     match names {
         [first, _, _, .., last] => format!("{first} to {last}"),

@@ -17,12 +17,11 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, View};
 
-/// List the tasks with the number of steps of their programs.
+/// List the tasks, with the number of steps of each task.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "--used reads every step of every task, which takes about 35 ms per step at 9600 baud. armctl selects \
-                        each task temporarily. This is a change, which a read-only robot does not \
-                        allow."
+    after_help = "With --used, armctl reads every step of every task, which takes about 35 ms per step at 9600 baud. \
+                  armctl selects each task temporarily. This is a change, which a read-only robot does not allow."
 )]
 pub struct List {
     /// Read the programs to count their steps and list their tags
@@ -90,13 +89,13 @@ pub struct Listed {
 #[derive(Debug, Serialize, JsonSchema)]
 struct Task {
     task: u8,
-    /// Whether it is the current task.
+    /// Whether the task is the current task.
     current: bool,
     /// Number of steps of the task (E22).
     room_steps: u16,
-    /// Steps up to the last one that is not a NOP; null if they were not read.
+    /// Number of steps up to the last step that is not a NOP; null if the steps were not read.
     used_steps: Option<usize>,
-    /// Tags of the program; null if it was not read.
+    /// Tags of the program; null if the program was not read.
     tags: Option<Vec<i32>>,
     /// Reason why the program could not be read.
     #[serde(skip_serializing_if = "Option::is_none")]

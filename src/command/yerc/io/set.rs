@@ -32,16 +32,16 @@ use crate::output::Screen;
 /// Switches network inputs.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Only network inputs can be written from a PC: #27010 to #29567 on a DX200, #25010 to #26287 on an \
-                  FS100. The protocol writes eight signals at a time: armctl reads the group, changes the named \
-                  signals, and writes the others back unchanged. A change of these others in the meantime is lost. \
-                  --group writes all eight signals without a read."
+    after_help = "A PC can write only network inputs: #27010 to #29567 on a DX200, #25010 to #26287 on an FS100. The \
+                  protocol writes eight signals at a time. armctl reads the group, changes the signals that you type, \
+                  and writes the other signals back unchanged. If another signal of the group changes between the \
+                  read and the write, that change is lost. --group writes all eight signals without a read."
 )]
 pub struct Set {
     /// 27010=on, #27011=off, or clamp=on for a name
     #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off", add = complete::SIGNAL_STATE)]
     signals: Vec<Switch>,
-    /// Eight signals of a group, the first one lowest, such as 2701=0xA5 (repeatable)
+    /// Eight signals of a group, such as 2701=0xA5; the first signal is the lowest bit (repeatable)
     #[arg(long = "group", value_name = "GROUP=VALUE")]
     groups: Vec<GroupValue>,
 }
@@ -81,7 +81,7 @@ impl FromStr for GroupValue {
     }
 }
 
-/// Change of a group: bits in the mask are set to those of the value, the others stay.
+/// Change of a group. Bits in the mask get the bits of the value; the other bits stay unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Change {
     mask: u8,
@@ -126,7 +126,7 @@ fn written(item: IoItem, row: &ComparedRow<Groups>, value: impl Fn(u8) -> IoValu
 }
 
 impl Set {
-    /// Change of each group. A signal that appears twice is an error.
+    /// Change of each group. It is an error if a signal occurs twice.
     fn changes(&self) -> Result<BTreeMap<u16, Change>, Failure> {
         let mut changes: BTreeMap<u16, Change> = BTreeMap::new();
         let wholes = self.groups.iter().map(|whole| (whole.group, Change { mask: u8::MAX, value: whole.value }));
@@ -138,7 +138,7 @@ impl Set {
             if known.mask & change.mask != 0 {
                 let bit = u8::try_from((known.mask & change.mask).trailing_zeros()).unwrap_or_default();
                 return Err(Failure::usage(format!("{} appears twice", signal::name(group, bit)))
-                    .hint("give each signal one state"));
+                    .hint("type one state for each signal"));
             }
             *known = Change { mask: known.mask | change.mask, value: known.value | change.value };
         }
@@ -243,7 +243,7 @@ impl Writable for Groups {
                 (format!("writes group {groups}"), IF_DIFFERENT)
             } else {
                 let about = format!("writes group {groups}; the other signals keep the values that were read");
-                (about, "the values that were read")
+                (about, "the signals that were read")
             };
             link.plan_depending(&one, &other, Reason::about(&about).depending_on(depends_on));
         }

@@ -29,10 +29,10 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::target::Family;
 
-/// Controller model and its robots.
+/// Host software of the controller, and its robots.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Controller {
-    /// Host software version: `V1.08 R0048`.
+    /// Version of the host software, for example `V1.08 R0048`.
     pub software: String,
     /// Robots of the controller.
     pub robots: Vec<Robot>,
@@ -41,11 +41,11 @@ pub struct Controller {
 /// A robot of the controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Robot {
-    /// 1 to 4.
+    /// Robot number, 1 to 4.
     pub robot: u8,
-    /// The number of its model.
+    /// Number of the robot's model.
     pub robot_type: i32,
-    /// Its axes, 1 to 4.
+    /// Axes of the robot, 1 to 4.
     pub axes: Vec<u8>,
 }
 
@@ -64,7 +64,7 @@ impl About for Controller {
 }
 
 impl Controller {
-    /// Reads it from the controller.
+    /// Reads the software version and the robots from the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let versions = link.ask(&Command::Versions.order().build()?).await?.values;
         let told = |key| shown(Command::Versions, &versions, key).unwrap_or_default();
@@ -96,7 +96,7 @@ impl Controller {
         Ok(())
     }
 
-    /// Types of the robots as text.
+    /// Lists the types of the robots.
     pub fn types(&self) -> String {
         let types = self.robots.iter().map(|robot| format!("{} (robot {})", robot.robot_type, robot.robot));
         types.collect::<Vec<_>>().join(", ")
@@ -114,7 +114,7 @@ pub struct Text {
     pub points: Option<String>,
 }
 
-/// A command for one robot of the controller.
+/// Starts a request for one robot of the controller.
 fn of_robot(command: Command, robot: u8) -> Draft {
     command.order().with(Key::Robot, i32::from(robot))
 }
@@ -122,11 +122,11 @@ fn of_robot(command: Command, robot: u8) -> Draft {
 /// Notes a request in a dry run that is sent only if its robot exists.
 fn plan_if_there(link: &mut Link, order: &Order, about: &str) {
     let robot = order.values().int(Key::Robot).unwrap_or_default();
-    let depends_on = format!("the axes: it is read if there is a robot {robot}");
+    let depends_on = format!("the axes: read only if there is a robot {robot}");
     link.plan_depending(order, order, Reason::about(about).depending_on(&depends_on));
 }
 
-/// Notes the read requests of a part in a dry run; `points` is the requested selection.
+/// Notes the requests that read a part in a dry run. `points` are the points that the user selected.
 pub async fn plan(link: &mut Link, screen: &Screen, part: Part, points: Option<&BTreeSet<i32>>) -> Result<(), Failure> {
     let orders = match part {
         Part::Settings(robot) => Settings { robot }.read_orders(&Settings::all())?,
@@ -141,11 +141,16 @@ pub async fn plan(link: &mut Link, screen: &Screen, part: Part, points: Option<&
             return Ok(());
         }
         Part::Points(_) => {
-            // These are read in any case.
+            // These points are read in any case; the search cannot end earlier.
             let certain = || (0..).take(GAP).collect();
             let numbers = points.map_or_else(certain, |points| points.iter().copied().collect::<Vec<_>>());
             Numbered::<Points>::default().read(link, screen, &numbers).await.known()?;
-            let others = if points.is_some() { "" } else { "the other points until 100 in a row are not defined, " };
+            let others = if points.is_some() {
+                ""
+            } else {
+                "the other points, until 100 consecutive points are not \
+                                                            defined, "
+            };
             link.then(&format!("{others}the points of pallets, then the comments of the points that are defined"));
             return Ok(());
         }

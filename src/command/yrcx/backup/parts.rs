@@ -1,4 +1,4 @@
-//! Parts of a controller backup, one file each.
+//! Parts of a controller backup. Each part is one file.
 
 use std::fmt;
 use std::str::FromStr;
@@ -16,7 +16,7 @@ use crate::controller::findings::Finding;
 /// Part of a backup.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// Versions, option slots and robots; read-only.
+    /// Versions, option slots and robots; never written back.
     Info,
     /// Speeds, inching distance and hand system of a robot, 1 to 4.
     Settings(u8),
@@ -51,8 +51,8 @@ impl Part {
         Self::without_points(1..=4).chain((0..30).map(Self::Points))
     }
 
-    /// Parts in the order of writing: points before the pallets that need them, and parts that change the motion of
-    /// the robot last.
+    /// Returns the parts in the order of writing. Points come before the pallets that need them. Parts that change how
+    /// the robot moves come last.
     pub fn in_order_of_writing() -> impl Iterator<Item = Self> {
         let place = |part: &Self| match part {
             Self::Variables | Self::Shifts | Self::Hands => 0,
@@ -65,7 +65,7 @@ impl Part {
         parts.into_iter()
     }
 
-    /// File name in the folder.
+    /// Name of the file in the backup folder.
     pub fn file(self) -> String {
         let ending = if self == Self::Info { "toml" } else { "csv" };
         format!("{self}.{ending}")
@@ -90,7 +90,7 @@ impl Part {
         [self.to_string(), self.kind().to_owned()]
     }
 
-    /// Whether the part changes how the robot moves. It is restored only with `--machine`.
+    /// Whether the part changes how the robot moves. Such a part is restored only with `--machine`.
     pub fn is_machine(self) -> bool {
         matches!(self, Self::Settings(_) | Self::Parameters(_))
     }

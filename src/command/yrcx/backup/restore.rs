@@ -60,11 +60,11 @@ fn tables(jobs: &mut [Job]) -> impl ExactSizeIterator<Item = &mut Table<Yrcx>> {
     jobs.iter_mut().map(|job| &mut job.table)
 }
 
-/// Notes each part of the backup in a dry run.
+/// Notes for each part of the backup, in a dry run, whether it would be written.
 fn plan_items(link: &mut Link, saved: impl Iterator<Item = Part>, jobs: &[Job], machine: bool) {
     for part in saved {
         let why = match part {
-            Part::Info => "information about the controller; it is not written",
+            Part::Info => "information about the controller, which a restore does not write",
             part if part.is_machine() && !machine => NOT_MACHINE,
             _ => NOT_CHOSEN,
         };
@@ -77,18 +77,22 @@ fn plan_items(link: &mut Link, saved: impl Iterator<Item = Part>, jobs: &[Job], 
     }
 }
 
-/// Checks whether the backup can be written to this controller now.
+/// Checks that the controller can accept this backup now: no program is running, and the robots are the same.
 async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Result<(), Failure> {
     let image = link.look().await?;
     if output::PROGRAM_RUNNING.is_on(&image) {
-        return Err(Failure::new(Kind::Rejected, "the robot program is running and may use the data to be written")
-            .hint("stop the program (`yrcx stop`), then restore"));
+        return Err(Failure::new(
+            Kind::Rejected,
+            "the robot program is running, and may use the data that the restore writes",
+        )
+        .hint("stop the program (`yrcx stop`), then restore"));
     }
     let found = Controller::ask(link).await?;
     if found.robots != backup.robots && !force {
-        let message = format!("the backup is of robot type {}, the controller has {}", backup.types(), found.types());
+        let message =
+            format!("the backup is from robot type {}, but the controller has {}", backup.types(), found.types());
         return Err(Failure::new(Kind::Rejected, message)
-            .hint("use a backup of this controller, or add --force to write it anyway"));
+            .hint("use a backup of this controller, or add --force to write this backup anyway"));
     }
     Ok(())
 }

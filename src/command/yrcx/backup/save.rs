@@ -25,24 +25,24 @@ use crate::settings::Robot;
 /// Saves points, pallets, shifts, hands, variables and parameters in a folder of text files.
 #[derive(Debug, Args)]
 #[command(after_help = "Remote commands cannot read programs. Save programs with the controller's own tools.\n\nEach \
-                        point takes one remote command: 60 ms or more at an RPI of 20 ms. Without --points, points are \
-                        read from 0 until 100 in a row are not defined. The points of pallets are always read. \
-                        manifest.json lists the points that were read. A controller refuses undefined points and may \
-                        record this in its alarm history.")]
+                        point takes one remote command: 60 ms or more at an RPI of 20 ms. Without --points, armctl \
+                        reads points from 0 until 100 consecutive points are not defined. armctl always reads the \
+                        points of pallets. manifest.json lists the points that were read. A controller refuses \
+                        undefined points, and may record the refusal in its alarm history.")]
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
-    /// Points, 0 to 29999: 0..999 or 0..99,500
+    /// Points to save, 0 to 29999: 0..999 or 0..99,500
     #[arg(long, value_name = "POINT", value_delimiter = ',', value_parser = points)]
     points: Vec<String>,
 }
 
-/// Points to read, as typed.
+/// Checks the points that the user typed, and returns the text unchanged.
 pub fn points(text: &str) -> Result<String, String> {
     PointSheet::keys(text).map(|_| text.to_owned())
 }
 
-/// Prefix of the points in the scope of a backup.
+/// Prefix that marks a selection of points in the scope of a backup.
 const OF_POINTS: &str = "points ";
 
 impl Command for Backup {
@@ -71,7 +71,7 @@ pub async fn back_up(context: Context<'_, Yrcx>, making: SaveOptions) -> Result<
 /// Selected parts and points.
 struct Selection {
     only: Only,
-    /// Selected points; `None` searches until a gap.
+    /// Selected points; `None` means that armctl reads points until it finds a gap.
     points: Option<BTreeSet<i32>>,
 }
 
@@ -116,13 +116,13 @@ async fn save(
     let tried: Vec<String> = list.files().iter().map(|file| file.name.clone()).collect();
     let rest = parts.into_iter().chain(Some(Part::Points(0)).filter(|part| selection.has(*part))).filter(|_| !goes_on);
     let rest = rest.filter(|part| !tried.contains(&part.to_string()));
-    // Refusals appear only in the manifest.
+    // The refusals of a file that was kept are only in the manifest, and not in the report.
     let kept = list.files().iter_mut().filter(|file| file.more.state == State::Kept);
     kept.for_each(|file| file.more.left_out.clear());
     list.end(rest.map(FileItem::pending))
 }
 
-/// A backup in progress.
+/// Reads a backup into its folder.
 struct Reading<'a> {
     link: &'a mut Link,
     screen: &'a Screen,
@@ -200,8 +200,8 @@ fn saved(part: Part, Text { table, points }: Text) -> save::SavedPart {
 /// Number of consecutive undefined points that ends the search, if the user gives no range.
 pub const GAP: usize = 100;
 
-/// Number of consecutive undefined points at the end of a range, with `gap` before it; at least [`GAP`] if that many
-/// occurred inside the range.
+/// Counts the consecutive undefined points at the end of a range. `gap` is their number directly before the range.
+/// Returns at least [`GAP`] if so many were found in a row inside the range.
 pub fn gap_after(gap: usize, within: Range<i32>, defined: &[i32]) -> usize {
     let mut next = within.start;
     let mut gap = gap;

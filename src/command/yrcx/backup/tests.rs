@@ -44,7 +44,7 @@ impl Desk {
         self.folder.path().join(name)
     }
 
-    /// Runs a line; `@` is replaced by the folder.
+    /// Runs a command line. `@` in the line is replaced by the folder.
     fn run(&mut self, line: &str) -> Result<(Value, Option<Failure>), Failure> {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>())?;
@@ -68,7 +68,7 @@ impl Desk {
         }
     }
 
-    /// Runs a line for this time, then drops it.
+    /// Runs a command line for the time `after`, then drops it.
     fn cut(&mut self, line: &str, after: Duration) {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
@@ -171,14 +171,14 @@ fn a_backup_that_was_cut_off_goes_on() {
     let saved = list["files"].as_array().unwrap().len();
     assert!(saved > 2 && saved < 14 && list["complete"] == false, "{saved}");
     let failure = desk.failure("backup @/cut");
-    assert!(failure.message.contains("holds an incomplete backup"), "{failure}");
+    assert!(failure.message.contains("contains an incomplete backup"), "{failure}");
     let other = desk.failure("backup @/cut --resume --points 0..9");
     assert_eq!(other.kind, Kind::Usage, "{other}");
     let data = desk.data("backup @/cut --resume");
     assert_eq!((&data["complete"], &item(&data, "info")["state"]), (&json!(true), &json!("kept")));
     desk.data("backup @/whole");
     assert_eq!(files(&desk.path("cut")), files(&desk.path("whole")));
-    // A file that changed after the backup is read again.
+    // A file that changed after the backup is read again from the controller.
     std::fs::write(desk.path("cut/variables.csv"), "x").unwrap();
     let data = desk.data("backup @/cut --resume");
     assert_eq!((&item(&data, "variables")["state"], &item(&data, "hands")["state"]), (&json!("done"), &json!("kept")));
@@ -198,7 +198,7 @@ fn points_end_at_a_gap_unless_they_are_named_and_those_of_pallets_come_anyway() 
     desk.data("backup @/named --points 299..301 --only points*");
     assert_eq!(manifest(&desk.path("named"))["scope"], json!(["points 299..301", "only points*"]));
     assert!(files(&desk.path("named"))["points-00000.csv"].ends_with("\n300,pulse,1,2,3,4,\n"));
-    // With --resume, the earlier selection continues.
+    // `--resume` uses the selection of the earlier run.
     std::fs::remove_file(desk.path("named/points-00000.csv")).unwrap();
     desk.data("backup @/named --resume");
     assert_eq!(files(&desk.path("named")).len(), 1);
@@ -245,7 +245,7 @@ fn nothing_is_written_while_the_program_runs() {
     desk.data("run");
     let failure = desk.failure("restore @/saved");
     assert_eq!(failure.kind, Kind::Rejected);
-    assert_eq!(failure.message, "the robot program is running and may use the data to be written");
+    assert_eq!(failure.message, "the robot program is running, and may use the data that the restore writes");
 }
 
 #[test]

@@ -13,9 +13,10 @@ table_commands! {
     HandData of Numbered<Hands> {}
 }
 
-/// Note on data 1, the only number without a unit.
-const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about its unit. Its \
-                      example for a Cartesian robot uses 10000 for 10.000 mm, its text uses a whole number.";
+/// Note for the help about data 1, the only value whose unit is not clear.
+const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about the unit. The \
+                      example of the manual for a Cartesian robot uses 10000 for 10.000 mm. The text of the manual \
+                      uses a whole number.";
 
 /// The hands of the controller.
 #[derive(Debug)]
@@ -57,16 +58,16 @@ impl Kind for Hands {
     }
 }
 
-/// A hand.
+/// Data of a hand.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Data {
     /// Robot that the hand belongs to.
     robot: i32,
-    /// Raw value of the protocol: the manual does not define its unit clearly.
+    /// Data 1 as the raw value of the protocol, because the manual does not clearly define its unit.
     data_1: i32,
     data_2_mm: f64,
     data_3_mm: f64,
-    /// 1 for a hand on the R axis, else 0.
+    /// Data 4: 1 for a hand on the R axis, otherwise 0.
     data_4: i32,
 }
 

@@ -25,8 +25,8 @@ impl Kind for Pallets {
         range: "Pallets, 0 to 39: 10, 0..39 or 1,5",
         reading: None,
         writing: Some(
-            "The controller stores the corners of a pallet in five points, starting with the first point. Set them with \
-             `yrcx point set` or `yrcx teach`.",
+            "The controller stores the corners of a pallet in five points, starting with the first point. Set these \
+             points with `yrcx point set` or `yrcx teach`.",
         ),
     };
     const IDS: Ids = ids!("yrcx.pallet-data");
@@ -51,16 +51,16 @@ impl Kind for Pallets {
     }
 }
 
-/// A pallet.
+/// Data of a pallet.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Places {
-    /// Positions in X.
+    /// Number of positions in X.
     nx: i32,
-    /// Positions in Y.
+    /// Number of positions in Y.
     ny: i32,
-    /// Positions in Z.
+    /// Number of positions in Z.
     nz: i32,
-    /// The first of the five points that define it.
+    /// First of the five points that define the pallet.
     first_point: i32,
 }
 

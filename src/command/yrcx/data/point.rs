@@ -29,7 +29,7 @@ commands! {
         List(List<Numbered<Points>>),
         /// Define a point: 100 --mm 10,-20,5,-18
         Set(Set),
-        /// Copy a point to others: 5 6..8
+        /// Copy a point to other points: 5 6..8
         Copy(Copy<Numbered<Points>>),
         /// Save points and their comments to a CSV file
         Dump(Dump<PointSheet>),
@@ -90,7 +90,7 @@ impl Kind for Points {
 /// Defines a point.
 #[derive(Debug, clap::Args)]
 #[command(group = ArgGroup::new("coordinates").required(true),
-    after_help = "Give 0 for an axis that the robot does not have. `yrcx teach 19` (or `yrcx point set 19 here`) \
+    after_help = "Type 0 for an axis that the robot does not have. `yrcx teach 19` (or `yrcx point set 19 here`) \
                   stores the current position. `yrcx point set 19 @FILE` stores the output of `yrcx position --json` \
                   from FILE; @- reads stdin.")]
 pub struct Set {
@@ -103,7 +103,7 @@ pub struct Set {
     /// Coordinates of axes 1 to 4 in pulses
     #[arg(long, value_name = "PULSES,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
     pulse: Option<Four>,
-    /// File with coordinates and hand system from `position --json`; - is stdin
+    /// File with coordinates and hand system from `position --json`; - reads stdin
     #[arg(long, value_name = "FILE", group = "coordinates")]
     position: Option<PathBuf>,
     /// Hand system of coordinates in mm
@@ -148,16 +148,16 @@ impl Set {
     }
 }
 
-/// A number for each of the four axes, as typed.
+/// A number for each of the four axes, as the user typed them.
 type Four = [String; 4];
 
 fn four(text: &str) -> Result<Four, String> {
     let numbers: Vec<String> = text.split(',').map(|number| number.trim().to_owned()).collect();
     let count = numbers.len();
-    numbers.try_into().map_err(|_| format!("expected four numbers, one per axis, as in 10,-20,5,-18; {count} given"))
+    numbers.try_into().map_err(|_| format!("expected four numbers, one per axis, such as 10,-20,5,-18; {count} given"))
 }
 
-/// Point in the output of `position --json` or `point get --json`.
+/// Reads a point from the output of `position --json` or `point get --json`.
 fn printed_point(file: &Path) -> Result<Given, Failure> {
     let text = parse_printed_position(file)?;
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -170,7 +170,7 @@ fn printed_point(file: &Path) -> Result<Given, Failure> {
                 .hint("write the file with `yrcx position --json` or `yrcx point get --json`"));
         }
     };
-    let four = four(axes).map_err(|error| Failure::usage(error).hint("give four numbers separated by commas"))?;
+    let four = four(axes).map_err(|error| Failure::usage(error).hint("type four numbers separated by commas"))?;
     Ok(Given { unit, four, hand })
 }
 
@@ -205,7 +205,7 @@ mod tests {
         assert_eq!(sent[0][..8], ["0x0100", "0x0005", "0x0000", "0x0000", "0x03E8", "0x0000", "0xF63C", "0xFFFF"]);
         objects([
             ("point set 1", "--mm"),
-            ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, as in 10,-20,5,-18; 3 given"),
+            ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, such as 10,-20,5,-18; 3 given"),
             ("point set 1 --mm 1,2,3,4 --pulse 1,2,3,4", "cannot be used with"),
             ("point set 1 --pulse 1,2,3,4 --hand left", "cannot be used with"),
             ("point set 30000 --mm 1,2,3,4", "allowed: 0 to 29999"),

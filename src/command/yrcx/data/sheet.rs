@@ -25,14 +25,14 @@ pub struct PointSheet {
     comments: Numbered<Comments>,
 }
 
-/// A point, and its comment; none if it was not read.
+/// A point and its comment; `None` for a part that was not read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Content {
     point: Option<Row>,
     comment: Option<Row>,
 }
 
-/// New content of a point, and its comment, as far as they were given.
+/// New content of a point and of its comment; `None` for a part that is not given.
 #[derive(Debug, Clone)]
 pub struct Draft {
     point: Option<Texts>,
@@ -241,7 +241,7 @@ mod tests {
     use super::*;
     use crate::controller::yrcx::value::Values;
 
-    /// Point 7, left-handed in mm, or in pulses.
+    /// Returns point 7 as it is stored: in mm and left-handed, or in pulses.
     fn held(texts: [&str; 6]) -> Content {
         let texts: Vec<Option<String>> = texts.into_iter().map(|text| Some(text.to_owned())).collect();
         let point = Numbered::<Points>::default().complete_draft(7, &texts, None).unwrap();

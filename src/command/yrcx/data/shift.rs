@@ -46,7 +46,7 @@ impl Kind for Shifts {
     }
 }
 
-/// A shift.
+/// Data of a shift.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Shift {
     /// Shift of axes 1 to 4 in mm, or degrees for rotary axes.
@@ -74,6 +74,6 @@ mod tests {
     #[test]
     fn mistakes_are_named() {
         assert!(objection(&["shift-data", "set", "40", "1", "2", "3", "4"]).contains("allowed: 0 to 39"));
-        assert!(words(&["shift-data", "set", "4", "1"]).unwrap_err().message.contains("4 values needed, 1 given"));
+        assert!(words(&["shift-data", "set", "4", "1"]).unwrap_err().message.contains("4 values needed, but 1 typed"));
     }
 }

@@ -12,7 +12,7 @@ use crate::controller::yrcx::alarm::Alarm;
 use crate::settings::target::devicenet;
 use crate::transport::capture::LINKTYPE_CAN;
 
-/// DeviceNet.
+/// DeviceNet as a fieldbus.
 pub const BUS: Fieldbus = Fieldbus {
     name: devicenet::BUS,
     link_alarm: Alarm::new(12, 541),

@@ -33,7 +33,11 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
     layers.ok("MAC ID", format!("MAC {} is on line", node.mac));
     let identity = match board.identity().await {
         Err(failure) if failure.kind == Kind::Refused => {
-            layers.warn("owner", "another master, such as a PLC or a session, has its connections", OWNED);
+            layers.warn(
+                "owner",
+                "another master, such as a PLC or a session, uses the connections of the controller",
+                OWNED,
+            );
             return overheard(board, layers).await;
         }
         identity => identity.in_layer("owner")?,
@@ -42,7 +46,12 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
     let name = identity.name.as_deref().unwrap_or("without a name");
     let vendor = identity.vendor.map_or_else(|| "?".to_owned(), |vendor| vendor.to_string());
     let told = format!("{name}, vendor {vendor}");
-    layers.judge("identity", identity.vendor == Some(MAKER), (&told, &told), "the vendor id of a YRCX is 636");
+    layers.judge(
+        "identity",
+        identity.vendor == Some(MAKER),
+        (&told, &told),
+        "check the node: the vendor id of a YRCX is 636",
+    );
     match board.sizes().await {
         Err(failure) => layers.fail("sizes", &failure),
         Ok(sizes) => match profile(sizes) {
@@ -56,25 +65,29 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
     board.release().await;
     let image = image.in_layer("inputs")?;
     match image {
-        None => layers.warn("inputs", "sent only in polls", "`armctl session open` polls it"),
+        None => layers.warn(
+            "inputs",
+            "the controller sends its inputs only in answers to a poll",
+            "use `armctl session open` to poll the controller",
+        ),
         Some(_) => layers.ok("inputs", "readable"),
     }
     Ok(image)
 }
 
-const OWNED: &str = "to send commands, stop the scan of that master; read-only commands work in parallel";
+const OWNED: &str = "stop the scan of that master to send commands; read-only commands work in parallel";
 
-/// With another master on the bus, only listening is possible.
+/// Listens to the polls of the other master: while it owns the node, armctl cannot read the image with messages.
 async fn overheard(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let image = board.overheard().await.in_layer("inputs")?;
     match image {
         None => layers.warn("inputs", "the master does not poll the controller", "check the PLC"),
-        Some(_) => layers.ok("inputs", "received from its answers to the master"),
+        Some(_) => layers.ok("inputs", "received from the answers of the controller to the master"),
     }
     Ok(image)
 }
 
-/// Name of an image size.
+/// Returns the name of the setting that has these image sizes.
 pub(super) fn profile(sizes: (Option<u16>, Option<u16>)) -> Option<&'static str> {
     match sizes {
         (Some(48), Some(48)) => Some("Normal: 48 bytes each way"),

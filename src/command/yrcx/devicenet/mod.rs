@@ -1,5 +1,5 @@
-//! Controllers on DeviceNet, and `yrcx devicenet`: diagnosis of the nodes with explicit messages. No polls are started,
-//! so the end of the command does not affect the controller.
+//! Controllers on DeviceNet, and the commands `yrcx devicenet`, which diagnose the nodes with explicit messages. The
+//! commands start no polls, so their end does not affect the controller.
 
 mod board;
 pub mod bus;
@@ -17,9 +17,9 @@ use super::messages::ReadBoard;
 use crate::command::commands;
 
 commands! {
-    /// Commands on the bus.
+    /// Commands for DeviceNet.
     pub enum DeviceNet {
-        /// List the nodes on the bus; no node is allocated
+        /// List the nodes on the bus, without allocating a node
         Scan(ReadBoard<scan::Scanned>),
         /// Identity of the controller's node
         Identity(ReadBoard<identity::Identified>),

@@ -14,15 +14,15 @@ use crate::output::view::{Cell, Section, View};
 /// no polls are sent.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Probed {
-    /// Null if another master owns the connections, because no other client can then read.
+    /// Identity of the node. Null if another master owns the connections, because other clients then cannot read it.
     identity: Option<Identity>,
     /// Whether another master owns the connections of the node.
     owned: bool,
-    /// Bytes from the controller.
+    /// Number of bytes from the controller.
     in_size: Option<u16>,
-    /// Bytes to the controller.
+    /// Number of bytes to the controller.
     out_size: Option<u16>,
-    /// Meaning of the sizes.
+    /// Setting of the fieldbus unit that has these sizes.
     profile: Option<&'static str>,
 }
 

@@ -19,11 +19,12 @@ use crate::transport::devicenet::device::Setup;
 use crate::transport::devicenet::hub::{Hub, Listen};
 use crate::transport::devicenet::wire::Mac;
 
-/// SLCAN adapters and node of the simulator.
+/// Arguments for the SLCAN adapters and the node of the simulator.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
-    /// DeviceNet: address of the SLCAN adapters, one for each TCP client; port 0 lets the system choose
+    /// DeviceNet: address of the SLCAN adapters; each TCP client gets its own adapter; with port 0, the system chooses
+    /// a port
     #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:0", value_parser = listen)]
     slcan_bind: SocketAddr,
     /// DeviceNet: MAC ID of the controller
@@ -40,7 +41,7 @@ fn listen(text: &str) -> Result<SocketAddr, String> {
 
 fn bitrate(text: &str) -> Result<Bitrate, String> {
     let found = Bitrate::ALL.into_iter().find(|bitrate| bitrate.name() == text);
-    found.ok_or_else(|| format!("there are {}, not '{text}'", Bitrate::ALL.map(Bitrate::name).join(", ")))
+    found.ok_or_else(|| format!("the bit rates are {}, not '{text}'", Bitrate::ALL.map(Bitrate::name).join(", ")))
 }
 
 impl Serve for ServeArgs {
@@ -86,7 +87,7 @@ type Link = Option<TerminalLink>;
 #[cfg(not(unix))]
 type Link = Option<()>;
 
-/// SLCAN adapters. The symbolic link is removed with them.
+/// SLCAN adapters. When they are dropped, the symbolic link is removed.
 struct Adapters {
     hub: Hub<Controller>,
     _link: Link,

@@ -12,7 +12,7 @@ use crate::controller::yrcx::alarm::Alarm;
 use crate::settings::target::eip::SCHEME;
 use crate::transport::tap::LINKTYPE_RAW;
 
-/// EtherNet/IP.
+/// EtherNet/IP as a fieldbus.
 pub const BUS: Fieldbus = Fieldbus {
     name: SCHEME.bus,
     link_alarm: Alarm::new(12, 551),

@@ -29,7 +29,7 @@ impl BoardReport for Identified {
         let address = board.address().to_string();
         let Some(identity) = board.identity().await? else {
             return Err(Failure::new(Kind::Malformed, format!("{}: the board has no identity", board.label()))
-                .hint("check that the address is that of an EtherNet/IP board"));
+                .hint("check that the address belongs to an EtherNet/IP board"));
         };
         Ok(Self { address, identity, services: board.services().await? })
     }

@@ -19,12 +19,12 @@ use crate::output::view::{Cell, Section, View};
 /// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Class 1 is the identity, 4 the assemblies (attribute 3 the data, 4 the size), 0xF5 the TCP/IP \
-                  interface, 0xF6 the Ethernet link. Instance 0 is the class itself. The objects depend on the board; \
-                  the manuals of the controller do not list them."
+    after_help = "Class 1 is the identity, class 4 the assemblies (attribute 3 is the data, attribute 4 the size), \
+                  class 0xF5 the TCP/IP interface, class 0xF6 the Ethernet link. Instance 0 is the class itself. The \
+                  objects depend on the board; the manuals of the controller do not list them."
 )]
 pub struct Get {
-    /// Number of the class, as in 4 or 0xF5
+    /// Number of the class, for example 4 or 0xF5
     #[arg(value_parser = number)]
     class: u32,
     /// Number of the instance
@@ -56,11 +56,12 @@ impl Command for Get {
 /// Writes an attribute of an object (Set_Attribute_Single).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The bytes are sent unchanged: low byte first, and a text after its length. The output assembly \
-                  contains the inputs of the controller. Writing it can move the robot and needs a confirmation."
+    after_help = "armctl sends the bytes unchanged: low byte first, and a text after its length. The output assembly \
+                  contains the inputs of the controller. A write to the output assembly can move the robot, and needs \
+                  a confirmation."
 )]
 pub struct Set {
-    /// Number of the class, as in 4 or 0xF5
+    /// Number of the class, for example 4 or 0xF5
     #[arg(value_parser = number)]
     class: u32,
     /// Number of the instance
@@ -69,7 +70,7 @@ pub struct Set {
     /// Number of the attribute
     #[arg(value_parser = number)]
     attribute: u32,
-    /// Its bytes in hexadecimal, as in 0A00
+    /// Bytes of the value in hexadecimal, for example 0A00
     #[arg(value_name = "HEX", value_parser = bytes)]
     data: Bytes,
 }
@@ -126,25 +127,25 @@ fn bytes(text: &str) -> Result<Bytes, String> {
     }
 }
 
-/// Parses an object number: 16 bits, decimal or hexadecimal with 0x.
+/// Parses the number of a class, instance or attribute: 16 bits, decimal or hexadecimal with 0x.
 fn number(text: &str) -> Result<u32, String> {
     typed::unsigned::<u16>(text)
         .map(u32::from)
-        .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, as in 4 or 0xF5"))
+        .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, such as 4 or 0xF5"))
 }
 
-/// Value of an attribute.
+/// Value of an attribute, or of all attributes of an object.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Value {
-    /// `class 0x04 (assembly), instance 100, attribute 3`.
+    /// Object, for example `class 0x04 (assembly), instance 100, attribute 3`.
     object: String,
-    /// The bytes, unchanged.
+    /// The bytes in hexadecimal, unchanged.
     hex: String,
     /// Number of bytes.
     bytes: usize,
     /// The bytes as an unsigned number, low byte first; null unless there are 1, 2, 4 or 8 bytes.
     number: Option<u64>,
-    /// The bytes as a text after its length; null if they are not a text. Untrusted.
+    /// The bytes as a text with a length byte in front; null if they are not such a text. Do not trust the text.
     text: Option<String>,
 }
 
@@ -182,8 +183,8 @@ mod tests {
 
     #[test]
     fn messages_have_the_bytes_of_the_specification() {
-        // Volume 1, appendix C-1: service, path length in words, then class, instance and attribute in 8 bits if they
-        // fit.
+        // Format of volume 1, appendix C-1: service, then the path length in words, then class, instance and attribute.
+        // Each number has 8 bits if it fits.
         let hex = |line: &[&str]| frames(line).unwrap()[0]["hex"].as_str().unwrap().to_owned();
         assert_eq!(hex(&["eip", "get", "4", "100", "3"]), "0e03200424643003");
         assert_eq!(hex(&["eip", "get", "0xF5", "1"]), "010220f52401");

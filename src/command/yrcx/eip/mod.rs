@@ -1,5 +1,5 @@
-//! Controllers on EtherNet/IP, and `yrcx eip`: diagnosis of the network board with explicit messages. No I/O connection
-//! is opened, so the end of the command does not affect the controller.
+//! Controllers on EtherNet/IP, and the commands `yrcx eip`, which diagnose the network board with explicit messages.
+//! The commands open no I/O connection, so their end does not affect the controller.
 
 mod board;
 pub mod bus;

@@ -12,16 +12,16 @@ use crate::failure::{Failure, Kind};
 use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, View};
 
-/// Finds the assemblies of the board: reads every assembly from 1 to 255. No connection is requested.
+/// Finds the assemblies of the board: armctl reads every assembly from 1 to 255. It requests no connection.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Use the resulting target with -t or `armctl robots add`.\n\nWith --try, armctl also requests owner \
-                  connections with invalid sizes, starting with the instances of the URL. The board refuses them with \
-                  a reason that identifies instances and sizes. If the board accepts one, armctl commands the \
-                  controller until the connection closes, and the close stops the robot."
+                  connections with invalid sizes, starting with the instances of the URL. The board refuses these \
+                  connections with a reason that identifies instances and sizes. If the board accepts a connection, \
+                  armctl commands the controller until the connection closes. The close stops the robot."
 )]
 pub struct Probe {
-    /// Request connections to find fitting parameters
+    /// Request connections to find the parameters that the board accepts
     #[arg(long = "try")]
     tries: bool,
 }
@@ -30,12 +30,13 @@ impl Command for Probe {
     type Family = Yrcx;
     type Report = ProbeReport;
     const ID: &'static str = "yrcx.eip.probe";
-    const INTENT: &'static str = "request owner connections that the board should refuse; if the board accepts one, \
-                                  armctl commands the controller, and the end of the connection stops the robot";
+    const INTENT: &'static str = "request owner connections that the board should refuse; if the board accepts a \
+                                  connection, armctl commands the controller, and the end of the connection stops the \
+                                  robot";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
-        // A board can accept a connection that it should refuse.
+        // With --try, a board may accept a connection that it should refuse.
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
@@ -57,7 +58,7 @@ impl Command for Probe {
 /// Result of the probe.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProbeReport {
-    /// Null if the board does not report it.
+    /// Identity of the board; null if the board does not report it.
     identity: Option<Identity>,
     #[serde(flatten)]
     probed: Probed,
@@ -103,7 +104,8 @@ impl Report for ProbeReport {
             if self.has_tried {
                 failure.hint("find the instances in the board's EDS file and set in, out and config in the URL")
             } else {
-                failure.hint("when the cell is clear of people, add --try to request connections from the board")
+                failure
+                    .hint("add --try to request connections from the board, but only when the cell is clear of people")
             }
         })
     }

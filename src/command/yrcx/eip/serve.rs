@@ -17,7 +17,7 @@ use crate::transport::eip::{IO_PORT, PORT};
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
-    /// EtherNet/IP: address to listen on, with the TCP port of sessions; port 0 lets the system choose
+    /// EtherNet/IP: address to listen on, with the TCP port of sessions; with port 0, the system chooses a port
     #[arg(long, alias = "listen", value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
     /// EtherNet/IP: UDP port of images; default: 2222, or a free port if the system chooses the session port

@@ -10,7 +10,7 @@ use crate::command::{Command, ConnectMode, Context};
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
 
-/// Reads all signals. Only the client that sets the inputs can read them, so they are listed only in a session.
+/// Reads all signals. Inputs are listed only in a session, because only the client that sets the inputs can read them.
 #[derive(Debug, Args)]
 pub struct List {
     #[command(flatten)]

@@ -27,7 +27,7 @@ impl Link {
         let board: &mut dyn Any = self.any_board()?;
         board.downcast_mut().ok_or_else(|| {
             Failure::usage(format!("{label} is not on {}", B::BUS))
-                .hint("`armctl yrcx --help` lists the commands of each fieldbus")
+                .hint("use `armctl yrcx --help` to list the commands of each fieldbus")
         })
     }
 
@@ -43,7 +43,7 @@ impl Link {
         trace.message(Direction::Received, received, "done");
     }
 
-    /// Notes a message in a dry run, in which its answer is unknown.
+    /// Notes a message in a dry run. In a dry run, the answer is unknown.
     pub fn plan_frame(&mut self, frame: Json) -> Result<(), Failure> {
         self.client.plan_frame(frame, Reason::default());
         if self.client.is_dry() { Err(unknown()) } else { Ok(()) }

@@ -9,7 +9,7 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
-/// Target of one axis; shared with push.
+/// Target of one axis; `yrcx push` uses it too.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("destination").required(true))]
 pub struct Destination {
@@ -25,7 +25,7 @@ pub struct Destination {
 }
 
 impl Destination {
-    /// Command for a point, mm, or pulses.
+    /// Returns the command for the kind of target: a point, mm, or pulses.
     pub fn choose(&self, [point, mm, pulse]: [Command; 3]) -> Command {
         match self {
             Self { point: Some(_), .. } => point,
@@ -34,14 +34,14 @@ impl Destination {
         }
     }
 
-    /// Sets the fields.
+    /// Sets the fields of the target.
     pub fn put(&self, draft: Draft) -> Draft {
         draft
             .with_some(Key::Point, self.point.clone())
             .with_some(Key::Target, self.to.clone().or(self.to_pulse.clone()))
     }
 
-    /// `point 100`, `5.000 mm`.
+    /// Describes the target, for example `point 100` or `5.000 mm`.
     pub fn describe(&self) -> String {
         describe("point", [&self.point, &self.to, &self.to_pulse].map(Option::as_deref))
     }
@@ -62,7 +62,7 @@ struct Distance {
     by_pulse: Option<String>,
 }
 
-/// Text of a point, mm or pulses, whichever is given.
+/// Describes the target or distance that the user gave: a point, mm or pulses.
 fn describe(name: &str, given: [Option<&str>; 3]) -> String {
     match given {
         [Some(point), ..] => format!("{name} {point}"),

@@ -36,7 +36,7 @@ pub struct Push {
     pace: Pace,
 }
 
-/// A time in whole milliseconds.
+/// Parses a time in whole milliseconds.
 fn milliseconds(text: &str) -> Result<i32, String> {
     let time = duration::parse(text)?;
     match i32::try_from(time.as_millis()) {
@@ -80,9 +80,9 @@ impl Motion for Push {
 pub struct Pushed {
     #[serde(flatten)]
     moved: MotionReport,
-    /// Whether it pushed for the whole time; null unless it has ended.
+    /// Whether the axis pushed for the whole time; null if the push has not ended.
     push_completed: Option<bool>,
-    /// Raw result: 1 or 0.
+    /// Result as the controller reports it: 1 or 0; null if the push has not ended.
     push_result: Option<i32>,
 }
 
@@ -96,8 +96,8 @@ impl FromMotion for Pushed {
 impl Report for Pushed {
     fn view(&self) -> View {
         self.moved.view_with(match self.push_completed {
-            Some(true) => "; it pushed for the whole time",
-            Some(false) => "; it ended before the push time was over",
+            Some(true) => "; the axis pushed for the whole push time",
+            Some(false) => "; the push ended before the push time was over",
             None => "",
         })
     }

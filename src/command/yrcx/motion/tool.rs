@@ -9,7 +9,7 @@ use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 
-/// Moves to a point in tool coordinates: the point is relative to the tool, along its axes.
+/// Moves a robot to a point in tool coordinates. The coordinates of the point are along the axes of the tool.
 #[derive(Debug, Args)]
 pub struct Movet {
     /// Point to move to

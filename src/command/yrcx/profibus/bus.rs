@@ -12,7 +12,7 @@ use crate::controller::yrcx::alarm::Alarm;
 use crate::settings::target::profibus::SCHEME;
 use crate::transport::tap::LINKTYPE_PROFIBUS_DL;
 
-/// PROFIBUS DP.
+/// PROFIBUS DP as a fieldbus.
 pub const BUS: Fieldbus = Fieldbus {
     name: SCHEME.bus,
     link_alarm: Alarm::new(12, 561),

@@ -12,13 +12,13 @@ use crate::output::view::{Cell, Section, View};
 /// Diagnosis of a station (Slave_Diag): its state, and the blocks of the unit, its modules and channels.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Diagnosed {
-    /// Station address.
+    /// Address of the station.
     station: u8,
-    /// Ident number, such as 0x1234.
+    /// Ident number, for example 0x1234.
     ident: String,
-    /// Master of the slave; null if it has none.
+    /// Address of the slave's master; null if the slave has no master.
     master: Option<u8>,
-    /// Standard diagnosis flags that are set.
+    /// Flags of the standard diagnosis that are set.
     states: Vec<&'static str>,
     /// Extended diagnosis, one entry per block, in the order received.
     blocks: Vec<String>,

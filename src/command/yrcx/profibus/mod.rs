@@ -1,4 +1,5 @@
-//! Controllers on PROFIBUS DP, and `yrcx profibus`: diagnosis of the line and its stations. No slave is locked.
+//! Controllers on PROFIBUS DP, and the commands `yrcx profibus`, which diagnose the line and its stations. The commands
+//! do not lock a slave.
 
 mod board;
 pub mod bus;

@@ -46,7 +46,7 @@ impl Serve for ServeArgs {
             faults: faults_of_option(faults, &FAULTS)?,
         };
         let server = simulated::serve(start, options)?;
-        // From here on, Ctrl-C must remove the symbolic link.
+        // From here on, Ctrl-C must not end the process before the symbolic link is removed.
         crate::command::frame::interrupt::catch_interrupts();
         let link = link.map(|link| TerminalLink::create(link, server.port())).transpose()?;
         let name = link.as_ref().map(|link| link.name().display().to_string());
@@ -58,7 +58,7 @@ impl Serve for ServeArgs {
     }
 }
 
-/// A slave on a pseudo-terminal. The symbolic link is removed with the server.
+/// A slave on a pseudo-terminal. When the server is dropped, the symbolic link is removed too.
 #[derive(Debug)]
 struct Terminal {
     server: Server,

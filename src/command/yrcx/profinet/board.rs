@@ -1,4 +1,4 @@
-//! Requests to a PROFINET station without a connection.
+//! Requests to a PROFINET station that need no connection.
 
 use std::net::Ipv4Addr;
 use std::time::Duration;
@@ -38,7 +38,7 @@ impl Board {
         &self.profinet
     }
 
-    /// The interface, with a recorder.
+    /// Returns the interface, with the recorder of packets.
     pub fn interface(&self) -> Result<Interface, Failure> {
         let mut interface = Interface::find(&self.profinet.interface).map_err(|error| self.failure(error))?;
         interface.tap = self.tap.clone();
@@ -75,7 +75,7 @@ impl Board {
         Ok(other.map(|mac| format!("station {mac}")))
     }
 
-    /// Finds another owner of this IP address.
+    /// Finds another device that has this IP address.
     pub async fn holder(&self, address: Ipv4Addr, than: &Found) -> Result<Option<String>, Failure> {
         let (mac, own) = (than.mac, self.interface()?.mac);
         let other = self.ask(move |interface| commission::holder(interface, address, mac)).await?;
@@ -95,7 +95,7 @@ impl Board {
             let answer = commission::change(interface, mac, what, &block);
             let is_open = matches!(answer, Err(ProfinetError::NoAnswer { .. }));
             match answer {
-                // A refusal is also an answer.
+                // If the station refuses, do not wait for the new value.
                 Err(error @ ProfinetError::Dcp { .. }) => return Ok(Err(error)),
                 Err(error) if !is_open => return Err(error),
                 _ => {}
@@ -106,17 +106,17 @@ impl Board {
             Ok(found) => Ok(found),
             Err(error @ ProfinetError::Dcp { .. }) => {
                 let failure = Failure::new(Kind::Refused, format!("{}: {error}", self.label));
-                Err(failure.hint("nothing was changed; `yrcx profinet identify` shows the current settings"))
+                Err(failure.hint("use `yrcx profinet identify` to see the current settings; nothing was changed"))
             }
             Err(error) => {
-                let message = format!("{}: sent; the result is unknown: {error}", self.label);
+                let message = format!("{}: the request was sent, and the result is unknown: {error}", self.label);
                 Err(Failure::new(Kind::OutcomeUnknown, message)
-                    .hint("`yrcx profinet identify` shows the current settings"))
+                    .hint("use `yrcx profinet identify` to see the current settings"))
             }
         }
     }
 
-    /// Connects with this layout until data flows, then disconnects. Returns the answer of the station.
+    /// Opens a connection with this layout until data flows, then closes it. Returns the answer of the station.
     pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>, Failure> {
         let profinet = Profinet { layout: Some(layout.clone()), gsdml: None, ..self.profinet.clone() };
         let settings = connect::settings(&profinet, Duration::ZERO).map_err(|error| self.failure_of(&error))?;

@@ -13,7 +13,7 @@ use crate::settings::target::profinet::SCHEME;
 use crate::transport::capture::LINKTYPE_ETHERNET;
 use crate::transport::profinet::wire::status::Status;
 
-/// PROFINET IO.
+/// PROFINET IO as a fieldbus.
 pub const BUS: Fieldbus = Fieldbus {
     name: SCHEME.bus,
     link_alarm: Alarm::new(12, 571),

@@ -1,5 +1,5 @@
-//! Layers of `armctl robots check` for a PROFINET device: from the interface to the image of the controller. It
-//! connects only to a simulator, because the end of a connection stops a controller.
+//! Layers of `armctl robots check` for a PROFINET device: from the interface to the image of the controller. The check
+//! opens a connection only to a simulator, because a real controller stops the robot when a connection ends.
 
 use std::time::Duration;
 
@@ -44,7 +44,11 @@ pub(super) async fn look(board: &Board, layers: &mut Layers) -> Checked<Option<I
         (has, Some(wanted)) if has != Some(wanted.address) => {
             let has = has.map_or_else(|| "none".to_owned(), |address| address.to_string());
             let found = format!("the device has {has}, the target has {}", wanted.address);
-            layers.warn("IP", found, "a connection sets this address until the device is switched off");
+            layers.warn(
+                "IP",
+                found,
+                "check ip= of the target: a connection sets this address until the device is switched off",
+            );
             return Ok(None);
         }
         (None, Some(wanted)) => wanted.address,
@@ -62,7 +66,7 @@ pub(super) async fn look(board: &Board, layers: &mut Layers) -> Checked<Option<I
     layers.warn(
         "data",
         "a device sends its data only to the controller that owns the connection",
-        "connect with `armctl session open`; then `yrcx status` shows the signals",
+        "connect with `armctl session open`, then use `yrcx status` to see the signals",
     );
     Ok(None)
 }
@@ -102,24 +106,29 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Checked<(
                         "equal to the target, except {left_out} of the access point, which only the device has: \
                          {layout}"
                     ),
-                    "a device can require all submodules of its access point: `yrcx profinet probe` lists them",
+                    "use `yrcx profinet probe` to list the submodules of the access point; a device can require all \
+                     of them",
                 ),
             }
         }
         Err(error) => {
-            layers.warn("modules", format!("not reported: {error}"), "a connection shows whether they fit");
+            layers.warn(
+                "modules",
+                format!("the device does not report its modules: {error}"),
+                "open a connection to see whether the modules fit",
+            );
         }
     }
     Ok(())
 }
 
-/// Format: `; it has 0:0x1,1:0x101`.
+/// Lists the modules of the device, for example `; it has 0:0x1,1:0x101`.
 fn listed(modules: &[RealModule]) -> String {
     let all: Vec<String> = modules.iter().map(|module| format!("{}:{:#x}", module.slot, module.ident)).collect();
     format!("; it has {}", all.join(","))
 }
 
-/// Differences between the layout and the real modules.
+/// Compares the layout with the real modules of the device, and returns the differences.
 fn mismatches(layout: &Layout, real: &[RealModule]) -> Vec<ModuleMismatch> {
     let mut mismatches = Vec::new();
     for module in layout.expected() {
@@ -140,7 +149,7 @@ fn mismatches(layout: &Layout, real: &[RealModule]) -> Vec<ModuleMismatch> {
     mismatches
 }
 
-/// Submodules of the access point that the layout does not contain.
+/// Lists the submodules of the access point that the layout does not contain.
 fn left_out(layout: &Layout, real: &[RealModule]) -> Option<String> {
     let head = real.iter().find(|module| module.slot == 0)?;
     let left_out = head.submodules.iter().filter(|(subslot, _)| layout.find(0, *subslot).is_none());

@@ -12,7 +12,7 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::Failure;
 use crate::output::view::{Section, View};
 
-/// Reads the identity of the station (DCP Identify). The station needs no address, and is not connected.
+/// Reads the identity of the station (DCP Identify). The station needs no IP address, and armctl opens no connection.
 #[derive(Debug, Args)]
 #[command(after_help = "Use the MAC address for a station without a name: profinet://02:00:00:00:00:01@eth0. `armctl \
                         robots discover --interface eth0` lists all stations.")]

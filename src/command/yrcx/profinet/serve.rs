@@ -25,19 +25,20 @@ pub struct ServeArgs {
     /// PROFINET: name of the station
     #[arg(long, value_name = "NAME", default_value = NAME, value_parser = profinet::name)]
     station_name: String,
-    /// PROFINET: modules of the device, as in 1:0x101:i48,2:0x102:o48
+    /// PROFINET: modules of the device, for example 1:0x101:i48,2:0x102:o48
     #[arg(long, value_name = "LAYOUT")]
     layout: Option<Layout>,
 }
 
-/// Faults by name. A real Ethernet interface has no simulated ones.
+/// Names of the simulated faults of the device. On a real Ethernet interface, armctl does not simulate faults of
+/// frames.
 const DEVICE_FAULTS: FaultNames<Fault> = FaultNames { link: &[], device: &Fault::ALL };
 
 impl Serve for ServeArgs {
     fn serve(&self, ToServe { start, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
         let Some(interface) = &self.interface else {
             return Err(Failure::usage("a PROFINET device needs an Ethernet interface")
-                .hint("add --interface IFACE; `ip link` lists the interfaces"));
+                .hint("add --interface IFACE; use `ip link` to list the interfaces"));
         };
         let faults: SimulatorFaults<FaultSpec, Fault> = faults_of_option(faults, &DEVICE_FAULTS)?;
         let layout = self.layout.clone().unwrap_or_else(layout);
