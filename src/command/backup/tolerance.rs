@@ -163,7 +163,7 @@ fn aligned(
 /// Location of a position: section heading and key.
 type Position = (String, String);
 
-/// Lines of a text, with the location of each position.
+/// Lines of a text. A line with a robot position has its location: section heading and key.
 fn with_positions(text: &[u8], key: impl Fn(&str) -> Option<&str>) -> Vec<(Option<Position>, &[u8])> {
     let mut headline = String::new();
     let mut lines = Vec::new();

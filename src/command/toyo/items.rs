@@ -101,7 +101,11 @@ async fn read(
 pub fn plan_twice(link: &mut Link, request: &Request) {
     link.plan(request, THERE);
     if request.parameter().is_some_and(|parameter| !parameter.only_on.is_empty()) {
-        link.plan_if(request, "whether the controller refuses the request, because a busy controller also refuses");
+        link.plan_if(
+            request,
+            "whether the controller refuses the first request: a busy controller also refuses, so \
+                               armctl sends the request again",
+        );
     }
 }
 

@@ -16,7 +16,7 @@ commands! {
         Copy(Copy),
         /// Add a point to another point: 100 --to 1
         Add(Add),
-        /// Subtract a point from another point: 100 --from 1
+        /// Subtract point 100 from point 1, which changes: 100 --from 1
         Sub(Sub),
         /// Copy a pallet position to a point: 2 --place 133 --to 100
         Pallet(Pallet),

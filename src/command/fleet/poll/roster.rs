@@ -22,7 +22,7 @@ pub(super) struct Roster {
     sources: Option<Sources>,
     /// Inventory file to follow; `None` if the robots are fixed.
     file: Option<PathBuf>,
-    /// File state at the last read and at the last check.
+    /// State of the file when it was last read. `last_stamp` is the state at the last check.
     read: Option<Stamp>,
     last_stamp: Option<Stamp>,
     next: Instant,

@@ -506,7 +506,7 @@ async fn read<S: Store>(
     table.deselect(link, read).await
 }
 
-/// Parses rows as typed. User-defined names are also accepted.
+/// Parses the rows that the user typed: keys or user-defined names.
 fn read_keys<S: Store>(text: &str) -> Result<Vec<S::Key>, String> {
     let Some(kind) = S::LABELS else { return S::keys(text) };
     labels::parse_or_name(&[kind], &S::any(), text, S::keys)

@@ -44,7 +44,7 @@ impl Command for List {
             tasks::choose(link, None).await?;
             link.plan(&steps::rooms_request(), "number of steps of the tasks");
             if self.used {
-                link.then("every step of every task is read, after the selection of the task");
+                link.then("each task is selected, and all its steps are read");
             }
             return Err(unknown());
         }

@@ -6,7 +6,7 @@ use super::motion::{Coordinates, minus};
 use super::world::World;
 use crate::toyo::field::Value;
 
-/// Number of linear axes of a matrix. The last axis rotates.
+/// Number of linear axes of a matrix: axes 1 to 3. Axis 4 (`TURN`) rotates.
 const SPACE: usize = 3;
 const TURN: usize = 3;
 

@@ -302,7 +302,7 @@ pub const VALUE_PULSE: Layout = &[Field::long(Key::Value, "value", 4, PULSE)];
 /// A number in mm.
 pub const VALUE_MM: Layout = &[Field::long(Key::Value, "value", 4, MM)];
 
-// Ports (4.5). A port number has two decimal digits in eight bits. Its range depends on the port type.
+// Ports (4.5). A port number is BCD: two decimal digits of four bits each. Its range depends on the port type.
 
 const OUTPUTS: &[(i32, i32)] = &[(2, 7), (10, 17), (20, 27)];
 const INPUTS_OR_OUTPUTS: &[(i32, i32)] = &[(0, 7), (10, 17), (20, 27)];

@@ -136,7 +136,8 @@ fn a_start_is_the_one_that_others_have_seen_working() {
     let mut world = World::new("500k", "");
     world.slave.set_fault(None);
     world.open();
-    // The other implementations do not send Get_Cfg. After Get_Cfg, the frame count bit is therefore inverted.
+    // armctl sends Get_Cfg, the other implementations do not. After Get_Cfg, the frame count bit of armctl is therefore
+    // the inverse of theirs.
     let expected = [
         "10 05 02 49 50 16",
         "68 05 05 68 85 82 6D 3C 3E EE 16",
